@@ -1,0 +1,1 @@
+"""Geometry and meshes: involute gears and verification shapes, made with gmsh. Knows nothing of dolfinx."""

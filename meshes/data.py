@@ -1,0 +1,50 @@
+"""A mesh as plain arrays, with named groups; the only thing that passes from gmsh to the solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CELL_DIMENSION = {"triangle": 2, "quadrilateral": 2, "tetrahedron": 3, "hexahedron": 3}
+FACET_SHAPE = {
+    "triangle": "interval",
+    "quadrilateral": "interval",
+    "tetrahedron": "triangle",
+    "hexahedron": "quadrilateral",
+}
+
+
+
+class MeshError(ValueError):
+    """A mesh that cannot be used as it is; the message says what was wanted, what was found and what to do."""
+
+
+@dataclass(frozen=True)
+class MeshData:
+    """One body's mesh, Lagrange cells of order 1 or 2, node numbering as gmsh's.
+
+    points: (n, 3) node coordinates [mm]; a 2D mesh has z = 0.
+    shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
+    order: 1 or 2 (complete Lagrange: quad9, hex27, tri6, tet10).
+    cells: (n_cells, nodes per cell) node indices in gmsh's node order.
+    facets: name -> (n_f, nodes per facet) node indices in gmsh's node order (line2/3, quad4/9, tri3/6), outward
+        orientation not guaranteed.
+    volumes: name -> (n_c,) cell indices.
+    """
+
+    points: Floats
+    shape: str
+    order: int
+    cells: Ints
+    facets: dict[str, Ints]
+    volumes: dict[str, Ints]
+
+    @property
+    def dimension(self) -> int:
+        """Topological dimension, 2 or 3."""
+        return CELL_DIMENSION[self.shape]

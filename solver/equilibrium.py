@@ -1,0 +1,196 @@
+"""Equilibrium at one position: SNES on the nodal contact forces and the free rigid motions.
+
+Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 without friction, else d:
+
+    f − m·law(J) = 0,   J = J_0 + H δ − A f          (contact)
+    Hᵀ f = F                                         (balance of the free rigid motions)
+
+The bodies are eliminated exactly (A is their compliance), so this is the finite element system and not a model of it.
+The tangent is reduced to the nodes in contact and factored densely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from meshes.data import Floats
+from solver import newton
+from solver.friction import Law, coulomb, starting_guess
+from solver.newton import NotConverged
+from solver.nitsche import ContactOperator
+
+TOLERANCE = 1e-10  # residual force over the force in the system
+ITERATIONS = 40
+
+LawOf = Callable[[Floats], Law]
+
+
+@dataclass(frozen=True)
+class CondensedSystem:
+    """What a position's equilibrium needs of the bodies.
+
+    operator: contact at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r) local jumps of the free rigid
+    motions. jump: J_0 (n·k,) jumps of the external loads and prescribed motions [mm]. load: F (r,) [N, N·mm].
+    lever: (r,) what one unit of each motion moves the contact [mm per unit], to compare forces with moments.
+    """
+
+    operator: ContactOperator
+    compliance: Floats
+    motion: Floats
+    jump: Floats
+    load: Floats
+    lever: Floats
+
+    @property
+    def k(self) -> int:
+        """Local components a node: 1 (normal) or d."""
+        return len(self.jump) // len(self.operator.nodes)
+
+    def jumps(self, force: Floats, motion: Floats) -> Floats:
+        """J (n, k) from forces (n, k) and motions (r,)."""
+        return (self.jump + self.motion @ motion - self.compliance @ force.ravel()).reshape(-1, self.k)
+
+    @property
+    def scale(self) -> float:
+        """The force [N] that residuals are compared with."""
+        return float(np.abs(self.load / self.lever).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A converged state: forces f (n, k) [N] and tractions (n, k) [MPa] in local frames, motions δ (r,), jumps (n, k)
+    [mm]; Newton iterations and the residual [N] that was left."""
+
+    force: Floats
+    traction: Floats
+    motion: Floats
+    jump: Floats
+    iterations: int
+    residual: float
+
+
+def normal_part(system: CondensedSystem) -> CondensedSystem:
+    """The frictionless system: normal components only."""
+    k = system.k
+    return CondensedSystem(
+        system.operator, system.compliance[::k, ::k], system.motion[::k], system.jump[::k], system.load, system.lever
+    )
+
+
+def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
+    """Equilibrium without friction, of a system with k = 1.
+
+    start: (n,) bool, the nodes assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
+    """
+    chosen = np.ones(len(system.operator.nodes), dtype=bool) if start is None else start
+    problem = _Contact(system, lambda t: coulomb(t, 0.0))
+    return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
+
+
+def frictional(
+    system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
+) -> Equilibrium:
+    """Equilibrium with Coulomb friction.
+
+    slip: (n, d−1) what slipped since the last state apart from the present displacement [mm]; heading: (n, d−1) the
+    known direction of slip, or zero; start: the equilibrium without friction. Raises NotConverged.
+    """
+    force = np.zeros((len(system.operator.nodes), system.k))
+    force[:, :1] = start.force[:, :1]
+    guess = _Contact(system, lambda t: starting_guess(t, friction, heading), slip)
+    law = _Contact(system, lambda t: coulomb(t, friction), slip)
+    first = newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE)
+    return _converged(law, first.x, "Coulomb friction")
+
+
+class _Contact:
+    """Residual and reduced tangent of the contact system."""
+
+    def __init__(self, system: CondensedSystem, law: LawOf, slip: Floats | None = None) -> None:
+        self.system, self.law, self.slip = system, law, slip
+        self.n, self.k, self.r = len(system.operator.nodes), system.k, len(system.load)
+
+    def split(self, x: Floats) -> tuple[Floats, Floats]:
+        """(f, δ) of x; δ is scaled by the lever so that all residuals are forces."""
+        return x[: self.n * self.k].reshape(self.n, self.k), x[self.n * self.k :] / self.system.lever
+
+    def join(self, force: Floats, motion: Floats) -> Floats:
+        return np.concatenate([force.ravel(), motion * self.system.lever])
+
+    def scale(self, x: Floats) -> float:
+        return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
+
+    def state(self, x: Floats) -> tuple[Floats, Floats, Law]:
+        """Forces, jumps and the law there."""
+        force, motion = self.split(x)
+        jump = self.system.jumps(force, motion)
+        return force, jump, self.law(self.system.operator.trial(jump, self.slip))
+
+    def residual(self, x: Floats) -> Floats:
+        force, _, law = self.state(x)
+        contact = force - self.system.operator.weights[:, None] * law.traction
+        balance = (self.system.motion.T @ force.ravel() - self.system.load) / self.system.lever
+        return np.concatenate([contact.ravel(), balance])
+
+    def solve(self, x: Floats, right: Floats) -> Floats:
+        """The tangent's inverse: dense on the nodes in contact, the others only take their own residual."""
+        k, r, system = self.k, self.r, self.system
+        slope = self._slope(x)
+        active = np.flatnonzero(slope.any(axis=(1, 2)))
+        if len(active) == 0 and r:
+            raise NotConverged("no node in contact while a motion is free: bring the bodies together, or hold the motion")
+        rows = (k * active[:, None] + np.arange(k)).ravel()
+        rest = np.setdiff1d(np.arange(self.n * k), rows)
+        A, H = system.compliance, system.motion / system.lever
+        result = right.copy()
+        known = A[np.ix_(rows, rest)] @ right[rest] if np.any(right[rest]) else np.zeros(len(rows))
+        b = np.concatenate([right[rows] - _rowwise(slope[active], known), right[self.n * k :] - H[rest].T @ right[rest]])
+        y = la.solve(self._tangent(slope[active], A[np.ix_(rows, rows)], H[rows]), b, check_finite=False)
+        result[rows], result[self.n * k :] = y[: len(rows)], y[len(rows) :]
+        return result
+
+    def _slope(self, x: Floats) -> Floats:
+        """∂f/∂J of each node, (n, k, k)."""
+        op = self.system.operator
+        return op.weights[:, None, None] * self.state(x)[2].derivative * op.trial_slope(self.k)[:, None, :]
+
+    @staticmethod
+    def _tangent(slope: Floats, A: Floats, H: Floats) -> Floats:
+        a, r = H.shape
+        T = np.zeros((a + r, a + r))
+        T[:a, :a] = _rowwise(slope, A)
+        T[np.arange(a), np.arange(a)] += 1.0
+        T[:a, a:] = -_rowwise(slope, H)
+        T[a:, :a] = H.T
+        return T
+
+
+def _rowwise(blocks: Floats, matrix: Floats) -> Floats:
+    """Block-diagonal times matrix: blocks (n, k, k), matrix (n·k, ...)."""
+    n, k, _ = blocks.shape
+    return np.matmul(blocks, matrix.reshape(n, k, -1)).reshape(matrix.shape)
+
+
+def _assumed_contact(system: CondensedSystem, chosen: np.ndarray) -> Floats:
+    """x of the linear problem in which the chosen nodes touch (and may pull)."""
+
+    def law(trial: Floats) -> Law:
+        return Law(np.where(chosen[:, None], trial, 0.0), chosen[:, None, None].astype(float))
+
+    problem = _Contact(system, law)
+    zero = np.zeros(problem.n + problem.r)
+    return -problem.solve(zero, problem.residual(zero))
+
+
+def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
+    root = newton.solve(problem, start, stage, ITERATIONS, TOLERANCE)
+    if not root.converged:
+        left = root.residual / problem.scale(root.x)
+        raise NotConverged(f"{stage}: residual {left:.1e} of the load after {root.iterations} iterations; a smaller step may help")
+    force, motion = problem.split(root.x)
+    _, jump, law = problem.state(root.x)
+    return Equilibrium(force, law.traction, motion, jump, root.iterations, root.residual)

@@ -1,0 +1,112 @@
+"""A gear condensed once for all positions: one sector, meshed, factored, chained into the teeth that a pitch needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from meshes.data import Floats, Ints, MeshData
+from meshes.parameters import GearParameters, GearPair
+from solver.body import Body, Fixed, assemble
+from solver.chain import ChainedCompliance
+from solver.kinematics import turn
+from solver.material import Material
+from solver.surface import Surface, surface_of
+from solver.traction import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
+
+
+@dataclass(frozen=True)
+class GearBody:
+    """One gear, seen through the loaded flanks of its teeth.
+
+    flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
+    pressure, else None. chain: compliance of all modelled teeth. sectors: how often 2π/z each of them is turned.
+    sign: +1 where tooth pair i has the tooth turned by +2πi/z (pinion), −1 for the wheel.
+    """
+
+    gear: GearParameters
+    mesh: MeshData
+    flank: Surface
+    traction: NitscheTraction | None
+    chain: ChainedCompliance
+    sectors: range
+    sign: int
+
+    @property
+    def d(self) -> int:
+        """Space dimension."""
+        return self.mesh.dimension
+
+    @property
+    def z(self) -> Floats:
+        """Heights (n,) of the flank's nodes [mm]."""
+        return self.flank.points[:, 2] if self.d == 3 else np.zeros(len(self.flank.points))
+
+    @property
+    def roll_length(self) -> Floats:
+        """Transverse involute curvature radius √(r² − r_b²) (n,) at the flank's nodes [mm]."""
+        r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
+        return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
+
+    @cached_property
+    def tip_zone(self) -> np.ndarray:
+        """(n,) bool: the flank nodes on the tip edge."""
+        r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
+        return r > r.max() - 1e-6 * self.gear.normal_module
+
+    def chain_index(self, tooth: int) -> int:
+        """Place of tooth pair i's tooth in the chain."""
+        return self.sectors.index(self.sign * tooth)
+
+    def rows(self, tooth: int, nodes: Ints) -> Ints:
+        """(len, 2) pairs (sector, node) for the chain."""
+        return np.column_stack([np.full(len(nodes), self.chain_index(tooth)), nodes])
+
+
+def condensed_gear(
+    gear: GearParameters,
+    mesh: MeshData,
+    material: Material,
+    teeth: list[int],
+    sign: int,
+    carries_pressure: bool,
+    safety: float = SAFETY,
+) -> GearBody:
+    """Assembles, factors and chains one sector. teeth: the tooth pairs that touch; one more on each side is modelled.
+
+    The bore is held in the gear's frame.
+    """
+    body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+    assembled = assemble(body)
+    flank = surface_of(mesh, "flank")
+    K, d = assembled.stiffness, assembled.d
+    P = trace_functionals(flank, K.shape[0])
+    traction = None
+    if carries_pressure:
+        traction = nitsche_traction(mesh, material, flank, safety)
+        K, P = (K - traction.constant_term()).tocsr(), (P - traction.flux()).tocsr()
+    low, high = matching_cuts(mesh, 2.0 * np.pi / gear.z)
+    free = assembled.free
+    place = np.full(K.shape[0], -1)
+    place[free] = np.arange(len(free))
+    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in (low, high)]
+    cut = [dofs[dofs >= 0] for dofs in cut]
+    sectors = range(min(sign * t for t in teeth) - 1, max(sign * t for t in teeth) + 2)
+    chain = ChainedCompliance.of(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1], gear.z, len(sectors), d)
+    return GearBody(gear, mesh, flank, traction, chain, sectors, sign)
+
+
+def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:
+    """Nodes of the low and of the high cut face in matching order: high = low turned by the pitch [rad].
+
+    Raises ValueError where they do not match within 1e-7 mm.
+    """
+    low, high = (np.unique(mesh.facets[name]) for name in ("cut_low", "cut_high"))
+    turned = mesh.points[low] @ turn(pitch, 3).T
+    distance, partner = cKDTree(mesh.points[high]).query(turned)
+    if len(low) != len(high) or distance.max() > 1e-7:
+        raise ValueError(f"sector: wanted cut faces that match when turned by the pitch, found {distance.max():.1e} mm apart")
+    return low, high[partner]

@@ -1,0 +1,193 @@
+"""The contact of a gear pair at one position: tooth pairs within reach, their window, and the condensed system.
+
+Only the nodes of a window about each contact line take part; a solution that touches the window's rim is refused by
+`reaches_rim`, and the caller widens the window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats, Ints
+from meshes.parameters import GearPair
+from solver.equilibrium import CondensedSystem
+from solver.gear_body import GearBody
+from solver.kinematics import Stand, spin
+from solver.nitsche import ContactOperator, contact_operator, stacked
+from solver.search import pair_surfaces
+
+EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
+PENETRATION = 0.2  # how deep [module] undeformed flanks may overlap: far beyond any deflection
+
+
+@dataclass(frozen=True)
+class ToothContact:
+    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion."""
+
+    tooth: int
+    operator: ContactOperator
+
+
+@dataclass(frozen=True)
+class GearContact:
+    """All tooth pairs at a position.
+
+    bodies: (pinion, wheel), the pinion carries the pressure. half_width: of the window [mm of profile arc].
+    """
+
+    bodies: tuple[GearBody, GearBody]
+    stand: Stand
+    teeth: tuple[ToothContact, ...]
+    half_width: float
+
+    @property
+    def d(self) -> int:
+        return self.bodies[0].d
+
+    @cached_property
+    def operator(self) -> ContactOperator:
+        """All teeth's nodes in one list."""
+        return stacked([t.operator for t in self.teeth])
+
+    @cached_property
+    def tooth(self) -> Ints:
+        """(n,) tooth pair of each node."""
+        return np.concatenate([np.full(len(t.operator.nodes), t.tooth) for t in self.teeth])
+
+    @cached_property
+    def node(self) -> Ints:
+        """(n,) flank node of the pinion's tooth."""
+        return np.concatenate([t.operator.nodes for t in self.teeth])
+
+    @cached_property
+    def points(self) -> tuple[Floats, Floats]:
+        """ψ-weighted mean positions (n, d) of the pinion's flank and of the wheel's flank opposite, common frame."""
+        first, second = [], []
+        for t in self.teeth:
+            first.append(t.operator.jump1 @ self._placed_points(0, t.tooth))
+            second.append(t.operator.jump2 @ self._placed_points(1, t.tooth))
+        return np.concatenate(first), np.concatenate(second)
+
+    def _placed_points(self, gear: int, tooth: int) -> Floats:
+        R = self.stand.rotation(gear, self.d, tooth)
+        return self.bodies[gear].flank.points @ R.T + self.stand.centre(gear, self.d)
+
+    @cached_property
+    def spins(self) -> tuple[Floats, Floats]:
+        """Local jumps (n, d) per radian of pinion rotation and of wheel rotation (about +z each)."""
+        result = []
+        for gear, sign in ((0, 1.0), (1, -1.0)):
+            moved = spin(self.points[gear], self.stand.centre(gear, self.d))
+            result.append(sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
+        return result[0], result[1]
+
+    @cached_property
+    def ξ(self) -> Floats:
+        """(n,) roll distance of the contact line in each node's slice [mm]."""
+        z = self.bodies[0].z[self.node]
+        return self.stand.pair.roll_distance(self.stand.angle, self.tooth, z)
+
+    @cached_property
+    def maps(self) -> tuple[tuple[Ints, sp.csr_matrix], tuple[Ints, sp.csr_matrix]]:
+        """For each gear the chain rows (m, 2) that matter and the map (n·d, m·d) from them to local jumps."""
+        return self._map(0), self._map(1)
+
+    def _map(self, gear: int) -> tuple[Ints, sp.csr_matrix]:
+        body, rows, blocks = self.bodies[gear], [], []
+        R = self.stand.rotation(gear, self.d)
+        for t in self.teeth:
+            local = t.operator.local_map(gear + 1, R)
+            nodes = np.unique((t.operator.jump1 if gear == 0 else t.operator.jump2).indices)
+            rows.append(body.rows(t.tooth, nodes))
+            blocks.append(local[:, (self.d * nodes[:, None] + np.arange(self.d)).ravel()])
+        return np.concatenate(rows), sp.block_diag(blocks, format="csr")
+
+    def system(self, loaded: int, torque: float, normal_only: bool = False) -> CondensedSystem:
+        """Condensed system with one free rotation: of gear `loaded`, under `torque` [N·mm; per mm of width in 2D].
+
+        normal_only: without friction only the normal components are condensed, a ninth of the work.
+        """
+        k = 1 if normal_only else self.d
+        n = len(self.node) * k
+        A = np.zeros((n, n))
+        for body, (rows, E) in zip(self.bodies, self.maps):
+            E = E[:: self.d] if normal_only else E
+            A += E @ (E @ body.chain.block(rows)).T
+        motion = self.spins[loaded][:, :k].reshape(n, 1)
+        lever = np.array([self.bodies[loaded].gear.base_radius])
+        return CondensedSystem(self.operator, A, motion, np.zeros(n), np.array([torque]), lever)
+
+    @cached_property
+    def at_edge(self) -> np.ndarray:
+        """(n,) bool: the node bears on a tip edge, the pinion's own or the wheel's. There the flank ends in a corner
+        and the pressure is singular, a matter of the mesh."""
+        parts = []
+        for t in self.teeth:
+            own = self.bodies[0].tip_zone[t.operator.nodes]
+            other = np.abs(t.operator.jump2) @ self.bodies[1].tip_zone.astype(float) > 1e-9
+            parts.append(own | other)
+        return np.concatenate(parts)
+
+    def reaches_rim(self, pressed: np.ndarray) -> bool:
+        """Whether a node in contact (n,) bool lies at the window's rim, where the pressure may have been cut off."""
+        distance = arc_distance(self.bodies[0], self.stand, self.tooth, self.node)
+        return bool(np.any(pressed & (distance > 0.85 * self.half_width)))
+
+
+def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) -> Floats:
+    """How far [mm of profile arc] pinion flank nodes lie from their slice's contact line; where that has left the
+    flank, from the flank's end on that side."""
+    pair, base = stand.pair, pinion.gear.base_radius
+    ρ = pinion.roll_length
+    ρ_line = pair.pitch_point_roll_lengths[0] + pair.roll_distance(stand.angle, tooth, pinion.z[node])
+    start, end = pair.path_of_contact
+    low, high = (pair.pitch_point_roll_lengths[0] + end_ for end_ in (start, end))
+    return np.abs(ρ[node] ** 2 - np.clip(ρ_line, low, high) ** 2) / (2.0 * base)
+
+
+def gear_contact(
+    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float
+) -> GearContact:
+    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc].
+
+    Raises SearchError.
+    """
+    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, half_width)) is not None]
+    return GearContact(bodies, stand, tuple(found), half_width)
+
+
+def _tooth_operator(
+    bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float
+) -> ContactOperator | None:
+    pinion, wheel = bodies
+    assert pinion.traction is not None
+    near = arc_distance(pinion, stand, tooth, np.arange(len(pinion.flank.points))) <= half_width
+    within = _line_within_reach(pinion, stand, tooth)
+    near &= within
+    facets = np.flatnonzero(near[pinion.flank.facets].any(axis=1))
+    if len(facets) == 0:
+        return None
+    d = pinion.d
+    first = pinion.flank.moved(stand.rotation(0, d, tooth), stand.centre(0, d))
+    second = wheel.flank.moved(stand.rotation(1, d, tooth), stand.centre(1, d))
+    reach = PENETRATION * pinion.gear.normal_module
+    pairing = pair_surfaces(first, second, reach, reach, facets)
+    if len(pairing.weight) == 0:
+        return None
+    operator = contact_operator(pairing, first, second, pinion.traction.stabiliser)
+    keep = np.flatnonzero(near[operator.nodes])
+    return operator.restricted(keep) if len(keep) else None
+
+
+def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:
+    """Which flank nodes lie in slices whose contact line is on the path of contact, or near enough its ends that
+    deflection can bring the tip's edge into contact."""
+    pair = stand.pair
+    start, end = pair.path_of_contact
+    ξ = pair.roll_distance(stand.angle, tooth, pinion.z)
+    beyond = EXTENSION * pair.pinion.normal_module
+    return (ξ > start - beyond) & (ξ < end + beyond)

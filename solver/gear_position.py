@@ -1,0 +1,248 @@
+"""Equilibrium of a gear pair at one position, for one or several friction coefficients.
+
+The search, the compliance and the frictionless solution are shared by all coefficients; each keeps its own memory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshes.data import Floats, Ints
+from meshes.parameters import GearPair
+from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part
+from solver.gear_body import GearBody
+from solver.gear_contact import GearContact, arc_distance, gear_contact
+from solver.kinematics import Stand, nominal_slip
+from solver.newton import NotConverged
+
+RELOCATE = 2e-4  # [mm] a free rotation that moves the flanks further than this is made exact and searched again
+NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
+ROUNDS = 8
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What friction remembers of a position: where the gears stood, and the displacements of their flanks.
+
+    fields: per gear (teeth, n, d) in the gear's own frame [mm], for the tooth pairs `teeth`.
+    """
+
+    stand: Stand
+    teeth: tuple[int, ...]
+    fields: tuple[Floats, Floats]
+
+
+@dataclass(frozen=True)
+class PositionResult:
+    """A converged position at one friction coefficient; nodes are those of the pinion's flanks within the window.
+
+    stand: with the free rotation. torques: (pinion, wheel) moments of the contact forces about the axes [N·mm; per mm
+    of width in 2D]. tooth, node: (n,). ξ: (n,) roll distance of the node's slice [mm]. weights: (n,) [mm²; mm].
+    traction: (n, d) λ, τ in local frames [MPa]. rate: (n, d) relative velocity of pinion over wheel per radian of
+    pinion rotation, local [mm/rad]. sticks, edge: (n,) bool. iterations: Newton's. residual: relative force residual.
+    """
+
+    stand: Stand
+    friction: float
+    torques: tuple[float, float]
+    tooth: Ints
+    node: Ints
+    ξ: Floats
+    weights: Floats
+    traction: Floats
+    rate: Floats
+    points: Floats
+    sticks: np.ndarray
+    edge: np.ndarray
+    iterations: int
+    residual: float
+    seconds: float = 0.0
+
+    @property
+    def pressure(self) -> Floats:
+        """λ (n,) [MPa]."""
+        return self.traction[:, 0]
+
+    @property
+    def transmission_error(self) -> float:
+        """r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        pinion, wheel = self.stand.pair.gears
+        return pinion.base_radius * self.stand.extra[0] + wheel.base_radius * self.stand.extra[1]
+
+    @property
+    def friction_loss(self) -> float:
+        """Power lost to friction per rad/s of pinion speed [N·mm; per mm of width in 2D]."""
+        return float(np.sum(self.weights[:, None] * self.traction[:, 1:] * self.rate[:, 1 : self.traction.shape[1]]))
+
+    @property
+    def energy_imbalance(self) -> float:
+        """|input − output − friction power| / input."""
+        lost = self.torques[0] - self.torques[1] / self.stand.pair.ratio - self.friction_loss
+        return abs(lost) / abs(self.torques[0])
+
+
+@dataclass(frozen=True)
+class GearLoad:
+    """The load: torque [N·mm; per mm of width in 2D] held on gear `on` (0 pinion, 1 wheel); the other one is driven."""
+
+    torque: float
+    on: int = 0
+
+
+@dataclass(frozen=True)
+class GearModel:
+    """All that positions share. teeth: tooth pairs that may touch within the pitch; half_width: of the window
+    [mm of arc] to start with."""
+
+    pair: GearPair
+    bodies: tuple[GearBody, GearBody]
+    teeth: tuple[int, ...]
+    load: GearLoad
+    half_width: float
+
+
+@dataclass(frozen=True)
+class SharedPosition:
+    """What all friction coefficients of a position share."""
+
+    contact: GearContact
+    system: CondensedSystem
+    smooth: Equilibrium
+
+
+def shared_position(model: GearModel, angle: float, extra: tuple[float, float], normal_only: bool) -> SharedPosition:
+    """Search, compliance and frictionless equilibrium; the free rotation is made exact.
+
+    extra: predicted rotations beyond the nominal ones. Raises NotConverged, SearchError.
+    """
+    stand, half_width = Stand(model.pair, angle, extra), model.half_width
+    for _ in range(ROUNDS):
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
+        if not contact.teeth:
+            raise NotConverged(f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none")
+        system = contact.system(model.load.on, model.load.torque, normal_only)
+        near = arc_distance(model.bodies[0], stand, contact.tooth, contact.node) <= 0.5 * half_width
+        smooth = frictionless(system if normal_only else normal_part(system), near)
+        shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+        if contact.reaches_rim(smooth.force[:, 0] > 0.0):
+            half_width *= 1.5
+        elif abs(shift) <= RELOCATE:
+            return SharedPosition(contact, system, smooth)
+        stand = turned(stand, model.load.on, float(smooth.motion[0]))
+    raise NotConverged(
+        f"pinion at {np.degrees(angle):.3f}°: the free rotation still moves by {1e3 * shift:.2f} µm after {ROUNDS} searches"
+    )
+
+
+def turned(stand: Stand, gear: int, δ: float) -> Stand:
+    """The stand with δ added to a gear's extra rotation."""
+    extra = list(stand.extra)
+    extra[gear] += δ
+    return replace(stand, extra=(extra[0], extra[1]))
+
+
+def solve_position(
+    model: GearModel, shared: SharedPosition, friction: float, before: Memory | None, span: float
+) -> tuple[PositionResult, Equilibrium]:
+    """Equilibrium with friction, from the memory of the position before. span: Δφ [rad] assumed where there is none.
+
+    Raises NotConverged.
+    """
+    contact, smooth = shared.contact, shared.smooth
+    found = smooth
+    if friction > 0.0:
+        memory = before or remembered(model, shared, smooth)
+        ξ_before = contact.ξ - model.pair.pinion.base_radius * span if before is None else slice_roll(contact, before.stand)
+        span = span if before is None else contact.stand.angle - before.stand.angle
+        rate = relative_velocity(contact)
+        slip = slipped(model, contact, memory, rate, ξ_before, span)
+        far = np.abs(contact.ξ) > NEAR_PITCH * model.pair.pinion.normal_module
+        size = np.linalg.norm(rate[:, 1:], axis=1, keepdims=True)
+        heading = np.where(far[:, None] & (size > 0.0), rate[:, 1:] / np.where(size > 0.0, size, 1.0), 0.0)
+        found = frictional(shared.system, friction, slip, heading, smooth)
+    return position_result(model, contact, found, friction, smooth.iterations), found
+
+
+def relative_velocity(contact: GearContact) -> Floats:
+    """(n, d) velocity of pinion over wheel per radian of pinion rotation, local frames."""
+    return contact.spins[0] - contact.spins[1] / contact.stand.pair.ratio
+
+
+def slice_roll(contact: GearContact, stand: Stand) -> Floats:
+    """Roll distance of each node's slice when the gears stood at `stand`."""
+    return stand.pair.roll_distance(stand.angle, contact.tooth, contact.bodies[0].z[contact.node])
+
+
+def slipped(
+    model: GearModel, contact: GearContact, before: Memory, rate: Floats, ξ_before: Floats, span: float
+) -> Floats:
+    """(n, d−1) slip since `before` [mm] but for the present displacement: nominal slip, change of the free rotations,
+    and the elastic part remembered at the material points that now face each other."""
+    tangential = rate[:, 1:]
+    size = np.linalg.norm(tangential, axis=1, keepdims=True)
+    growing = tangential * np.sign(contact.ξ)[:, None] / np.where(size > 0.0, size, 1.0)
+    slip = nominal_slip(tangential, contact.ξ, ξ_before, growing, model.pair.ratio, span)
+    for gear in (0, 1):
+        slip = slip + contact.spins[gear][:, 1:] * (contact.stand.extra[gear] - before.stand.extra[gear])
+    return slip - remembered_jump(contact, before)[:, 1:]
+
+
+def remembered_jump(contact: GearContact, before: Memory) -> Floats:
+    """(n, d) local: w of the memory, turned with the wheel to the present."""
+    d = contact.d
+    R1, R2 = (before.stand.rotation(gear, d) for gear in (0, 1))
+    onward = contact.stand.rotation(1, d) @ R2.T
+    parts = []
+    for t in contact.teeth:
+        place = before.teeth.index(t.tooth)
+        w = t.operator.jump1 @ before.fields[0][place] @ R1.T - t.operator.jump2 @ before.fields[1][place] @ R2.T
+        parts.append(w @ onward.T)
+    return np.einsum("jia,ja->ji", contact.operator.frames, np.concatenate(parts))
+
+
+def remembered(model: GearModel, shared: SharedPosition, found: Equilibrium) -> Memory:
+    """The memory of a converged state: displacement of all flank nodes of all teeth."""
+    contact, d = shared.contact, shared.contact.d
+    force = np.zeros((len(contact.node), d))
+    force[:, : found.force.shape[1]] = found.force
+    fields = []
+    for body, (rows, E) in zip(model.bodies, contact.maps):
+        n = len(body.flank.points)
+        everywhere = np.concatenate([body.rows(t, np.arange(n)) for t in model.teeth])
+        u = body.chain.apply(rows, -(E.T @ force.ravel()), everywhere)
+        fields.append(u.reshape(len(model.teeth), n, d))
+    place = np.searchsorted(model.teeth, contact.tooth)
+    R = contact.stand.rotation(0, d)
+    fields[0][place, contact.node] += contact.operator.flux(force) @ R
+    stand = turned(contact.stand, model.load.on, float(found.motion[0]))
+    return Memory(stand, model.teeth, (fields[0], fields[1]))
+
+
+def position_result(
+    model: GearModel, contact: GearContact, found: Equilibrium, friction: float, extra_iterations: int
+) -> PositionResult:
+    """Torques, tractions and flags of a converged state."""
+    k = found.force.shape[1]
+    op = contact.operator
+    torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
+    traction = found.force / op.weights[:, None]
+    bound = friction * traction[:, 0]
+    size = np.linalg.norm(traction[:, 1:], axis=1) if k > 1 else np.zeros(len(bound))
+    return PositionResult(
+        stand=turned(contact.stand, model.load.on, float(found.motion[0])),
+        friction=friction,
+        torques=(torques[0], torques[1]),
+        tooth=contact.tooth,
+        node=contact.node,
+        ξ=contact.ξ,
+        weights=op.weights,
+        traction=traction,
+        rate=relative_velocity(contact),
+        points=contact.points[0],
+        sticks=(bound > 0.0) & (size < bound * (1.0 - 1e-9)),
+        edge=contact.at_edge,
+        iterations=found.iterations + (extra_iterations if friction > 0.0 else 0),
+        residual=found.residual / float(np.sum(found.force[:, 0])),
+    )

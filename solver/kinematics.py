@@ -1,0 +1,82 @@
+"""Two rotating frames: where the gears stand, and how their flanks slip over one another.
+
+The pinion turns by θ_1 = φ − ψ_1 + extra, the wheel by θ_2 = π − ψ_2 − φ z_1/z_2 + extra, ψ the half angle of the tooth
+on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at the pitch point in the mid-face section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.data import Floats
+from meshes.parameters import GearPair
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Where both gears stand.
+
+    angle: nominal pinion rotation φ [rad]. extra: rotations [rad, about +z] of pinion and wheel beyond the nominal
+    ones, exact however large.
+    """
+
+    pair: GearPair
+    angle: float
+    extra: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def turns(self) -> tuple[float, float]:
+        """(θ_1, θ_2) [rad] of the gears' own frames."""
+        pinion, wheel = self.pair.gears
+        d1, d2 = self.pair.working_pitch_diameters
+        return (
+            self.angle - pinion.half_angle(d1) + self.extra[0],
+            np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.extra[1],
+        )
+
+    def centre(self, gear: int, d: int) -> Floats:
+        """Centre (d,) of gear 0 (pinion) or 1 (wheel)."""
+        return np.array([self.pair.centre_distance * gear, 0.0, 0.0])[:d]
+
+    def rotation(self, gear: int, d: int, tooth: int = 0) -> Floats:
+        """(d, d) from the own frame of a gear's tooth i to the common one: pinion +2πi/z_1, wheel −2πi/z_2."""
+        sign = 1.0 if gear == 0 else -1.0
+        return turn(self.turns[gear] + sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
+
+    def roll_distance(self, tooth: int, z: Floats) -> Floats:
+        """ξ [mm] of tooth pair i's contact line at heights z."""
+        return self.pair.roll_distance(self.angle, tooth, z)
+
+
+def turn(angle: float, d: int) -> Floats:
+    """Rotation matrix about +z, (d, d)."""
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.eye(d)
+    R[:2, :2] = [[c, -s], [s, c]]
+    return R
+
+
+def spin(points: Floats, centre: Floats) -> Floats:
+    """e_z × (x − c): displacement per radian, (n, d)."""
+    arm = points - centre
+    result = np.zeros_like(arm)
+    result[:, 0], result[:, 1] = -arm[:, 1], arm[:, 0]
+    return result
+
+
+def nominal_slip(rate: Floats, ξ_now: Floats, ξ_before: Floats, along: Floats, ratio: float, span: float) -> Floats:
+    """∫v_s over a step at the nominal ratio, per node (n, d) [mm].
+
+    rate: (n, d) relative velocity of 1 over 2 per radian of φ at the present position; ξ: roll distances of the node's
+    contact line (its slice of the pair) now and before; along: (n, d) unit tangent in which the velocity grows with ξ
+    by (1 + 1/u); ratio u; span Δφ. Where ξ changes sign in the step, slip counts from the pitch crossing: before it,
+    the flanks slipped the other way. Deciding that by slice, not by point, keeps a patch of one sign together.
+    """
+    step = ξ_now - ξ_before
+    earlier = rate - (1.0 + 1.0 / ratio) * step[:, None] * along
+    crossed = ξ_now * ξ_before < 0.0
+    part = np.where(crossed, ξ_now / np.where(step == 0.0, 1.0, step), 1.0)
+    mean = np.where(crossed[:, None], 0.5 * rate, 0.5 * (rate + earlier))
+    return mean * (span * part)[:, None]

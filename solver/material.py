@@ -1,0 +1,53 @@
+"""Isotropic linear elasticity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.data import Floats
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic elastic material; 2D bodies are in plane strain.
+
+    youngs_modulus [MPa], poissons_ratio [-]. Raises ValueError outside E > 0, −1 < ν < 0.5.
+    """
+
+    youngs_modulus: float = 210e3
+    poissons_ratio: float = 0.3
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.youngs_modulus) and self.youngs_modulus > 0.0):
+            raise ValueError(f"youngs_modulus: wanted a number > 0 [MPa], found {self.youngs_modulus!r}")
+        if not -1.0 < self.poissons_ratio < 0.5:
+            raise ValueError(f"poissons_ratio: wanted −1 < ν < 0.5, found {self.poissons_ratio!r}")
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """(λ, μ) [MPa], of 3D and of plane strain."""
+        E, ν = self.youngs_modulus, self.poissons_ratio
+        return E * ν / ((1.0 + ν) * (1.0 - 2.0 * ν)), E / (2.0 * (1.0 + ν))
+
+    @property
+    def plane_modulus(self) -> float:
+        """E/(1−ν²) [MPa]."""
+        return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
+
+
+STEEL = Material()
+
+
+def traction_rows(material: Material, gradients: Floats, normals: Floats) -> Floats:
+    """σ(u)n as a linear map of nodal displacements.
+
+    gradients: (p, k, d) ∇N at p points; normals: (p, d). Returns (p, d, k, d): row component, node, node component.
+    """
+    λ, μ = material.lame
+    d = normals.shape[1]
+    along = np.einsum("pkb,pb->pk", gradients, normals)
+    rows = λ * np.einsum("pa,pkb->pakb", normals, gradients) + μ * np.einsum("pka,pb->pakb", gradients, normals)
+    rows += μ * np.einsum("pk,ab->pakb", along, np.eye(d))
+    return rows

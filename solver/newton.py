@@ -1,0 +1,104 @@
+"""Newton's method by PETSc's SNES for problems that bring their own reduced tangent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from petsc4py import PETSc
+
+from meshes.data import Floats
+
+
+class NotConverged(RuntimeError):
+    """No solution was found; the message says at which stage and how far it was."""
+
+
+class Nonlinear(Protocol):
+    """Residual, and the inverse of its tangent."""
+
+    def residual(self, x: Floats) -> Floats:
+        """Residual (n,) at x (n,)."""
+        ...
+
+    def solve(self, x: Floats, right: Floats) -> Floats:
+        """T(x)⁻¹ right, with T the derivative of the residual."""
+        ...
+
+    def scale(self, x: Floats) -> float:
+        """What the norm of the residual is small against."""
+        ...
+
+
+@dataclass(frozen=True)
+class Root:
+    """x (n,), the iterations it took and the norm of the residual that is left."""
+
+    x: Floats
+    iterations: int
+    residual: float
+    converged: bool
+
+
+class _Tangent:
+    """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse."""
+
+    def __init__(self, problem: Nonlinear) -> None:
+        self.problem = problem
+        self.at: Floats = np.zeros(0)
+
+    def apply(self, _: PETSc.PC, right: PETSc.Vec, result: PETSc.Vec) -> None:
+        result.array[:] = self.problem.solve(self.at, np.array(right.array_r))
+
+
+def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: float) -> Root:
+    """SNES with full Newton steps until |residual| <= tolerance·scale(x).
+
+    Semismooth contact needs no line search from a good start and is misled by one (the residual may grow when nodes
+    change state). Raises NotConverged on NaN or a singular tangent; whether too many iterations are an error is left
+    to the caller (Root.converged).
+    """
+    tangent = _Tangent(problem)
+    x = PETSc.Vec().createWithArray(start.copy(), comm=PETSc.COMM_SELF)
+    snes = _snes(tangent, x)
+
+    def residual(_: PETSc.SNES, at: PETSc.Vec, out: PETSc.Vec) -> None:
+        out.array[:] = problem.residual(np.array(at.array_r))
+
+    def linearise(_: PETSc.SNES, at: PETSc.Vec, *matrices: PETSc.Mat) -> None:
+        tangent.at = np.array(at.array_r)
+
+    def converged(_: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        if not np.isfinite(norms[2]):
+            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        if norms[2] <= tolerance * problem.scale(np.array(x.array_r)):
+            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_ABS
+        return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT if iteration >= limit else 0
+
+    snes.setFunction(residual, x.duplicate())
+    snes.setJacobian(linearise, snes.getJacobian()[0])
+    snes.setConvergenceTest(converged)
+    snes.solve(None, x)
+    result = Root(np.array(x.array_r), snes.getIterationNumber(), snes.getFunctionNorm(), snes.getConvergedReason() > 0)
+    snes.destroy()
+    if not np.isfinite(result.residual):
+        raise NotConverged(f"{stage}: the residual is not a number after {result.iterations} iterations")
+    return result
+
+
+def _snes(tangent: _Tangent, x: PETSc.Vec) -> PETSc.SNES:
+    snes = PETSc.SNES().create(comm=PETSc.COMM_SELF)
+    options = PETSc.Options("evolvent_")  # petsc4py of Debian has no call for the line search
+    options["snes_type"] = "newtonls"
+    options["snes_linesearch_type"] = "basic"
+    matrix = PETSc.Mat().createPython(x.getSize(), context=tangent, comm=PETSc.COMM_SELF)
+    matrix.setUp()
+    snes.setJacobian(lambda *_: None, matrix)
+    snes.setOptionsPrefix("evolvent_")
+    snes.setFromOptions()
+    ksp = snes.getKSP()
+    ksp.setType("preonly")
+    ksp.getPC().setType("python")
+    ksp.getPC().setPythonContext(tangent)
+    return snes

@@ -1,0 +1,355 @@
+"""The public API: bodies, contacts, solve, sweep. Gears and verification problems use nothing else.
+
+    block = Body(read_msh("block.msh"), supports=(Fixed("bottom"),))
+    punch = Body(read_msh("punch.msh"), rigid=Rigid("top", (Freedom("y", load=-1000.0),)))
+    solution = solve(Problem((punch, block), (Contact((0, "face"), (1, "top"), friction=0.2),)))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats
+from solver.body import Assembled, Body, assemble
+from solver.condense import Factor, compliance, compliance_by_columns
+from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part
+from solver.nitsche import ContactOperator, contact_operator, stacked
+from solver.search import pair_surfaces
+from solver.surface import Surface, surface_of
+from solver.traction import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
+
+Side = tuple[int, str]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two facet groups that may touch: (body index, group name) each.
+
+    first: carries the pressure; the coarser surface. friction: Coulomb's μ. reach: the gap [mm] up to which a node can
+    come into contact within a step; by default a tenth of the first surface's extent.
+    """
+
+    first: Side
+    second: Side
+    friction: float = 0.0
+    reach: float | None = None
+
+
+@dataclass(frozen=True)
+class Nitsche:
+    """γ over its coercivity limit, and θ ∈ {1, 0, −1}: symmetric, incomplete, skew variant."""
+
+    safety: float = SAFETY
+    theta: float = 1.0
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Bodies and the contacts between them. Raises ValueError for a body or a group that does not exist."""
+
+    bodies: tuple[Body, ...]
+    contacts: tuple[Contact, ...]
+    nitsche: Nitsche = Nitsche()
+
+    def __post_init__(self) -> None:
+        for contact in self.contacts:
+            for index, group in (contact.first, contact.second):
+                if not 0 <= index < len(self.bodies):
+                    raise ValueError(f"contact: wanted a body index below {len(self.bodies)}, found {index}")
+                if group not in self.bodies[index].mesh.facets:
+                    known = ", ".join(sorted(self.bodies[index].mesh.facets))
+                    raise ValueError(f"contact: wanted the facet group {group!r}, found {known}; name one of these")
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a body stands: x = rotation·X + translation, (d, d) and (d,) [mm]."""
+
+    rotation: Floats
+    translation: Floats
+
+    @staticmethod
+    def at_rest(d: int) -> Placement:
+        return Placement(np.eye(d), np.zeros(d))
+
+
+@dataclass(frozen=True)
+class Step:
+    """One position of a sweep: a factor on all loads and prescribed motions, and the bodies' placements (None: rest)."""
+
+    load: float = 1.0
+    placements: tuple[Placement, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ContactResult:
+    """One contact of a solution, at the n nodes of the first surface that face the second one.
+
+    points: (n, d) their positions. pressure: (n,) λ [MPa]. traction: (n, d) λn + τ in the common frame [MPa], what the
+    first body presses on the second with. force: (n, d) nodal forces [N]. sticks: (n,) bool.
+    """
+
+    points: Floats
+    normals: Floats
+    weights: Floats
+    pressure: Floats
+    traction: Floats
+    force: Floats
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Equilibrium of a problem at one step.
+
+    motions: per body (r,) rigid motions in the order of its freedoms [mm, rad]. iterations: Newton's, all stages.
+    imbalance: largest residual force over the largest force.
+    """
+
+    contacts: tuple[ContactResult, ...]
+    motions: tuple[Floats, ...]
+    iterations: int
+    imbalance: float
+    nodal_forces: tuple[Floats, ...]
+    prepared: tuple[PreparedBody, ...]
+    step: Step
+
+    def displacement(self, body: int) -> Floats:
+        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included."""
+        return self.prepared[body].displacement(self.nodal_forces[body], self.step.load, self.motions[body])
+
+
+@dataclass(frozen=True)
+class PreparedBody:
+    """A body condensed to the functionals of its contact surfaces, for all steps.
+
+    surfaces: one per side it takes part in; functionals: P (m, N·d); compliance: C = P K'⁻¹ Pᵀ (m, m) [mm/N].
+    """
+
+    assembled: Assembled
+    surfaces: dict[str, Surface]
+    tractions: dict[str, NitscheTraction]
+    offsets: dict[str, int]
+    functionals: sp.csr_matrix
+    forces: sp.csr_matrix
+    stiffness: sp.csr_matrix
+    compliance: Floats
+
+    @cached_property
+    def factor(self) -> Factor:
+        """The factored stiffness, for loads and fields."""
+        return Factor(self.stiffness)
+
+    @cached_property
+    def load_response(self) -> Floats:
+        """P K'⁻¹ f of the external loads, (m,)."""
+        load = self.assembled.load[self.assembled.free]
+        if not load.any():
+            return np.zeros(self.functionals.shape[0])
+        return self.functionals[:, self.assembled.free] @ self.factor.solve(load)
+
+    @cached_property
+    def motion_shapes(self) -> Floats:
+        """The rigid motions at the functionals, (m, r): they carry no stress, so e = u."""
+        shapes = self.assembled.motions.shapes
+        nodes = [self.surfaces[group].nodes for group in self.offsets]
+        if not nodes:
+            return np.zeros((0, shapes.shape[2]))
+        return np.concatenate([shapes[n].reshape(len(n) * shapes.shape[1], shapes.shape[2]) for n in nodes])
+
+    def displacement(self, functional_forces: Floats, load: float, motion: Floats) -> Floats:
+        """(N, d) from forces on the functionals (m,)."""
+        a = self.assembled
+        u = np.zeros(a.stiffness.shape[0])
+        u[a.free] = self.factor.solve((load * a.load + self.forces.T @ functional_forces)[a.free])
+        return u.reshape(-1, a.d) + a.motions.shapes @ motion
+
+
+def prepare(problem: Problem) -> tuple[PreparedBody, ...]:
+    """Assembles and condenses every body once."""
+    return tuple(_prepared(problem, index) for index in range(len(problem.bodies)))
+
+
+def _prepared(problem: Problem, index: int) -> PreparedBody:
+    body, θ = problem.bodies[index], problem.nitsche.theta
+    assembled = assemble(body)
+    first = {c.first[1] for c in problem.contacts if c.first[0] == index}
+    groups = sorted(first | {c.second[1] for c in problem.contacts if c.second[0] == index})
+    surfaces = {group: surface_of(body.mesh, group) for group in groups}
+    tractions = {g: nitsche_traction(body.mesh, body.material, surfaces[g], problem.nitsche.safety) for g in groups if g in first}
+    K, d = assembled.stiffness, assembled.d
+    trace = {g: trace_functionals(surfaces[g], K.shape[0]) for g in groups}
+    for traction in tractions.values():
+        K = K - θ * traction.constant_term() if θ else K
+    seen = sp.vstack([trace[g] - tractions[g].flux() if g in tractions else trace[g] for g in groups]).tocsr()
+    pushed = sp.vstack([trace[g] - θ * tractions[g].flux() if g in tractions else trace[g] for g in groups]).tocsr()
+    free = assembled.free
+    K_free = K[free][:, free].tocsr()
+    if θ == 1.0 or not tractions:
+        C = compliance(K_free, seen[:, free])
+    else:
+        C = compliance_by_columns(Factor(K_free), seen[:, free], pushed[:, free])
+    offsets = dict(zip(groups, np.cumsum([0] + [trace[g].shape[0] for g in groups])))
+    return PreparedBody(assembled, surfaces, tractions, offsets, seen, pushed, K_free, C)
+
+
+def solve(problem: Problem, step: Step = Step()) -> Solution:
+    """One step from rest. Raises NotConverged, SearchError."""
+    return next(sweep(problem, [step]))
+
+
+def sweep(problem: Problem, steps: Iterable[Step]) -> Iterator[Solution]:
+    """Solves step after step; friction remembers the step before. Raises NotConverged, SearchError."""
+    prepared = prepare(problem)
+    before: _History | None = None
+    for step in steps:
+        position = Position(problem, prepared, step)
+        solution, before = position.solve(before)
+        yield solution
+
+
+@dataclass(frozen=True)
+class _History:
+    """Deformed positions of the surfaces of each contact at the last step: (n1, d) and (n2, d) in the common frame."""
+
+    points: tuple[tuple[Floats, Floats], ...]
+
+
+class Position:
+    """The condensed contact system of one step."""
+
+    def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step) -> None:
+        self.problem, self.prepared, self.step = problem, prepared, step
+        self.d = prepared[0].assembled.d
+        self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
+        self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
+        self.operators = [self._operator(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
+        self.maps = [self._map(b) for b in range(len(prepared))]
+
+    def _surface(self, side: Side) -> Surface:
+        where = self.placements[side[0]]
+        return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
+
+    def _operator(self, contact: Contact, first: Surface, second: Surface) -> ContactOperator:
+        reach = contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
+        traction = self.prepared[contact.first[0]].tractions[contact.first[1]]
+        return contact_operator(pair_surfaces(first, second, reach, reach), first, second, traction.stabiliser)
+
+    def _map(self, body: int) -> sp.csr_matrix:
+        """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
+        d, prepared = self.d, self.prepared[body]
+        rows = []
+        for contact, op in zip(self.problem.contacts, self.operators):
+            block = sp.csr_matrix((len(op.nodes) * d, prepared.functionals.shape[0]))
+            for number, side in ((1, contact.first), (2, contact.second)):
+                if side[0] == body:
+                    local = op.local_map(number, self.placements[body].rotation)
+                    start = prepared.offsets[side[1]]
+                    pad = (start, block.shape[1] - start - local.shape[1])
+                    block = block + sp.hstack([sp.csr_matrix((local.shape[0], p)) if i != 1 else local for i, p in enumerate((pad[0], 0, pad[1]))])
+            rows.append(block)
+        return sp.vstack(rows).tocsr()
+
+    @property
+    def friction(self) -> Floats:
+        """μ of each node, (Σn,)."""
+        return np.concatenate([np.full(len(op.nodes), c.friction) for c, op in zip(self.problem.contacts, self.operators)])
+
+    def load_jump(self) -> Floats:
+        """Local jumps (Σn·d,) that the external loads alone would make."""
+        return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.prepared))
+
+    def system(self) -> CondensedSystem:
+        """Compliance, motions and loads of all bodies in local jumps."""
+        operator = stacked(self.operators)
+        n = len(operator.nodes) * self.d
+        A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
+        for E, body in zip(self.maps, self.prepared):
+            A += E @ (E @ body.compliance.T).T
+            motions = body.assembled.motions
+            held = np.flatnonzero(~np.isnan(motions.value))
+            moved = E @ body.motion_shapes
+            jump = jump + self.step.load * moved[:, held] @ motions.value[held]
+            H.append(moved[:, motions.free])
+            F.append(self.step.load * motions.load[motions.free])
+        motion, load = np.hstack(H), np.concatenate(F)
+        lever = np.abs(motion).max(axis=0, initial=0.0)
+        return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
+
+    def solve(self, before: _History | None) -> tuple[Solution, _History]:
+        """Equilibrium, with the slip since `before`."""
+        system = self.system()
+        μ = self.friction
+        found = frictionless(normal_part(system))
+        if μ.any():
+            slip = self.slip(before)
+            found = frictional(system, μ, slip, np.zeros_like(slip), found)
+        return self._solution(system, found), self._history(found)
+
+    def _forces(self, found: Equilibrium) -> Floats:
+        force = np.zeros((len(found.force), self.d))
+        force[:, : found.force.shape[1]] = found.force
+        return force
+
+    def _body_motions(self, found: Equilibrium) -> list[Floats]:
+        result, at = [], 0
+        for body in self.prepared:
+            motions = body.assembled.motions
+            value = self.step.load * motions.value
+            value[motions.free] = found.motion[at : at + len(motions.free)]
+            at += len(motions.free)
+            result.append(value)
+        return result
+
+    def _solution(self, system: CondensedSystem, found: Equilibrium) -> Solution:
+        force = self._forces(found)
+        on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
+        ends = np.cumsum([len(op.nodes) for op in self.operators])[:-1]
+        contacts = tuple(
+            _contact_result(op, pair[0], f) for op, pair, f in zip(self.operators, self.placed, np.split(force, ends))
+        )
+        largest = max(system.scale, float(np.abs(force).sum()))
+        imbalance = found.residual / largest if largest else 0.0
+        return Solution(contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step)
+
+    def _history(self, found: Equilibrium) -> _History:
+        force = self._forces(found).ravel()
+        motions = self._body_motions(found)
+        y = [
+            self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
+            for b, E, δ in zip(self.prepared, self.maps, motions)
+        ]
+        points = []
+        at = 0
+        for contact, op, pair in zip(self.problem.contacts, self.operators, self.placed):
+            f = force.reshape(-1, self.d)[at : at + len(op.nodes)]
+            at += len(op.nodes)
+            pair_points = []
+            for side, surface in zip((contact.first, contact.second), pair):
+                start = self.prepared[side[0]].offsets[side[1]]
+                u = y[side[0]][start : start + surface.points.size].reshape(-1, self.d)
+                pair_points.append(surface.points + u @ self.placements[side[0]].rotation.T)
+            pair_points[0][op.nodes] += op.flux(f)
+            points.append((pair_points[0], pair_points[1]))
+        return _History(tuple(points))
+
+    def slip(self, before: _History | None) -> Floats:
+        """(Σn, d−1): tangential change of [x] at the present pairs of points, but for the present displacement."""
+        result = []
+        for i, (op, pair) in enumerate(zip(self.operators, self.placed)):
+            now = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
+            then = now if before is None else op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
+            result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
+        return np.concatenate(result)
+
+
+def _contact_result(op: ContactOperator, first: Surface, force: Floats) -> ContactResult:
+    local = force / op.weights[:, None]
+    common = np.einsum("jia,ji->ja", op.frames, local)
+    return ContactResult(
+        first.points[op.nodes], op.frames[:, 0], op.weights, local[:, 0], common, common * op.weights[:, None]
+    )

@@ -1,0 +1,218 @@
+"""The traction that Nitsche's method takes from the body: recovered at the nodes of the contact surface.
+
+At node j of the surface S_j(u) is the mean of σ(u|_K)n_j over the contact cells K that meet there. It is exact for a
+uniform stress, so consistency and the patch test stay, and it makes of Nitsche's flux one vector a node instead of a
+polynomial a facet: the surface is then seen through three functionals a node, the extended trace e = u − F,
+F_j = Γ_j⁻¹ S_j, Γ = γ n⊗n + γ_t (I − n⊗n). The penalty compliance 1/γ is a few per cent of the contact's own, so an
+error of some per cent in S changes the pressure by a thousandth of it.
+
+γ = 2 C_n and γ_t = 2 C_t, with C the constants of the inverse trace inequality, per contact cell K with facet F:
+C_n = max_v ∫_F σ_n(v)² / a_K(v, v), and C_t with σ_t (the two are far apart, and depend on ν and the cell's shape, so
+they are computed, not tabulated).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats, Ints, MeshData
+from solver.lagrange import gmsh_permutation, node_points, quadrature, tabulate
+from solver.material import Material, traction_rows
+from solver.surface import Surface
+
+SAFETY = 2.0  # γ over its coercivity limit; the solution is insensitive to it between 1.1 and 50
+
+
+@dataclass(frozen=True)
+class NitscheTraction:
+    """What Nitsche's method needs of one contact surface of a body with N mesh nodes.
+
+    traction: (n·d, N·d) σ(u)n recovered at the surface's n nodes [MPa/mm].
+    stabiliser: (n, 2) γ and γ_t at the nodes [MPa/mm].
+    weights: (n,) m_j [mm²; mm in 2D].
+    """
+
+    surface: Surface
+    traction: sp.csr_matrix
+    stabiliser: Floats
+    weights: Floats
+
+    def flux(self) -> sp.csr_matrix:
+        """F = Γ⁻¹S, (n·d, N·d)."""
+        n = self.surface.normals
+        γ, γ_t = self.stabiliser.T
+        eye = np.eye(n.shape[1])
+        nn = np.einsum("ja,jb->jab", n, n)
+        inverse = nn / γ[:, None, None] + (eye - nn) / γ_t[:, None, None]
+        return (_block_diagonal(inverse) @ self.traction).tocsr()
+
+    def averaged_flux(self) -> sp.csr_matrix:
+        """F̄_j = (1/m_j)∫ψ_j F: what the weighted jump sees of F where the surfaces overlap fully."""
+        d = self.surface.normals.shape[1]
+        average = sp.diags(1.0 / self.weights) @ self.surface.mass()
+        return (sp.kron(average, sp.identity(d)) @ self.flux()).tocsr()
+
+    def constant_term(self) -> sp.csr_matrix:
+        """Σ_j m_j F̄_j·Γ_j F̄_j, (N·d, N·d): what −θ times goes into the body's stiffness."""
+        n = self.surface.normals
+        γ, γ_t = self.stabiliser.T
+        nn = np.einsum("ja,jb->jab", n, n)
+        Γ = γ[:, None, None] * nn + γ_t[:, None, None] * (np.eye(n.shape[1]) - nn)
+        F = self.averaged_flux()
+        return (F.T @ _block_diagonal(self.weights[:, None, None] * Γ) @ F).tocsr()
+
+
+def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:
+    """Recovered traction and γ, γ_t of a contact surface of the body."""
+    cells = _ContactCells.of(mesh, surface)
+    constants = safety * inverse_trace_constants(cells, material)
+    stabiliser = np.zeros((len(surface.points), 2))
+    for corner in surface.facets.T:
+        np.maximum.at(stabiliser, corner, constants)
+    return NitscheTraction(surface, _recovered(cells, material), stabiliser, surface.weights())
+
+
+def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
+    """The displacements of the surface's nodes, (n·d, columns) with columns = N·d."""
+    d = surface.points.shape[1]
+    dofs = (d * surface.nodes[:, None] + np.arange(d)).ravel()
+    return sp.csr_matrix((np.ones(len(dofs)), (np.arange(len(dofs)), dofs)), (len(dofs), columns))
+
+
+@dataclass(frozen=True)
+class _ContactCells:
+    """The cells behind the facets of a surface: facet f belongs to cell f here.
+
+    nodes: (f, k) mesh nodes of the cells; coordinates: (f, k, d); slots: (f, kf) place of the facet's nodes in the cell.
+    """
+
+    mesh: MeshData
+    surface: Surface
+    nodes: Ints
+    coordinates: Floats
+    slots: Ints
+
+    @staticmethod
+    def of(mesh: MeshData, surface: Surface) -> _ContactCells:
+        facets = surface.nodes[surface.facets]
+        nodes = mesh.cells[adjacent_cells(mesh.cells, facets)][:, gmsh_permutation(mesh.shape, mesh.order)]
+        slots = np.argmax(nodes[:, None, :] == facets[:, :, None], axis=2)
+        return _ContactCells(mesh, surface, nodes, mesh.points[nodes][..., : mesh.dimension], slots)
+
+    def gradients(self, xi: Floats) -> tuple[Floats, Floats]:
+        """∇N (f, q, k, d) and det J (f, q) at the reference points xi (q, d)."""
+        dN = tabulate(self.mesh.shape, self.mesh.order, xi)[1]
+        J = np.einsum("fka,qtk->fqat", self.coordinates, dN)
+        return np.einsum("qtk,fqta->fqka", dN, np.linalg.inv(J)), np.linalg.det(J)
+
+    def facet_tractions(self, material: Material, normals: Floats) -> Floats:
+        """σ(u)n at the facets' nodes as maps of the cells' displacements: (f, kf, d, k, d); normals (f, kf, d)."""
+        everywhere = self.gradients(node_points(self.mesh.shape, self.mesh.order))[0]
+        at_facet = np.take_along_axis(everywhere, self.slots[:, :, None, None], axis=1)
+        f, kf, k, d = at_facet.shape
+        rows = traction_rows(material, at_facet.reshape(-1, k, d), normals.reshape(-1, d))
+        return rows.reshape(f, kf, d, k, d)
+
+
+def adjacent_cells(cells: Ints, facets: Ints) -> Ints:
+    """The cell (f,) that holds all nodes of each facet (f, kf).
+
+    Raises ValueError for a facet that belongs to no cell, or to two (an interior facet carries no contact).
+    """
+    count = int(max(cells.max(), facets.max())) + 1
+    of_cell = sp.csr_matrix(
+        (np.ones(cells.size), (np.repeat(np.arange(len(cells)), cells.shape[1]), cells.ravel())), (len(cells), count)
+    )
+    of_facet = sp.csr_matrix(
+        (np.ones(facets.size), (np.repeat(np.arange(len(facets)), facets.shape[1]), facets.ravel())), (len(facets), count)
+    )
+    shared = (of_facet @ of_cell.T).tocoo()
+    whole = shared.data == facets.shape[1]
+    owner, cell = shared.row[whole], shared.col[whole]
+    found = np.bincount(owner, minlength=len(facets))
+    if np.any(found != 1):
+        bad = int(np.flatnonzero(found != 1)[0])
+        raise ValueError(f"facet {bad}: wanted one adjacent cell, found {found[bad]}; contact needs boundary facets")
+    result = np.empty(len(facets), dtype=np.int64)
+    result[owner] = cell
+    return result
+
+
+def _recovered(cells: _ContactCells, material: Material) -> sp.csr_matrix:
+    """S: the mean over the facets at a node of σ(u|_K)n_j, (n·d, N·d)."""
+    surface = cells.surface
+    d = surface.normals.shape[1]
+    rows = cells.facet_tractions(material, surface.normals[surface.facets])
+    rows /= np.bincount(surface.facets.ravel(), minlength=len(surface.points))[surface.facets][..., None, None, None]
+    i = d * surface.facets[:, :, None] + np.arange(d)
+    j = d * cells.nodes[:, :, None] + np.arange(d)
+    i, j = np.broadcast_arrays(i[:, :, :, None, None], j[:, None, None, :, :])
+    shape = (d * len(surface.points), d * len(cells.mesh.points))
+    return sp.csr_matrix((rows.ravel(), (i.ravel(), j.ravel())), shape)
+
+
+def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
+    """C_n and C_t of each contact cell, (f, 2) [MPa/mm]."""
+    surface = cells.surface
+    n = surface.normals[surface.facets]
+    K = _element_stiffness(cells, material)
+    T = cells.facet_tractions(material, n)
+    f, kf, d, k, _ = T.shape
+    T = T.reshape(f, kf, d, k * d)
+    normal = np.einsum("fjr,fjrs->fjs", n, T)
+    tangential = (T - n[..., None] * normal[:, :, None, :]).reshape(f, kf * d, k * d)
+    M = _facet_mass(surface)
+    M_t = np.einsum("fij,ab->fiajb", M, np.eye(d)).reshape(f, kf * d, kf * d)
+    return np.stack([_largest_ratio(K, normal, M), _largest_ratio(K, tangential, M_t)], axis=1)
+
+
+def _largest_ratio(K: Floats, T: Floats, M: Floats) -> Floats:
+    """max_v (Tv)ᵀM(Tv) / vᵀKv for each cell; K is regular off the rigid motions, on which T vanishes."""
+    L = np.linalg.cholesky(M)
+    W = np.einsum("fji,fjs->fis", L, T)
+    return np.linalg.eigvalsh(np.einsum("fis,fsj->fij", W, np.linalg.solve(K, np.swapaxes(W, 1, 2))))[:, -1]
+
+
+def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
+    """a_K (f, k·d, k·d), with the rigid motions made stiff so that it can be inverted."""
+    shape, order = cells.mesh.shape, cells.mesh.order
+    xi, w = quadrature(shape, 2 * order)
+    G, det = cells.gradients(xi)
+    λ, μ = material.lame
+    wd = w * np.abs(det)
+    f, _, k, d = G.shape
+    K = λ * np.einsum("fq,fqka,fqlb->fkalb", wd, G, G, optimize=True)
+    K += μ * np.einsum("fq,fqkb,fqla->fkalb", wd, G, G, optimize=True)
+    K += μ * np.einsum("fq,fqkc,fqlc,ab->fkalb", wd, G, G, np.eye(d), optimize=True)
+    K = K.reshape(f, k * d, k * d)
+    R = np.linalg.qr(np.stack([rigid_modes(x - x.mean(axis=0)).reshape(k * d, -1) for x in cells.coordinates]))[0]
+    stiff = np.trace(K, axis1=1, axis2=2) / (k * d)
+    return K + stiff[:, None, None] * np.einsum("fir,fjr->fij", R, R)
+
+
+def rigid_modes(points: Floats) -> Floats:
+    """Small rigid motions at points (n, d): (n, d, r), r = 3 in 2D (x, y, turn), 6 in 3D (x, y, z, turns)."""
+    n, d = points.shape
+    shift = np.broadcast_to(np.eye(d), (n, d, d))
+    if d == 2:
+        turn = np.stack([-points[:, 1], points[:, 0]], axis=1)[:, :, None]
+    else:
+        turn = np.stack([np.cross(axis, points) for axis in np.eye(3)], axis=2)
+    return np.concatenate([shift, turn], axis=2)
+
+
+def _facet_mass(surface: Surface) -> Floats:
+    """∫_F N_i N_j of each facet, (f, kf, kf)."""
+    xi, w = quadrature(surface.shape, 2 * surface.order + 2)
+    N, dN = tabulate(surface.shape, surface.order, xi)
+    tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets], dN)
+    area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
+    return np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
+
+
+def _block_diagonal(blocks: Floats) -> sp.bsr_matrix:
+    n, d, _ = blocks.shape
+    return sp.bsr_matrix((blocks, np.arange(n), np.arange(n + 1)), shape=(n * d, n * d))

@@ -19,7 +19,6 @@ FACET_SHAPE = {
 }
 
 
-
 class MeshError(ValueError):
     """A mesh that cannot be used as it is; the message says what was wanted, what was found and what to do."""
 

@@ -11,6 +11,7 @@ The tangent is reduced to the nodes in contact and factored densely.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -91,16 +92,24 @@ def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Eq
     return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
 
 
+def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
+    """Equilibrium in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
+    one where friction alone carries a load. slip: as there. Raises NotConverged."""
+    law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros_like(slip)), slip)
+    every = np.ones(len(system.operator.nodes), dtype=bool)
+    return _converged(law, _assumed_contact(system, every, slip), "contact without slip")
+
+
 def frictional(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
 ) -> Equilibrium:
     """Equilibrium with Coulomb friction.
 
     slip: (n, d−1) what slipped since the last state apart from the present displacement [mm]; heading: (n, d−1) the
-    known direction of slip, or zero; start: the equilibrium without friction. Raises NotConverged.
+    known direction of slip, or zero; start: the equilibrium without friction, or `stuck`. Raises NotConverged.
     """
     force = np.zeros((len(system.operator.nodes), system.k))
-    force[:, :1] = start.force[:, :1]
+    force[:, : start.force.shape[1]] = start.force
     guess = _Contact(system, lambda t: starting_guess(t, friction, heading), slip)
     law = _Contact(system, lambda t: coulomb(t, friction), slip)
     first = newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE)
@@ -149,7 +158,7 @@ class _Contact:
         result = right.copy()
         known = A[np.ix_(rows, rest)] @ right[rest] if np.any(right[rest]) else np.zeros(len(rows))
         b = np.concatenate([right[rows] - _rowwise(slope[active], known), right[self.n * k :] - H[rest].T @ right[rest]])
-        y = la.solve(self._tangent(slope[active], A[np.ix_(rows, rows)], H[rows]), b, check_finite=False)
+        y = _regular_solve(self._tangent(slope[active], A[np.ix_(rows, rows)], H[rows]), b)
         result[rows], result[self.n * k :] = y[: len(rows)], y[len(rows) :]
         return result
 
@@ -169,20 +178,32 @@ class _Contact:
         return T
 
 
+def _regular_solve(matrix: Floats, right: Floats) -> Floats:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", la.LinAlgWarning)
+        try:
+            return la.solve(matrix, right, check_finite=False)
+        except (la.LinAlgError, la.LinAlgWarning) as error:
+            raise NotConverged(
+                "a free rigid motion meets no resistance: wanted a support, or friction that does not slide everywhere; "
+                "support the body, prescribe the motion, or lower the load"
+            ) from error
+
+
 def _rowwise(blocks: Floats, matrix: Floats) -> Floats:
     """Block-diagonal times matrix: blocks (n, k, k), matrix (n·k, ...)."""
     n, k, _ = blocks.shape
     return np.matmul(blocks, matrix.reshape(n, k, -1)).reshape(matrix.shape)
 
 
-def _assumed_contact(system: CondensedSystem, chosen: np.ndarray) -> Floats:
+def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:
     """x of the linear problem in which the chosen nodes touch (and may pull)."""
 
     def law(trial: Floats) -> Law:
-        return Law(np.where(chosen[:, None], trial, 0.0), chosen[:, None, None].astype(float))
+        return Law(np.where(chosen[:, None], trial, 0.0), chosen[:, None, None] * np.eye(system.k))
 
-    problem = _Contact(system, law)
-    zero = np.zeros(problem.n + problem.r)
+    problem = _Contact(system, law, slip)
+    zero = np.zeros(problem.n * problem.k + problem.r)
     return -problem.solve(zero, problem.residual(zero))
 
 

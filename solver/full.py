@@ -73,12 +73,16 @@ def full_solution(problem: Problem, step: Step, start: Floats | None = None) -> 
     start: x to begin with; by default that of the linear problem with all nodes in contact. Raises NotConverged.
     """
     position = Position(problem, prepare(problem), step)
+    return full_equilibrium(position, position.slip(None), start)
+
+
+def full_equilibrium(position: Position, slip: Floats, start: Floats | None = None) -> tuple[Floats, FullContact]:
+    """The same at any position of a sweep; slip (Σn, d−1) since the step before, of `Position.slip`."""
     μ = position.friction
     smooth = FullContact(position, lambda t: coulomb(t, 0.0), None)
     root = newton.solve(smooth, _glued(position) if start is None else start, "full system", ITERATIONS, 1e-11)
     contact = smooth
     if μ.any() and root.converged:
-        slip = position.slip(None)
         stuck = FullContact(position, lambda t: starting_guess(t, μ, np.zeros_like(slip)), slip)
         contact = FullContact(position, lambda t: coulomb(t, μ), slip)
         guess = newton.solve(stuck, root.x, "full system, stuck", 1, 1e-11)

@@ -11,7 +11,8 @@ from scipy.spatial import cKDTree
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearParameters, GearPair
 from solver.body import Body, Fixed, assemble
-from solver.chain import ChainedCompliance
+from solver.chain import ChainedCompliance, ChainSettings
+from solver.condense import condense_sector
 from solver.kinematics import turn
 from solver.material import Material
 from solver.surface import Surface, surface_of
@@ -23,8 +24,8 @@ class GearBody:
     """One gear, seen through the loaded flanks of its teeth.
 
     flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
-    pressure, else None. chain: compliance of all modelled teeth. sectors: how often 2π/z each of them is turned.
-    sign: +1 where tooth pair i has the tooth turned by +2πi/z (pinion), −1 for the wheel.
+    pressure, else None. chain: compliance of all modelled teeth, tooth
+    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
     """
 
     gear: GearParameters
@@ -32,7 +33,6 @@ class GearBody:
     flank: Surface
     traction: NitscheTraction | None
     chain: ChainedCompliance
-    sectors: range
     sign: int
 
     @property
@@ -57,13 +57,9 @@ class GearBody:
         r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
         return r > r.max() - 1e-6 * self.gear.normal_module
 
-    def chain_index(self, tooth: int) -> int:
-        """Place of tooth pair i's tooth in the chain."""
-        return self.sectors.index(self.sign * tooth)
-
     def rows(self, tooth: int, nodes: Ints) -> Ints:
-        """(len, 2) pairs (sector, node) for the chain."""
-        return np.column_stack([np.full(len(nodes), self.chain_index(tooth)), nodes])
+        """(len, 2) rows of the chain for flank nodes of tooth pair i."""
+        return np.column_stack([np.full(len(nodes), self.sign * tooth), nodes])
 
 
 def condensed_gear(
@@ -88,15 +84,17 @@ def condensed_gear(
     if carries_pressure:
         traction = nitsche_traction(mesh, material, flank, safety)
         K, P = (K - traction.constant_term()).tocsr(), (P - traction.flux()).tocsr()
-    low, high = matching_cuts(mesh, 2.0 * np.pi / gear.z)
+    pitch = 2.0 * np.pi / gear.z
+    low, high = matching_cuts(mesh, pitch)
     free = assembled.free
     place = np.full(K.shape[0], -1)
     place[free] = np.arange(len(free))
     cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in (low, high)]
     cut = [dofs[dofs >= 0] for dofs in cut]
-    sectors = range(min(sign * t for t in teeth) - 1, max(sign * t for t in teeth) + 2)
-    chain = ChainedCompliance.of(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1], gear.z, len(sectors), d)
-    return GearBody(gear, mesh, flank, traction, chain, sectors, sign)
+    sectors = range(-(gear.z // 2), gear.z - gear.z // 2)
+    condensed = condense_sector(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1])
+    chain = ChainedCompliance(condensed, ChainSettings(pitch, len(sectors), sectors[0], d))
+    return GearBody(gear, mesh, flank, traction, chain, sign)
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:

@@ -211,7 +211,7 @@ def remembered(model: GearModel, shared: SharedPosition, found: Equilibrium) -> 
     for body, (rows, E) in zip(model.bodies, contact.maps):
         n = len(body.flank.points)
         everywhere = np.concatenate([body.rows(t, np.arange(n)) for t in model.teeth])
-        u = body.chain.apply(rows, -(E.T @ force.ravel()), everywhere)
+        u = body.chain.apply(rows, -(E.T @ force.ravel()).reshape(-1, d), everywhere)
         fields.append(u.reshape(len(model.teeth), n, d))
     place = np.searchsorted(model.teeth, contact.tooth)
     R = contact.stand.rotation(0, d)

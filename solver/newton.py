@@ -42,14 +42,23 @@ class Root:
 
 
 class _Tangent:
-    """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse."""
+    """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse.
+
+    error: what a callback raised. It is kept and raised again outside: an exception that unwinds through PETSc leaves
+    SNES half-way, and the process ends in a segmentation fault.
+    """
 
     def __init__(self, problem: Nonlinear) -> None:
         self.problem = problem
         self.at: Floats = np.zeros(0)
+        self.error: Exception | None = None
 
     def apply(self, _: PETSc.PC, right: PETSc.Vec, result: PETSc.Vec) -> None:
-        result.array[:] = self.problem.solve(self.at, np.array(right.array_r))
+        try:
+            result.array[:] = self.problem.solve(self.at, np.array(right.array_r))
+        except Exception as error:
+            self.error = error
+            result.array[:] = 0.0
 
 
 def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: float) -> Root:
@@ -64,13 +73,17 @@ def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: 
     snes = _snes(tangent, x)
 
     def residual(_: PETSc.SNES, at: PETSc.Vec, out: PETSc.Vec) -> None:
-        out.array[:] = problem.residual(np.array(at.array_r))
+        try:
+            out.array[:] = problem.residual(np.array(at.array_r))
+        except Exception as error:
+            tangent.error = error
+            out.array[:] = np.nan
 
     def linearise(_: PETSc.SNES, at: PETSc.Vec, *matrices: PETSc.Mat) -> None:
         tangent.at = np.array(at.array_r)
 
     def converged(_: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
-        if not np.isfinite(norms[2]):
+        if tangent.error is not None or not np.isfinite(norms[2]):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         if norms[2] <= tolerance * problem.scale(np.array(x.array_r)):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_ABS
@@ -82,6 +95,8 @@ def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: 
     snes.solve(None, x)
     result = Root(np.array(x.array_r), snes.getIterationNumber(), snes.getFunctionNorm(), snes.getConvergedReason() > 0)
     snes.destroy()
+    if tangent.error is not None:
+        raise tangent.error
     if not np.isfinite(result.residual):
         raise NotConverged(f"{stage}: the residual is not a number after {result.iterations} iterations")
     return result

@@ -15,9 +15,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats
-from solver.body import Assembled, Body, assemble
+from solver.body import Assembled, Body, Freedom, RigidMotions, assemble
 from solver.condense import Factor, compliance, compliance_by_columns
-from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part
+from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part, stuck
+from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.search import pair_surfaces
 from solver.surface import Surface, surface_of
@@ -80,10 +81,15 @@ class Placement:
 
 @dataclass(frozen=True)
 class Step:
-    """One position of a sweep: a factor on all loads and prescribed motions, and the bodies' placements (None: rest)."""
+    """One position of a sweep: a factor on all loads and prescribed motions, and the bodies' placements (None: rest).
+
+    freedoms: (body index, Freedom) pairs that replace, in this step, the body's freedom of the same direction; their
+    values are not multiplied by `load`. So a normal load can come first and a tangential one after it.
+    """
 
     load: float = 1.0
     placements: tuple[Placement, ...] | None = None
+    freedoms: tuple[tuple[int, Freedom], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -225,10 +231,13 @@ class Position:
     def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step) -> None:
         self.problem, self.prepared, self.step = problem, prepared, step
         self.d = prepared[0].assembled.d
+        if any(not 0 <= i < len(prepared) for i, _ in step.freedoms):
+            raise ValueError(f"step: wanted body indices below {len(prepared)}, found {[i for i, _ in step.freedoms]}")
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
         self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
         self.operators = [self._operator(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
         self.maps = [self._map(b) for b in range(len(prepared))]
+        self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(prepared)]
 
     def _surface(self, side: Side) -> Surface:
         where = self.placements[side[0]]
@@ -268,14 +277,13 @@ class Position:
         operator = stacked(self.operators)
         n = len(operator.nodes) * self.d
         A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
-        for E, body in zip(self.maps, self.prepared):
+        for E, body, motions in zip(self.maps, self.prepared, self.motions):
             A += E @ (E @ body.compliance.T).T
-            motions = body.assembled.motions
             held = np.flatnonzero(~np.isnan(motions.value))
             moved = E @ body.motion_shapes
-            jump = jump + self.step.load * moved[:, held] @ motions.value[held]
+            jump = jump + moved[:, held] @ motions.value[held]
             H.append(moved[:, motions.free])
-            F.append(self.step.load * motions.load[motions.free])
+            F.append(motions.load[motions.free])
         motion, load = np.hstack(H), np.concatenate(F)
         lever = np.abs(motion).max(axis=0, initial=0.0)
         return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
@@ -284,11 +292,17 @@ class Position:
         """Equilibrium, with the slip since `before`."""
         system = self.system()
         μ = self.friction
-        found = frictionless(normal_part(system))
-        if μ.any():
-            slip = self.slip(before)
-            found = frictional(system, μ, slip, np.zeros_like(slip), found)
+        found = self._with_friction(system, μ, before) if μ.any() else frictionless(normal_part(system))
         return self._solution(system, found), self._history(found)
+
+    def _with_friction(self, system: CondensedSystem, μ: Floats, before: _History | None) -> Equilibrium:
+        """From the frictionless state; where there is none (only friction carries the load) or Newton's method fails
+        from there, from the state in which all contact sticks."""
+        slip = self.slip(before)
+        try:
+            return frictional(system, μ, slip, np.zeros_like(slip), frictionless(normal_part(system)))
+        except NotConverged:
+            return frictional(system, μ, slip, np.zeros_like(slip), stuck(system, slip))
 
     def _forces(self, found: Equilibrium) -> Floats:
         force = np.zeros((len(found.force), self.d))
@@ -297,9 +311,8 @@ class Position:
 
     def _body_motions(self, found: Equilibrium) -> list[Floats]:
         result, at = [], 0
-        for body in self.prepared:
-            motions = body.assembled.motions
-            value = self.step.load * motions.value
+        for motions in self.motions:
+            value = motions.value.copy()
             value[motions.free] = found.motion[at : at + len(motions.free)]
             at += len(motions.free)
             result.append(value)
@@ -345,6 +358,24 @@ class Position:
             then = now if before is None else op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
             result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
         return np.concatenate(result)
+
+
+def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
+    """The rigid motions of body `index` with their loads and prescribed values in a step."""
+    own, rigid = assembled.motions, assembled.body.rigid
+    names = [f.direction for f in rigid.freedoms] if rigid else []
+    load, value = step.load * own.load, step.load * own.value
+    for freedom in (f for i, f in step.freedoms if i == index):
+        if freedom.direction not in names:
+            raise ValueError(
+                f"step: wanted one of the freedoms {names} of {assembled.body.name} (body {index}), found "
+                f"{freedom.direction!r}; declare it in the body's Rigid first"
+            )
+        k = names.index(freedom.direction)
+        carried = step.load * float(own.shapes[:, :, k].ravel() @ assembled.load)
+        load[k] = np.nan if freedom.load is None else freedom.load + carried
+        value[k] = np.nan if freedom.displacement is None else freedom.displacement
+    return RigidMotions(own.shapes, load, value)
 
 
 def _contact_result(op: ContactOperator, first: Surface, force: Floats) -> ContactResult:

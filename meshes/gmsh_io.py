@@ -1,0 +1,224 @@
+"""gmsh files and models to MeshData and back. The only file that talks to gmsh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import gmsh
+import numpy as np
+
+from meshes.data import CELL_DIMENSION, FACET_SHAPE, Floats, Ints, MeshData, MeshError
+
+ELEMENT_TYPES: dict[int, tuple[str, int]] = {
+    1: ("interval", 1),
+    2: ("triangle", 1),
+    3: ("quadrilateral", 1),
+    4: ("tetrahedron", 1),
+    5: ("hexahedron", 1),
+    8: ("interval", 2),
+    9: ("triangle", 2),
+    10: ("quadrilateral", 2),
+    11: ("tetrahedron", 2),
+    12: ("hexahedron", 2),
+}
+_TYPE_NUMBERS = {shape: number for number, shape in ELEMENT_TYPES.items()}
+_SERENDIPITY = (16, 17)
+
+
+@contextmanager
+def gmsh_model(name: str) -> Iterator[None]:
+    """A fresh, silent gmsh model that is removed afterwards; works inside a caller's own gmsh session too."""
+    owns_session = not gmsh.isInitialized()
+    if owns_session:
+        gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
+    terminal = gmsh.option.getNumber("General.Terminal")
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.add(name)
+    try:
+        yield
+    finally:
+        if owns_session:
+            gmsh.finalize()
+        else:
+            gmsh.model.remove()
+            gmsh.option.setNumber("General.Terminal", terminal)
+
+
+def read_msh(path: Path | str) -> MeshData:
+    """Read a gmsh file: named physical volumes (surfaces in 2D), named facet groups, order 1 or 2, one cell shape.
+
+    Lengths are taken as mm. Elements in no physical group are left out, and so are nodes no cell uses. Raises
+    FileNotFoundError or MeshError.
+    """
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"mesh file: wanted a gmsh file, found nothing at {path}; check the path")
+    with gmsh_model("read"):
+        try:
+            gmsh.merge(str(path))
+        except Exception as error:
+            raise MeshError(f"mesh file {path}: wanted a file that gmsh can read, found: {error}") from error
+        return from_gmsh()
+
+
+def from_gmsh() -> MeshData:
+    """The current gmsh model's mesh, by its physical groups; see read_msh. Raises MeshError."""
+    dimension = max((d for d, _ in gmsh.model.getPhysicalGroups()), default=0)
+    if dimension < 2:
+        raise MeshError(
+            "gmsh model: wanted a named physical volume (a physical surface in 2D), found no such group; add one with "
+            "gmsh.model.addPhysicalGroup and a name, or 'Physical Volume(\"name\") = {...};' in the .geo file"
+        )
+    volumes = _groups(dimension)
+    shape, order = _single_type(volumes, dimension)
+    facet_groups = {k: v for k, v in _groups(dimension - 1).items() if any(len(t) for t, _ in v.values())}
+    _check_facets(facet_groups, (FACET_SHAPE[shape], order))
+    tags, cell_nodes, indices = _unique_cells({k: v[_TYPE_NUMBERS[shape, order]] for k, v in volumes.items()})
+    if not len(tags):
+        raise MeshError("gmsh model: wanted cells in the physical groups, found none; generate the mesh first")
+    used, cells = np.unique(cell_nodes, return_inverse=True)
+    facet_type = _TYPE_NUMBERS[FACET_SHAPE[shape], order]
+    facets = {name: _renumbered(used, group[facet_type][1], name) for name, group in facet_groups.items()}
+    points = _points(used)
+    if dimension == 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
+        raise MeshError(
+            f"gmsh model: wanted a 2D mesh in the plane z = 0 or a physical volume, found surfaces with z from "
+            f"{points[:, 2].min():g} to {points[:, 2].max():g}; name the volume, or flatten the mesh"
+        )
+    return MeshData(points, shape, order, cells.reshape(cell_nodes.shape).astype(np.int64), facets, indices)
+
+
+Group = dict[int, tuple[Ints, Ints]]
+
+
+def _groups(dimension: int) -> dict[str, Group]:
+    """Physical groups of a dimension: name -> element type -> (element tags (n,), node tags (n, nodes))."""
+    groups: dict[str, Group] = {}
+    for _, number in gmsh.model.getPhysicalGroups(dimension):
+        name = gmsh.model.getPhysicalName(dimension, number)
+        if not name:
+            raise MeshError(f"gmsh model: wanted a name for every group, found none for physical {dimension}D {number}")
+        entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, number)
+        groups[name] = _elements(dimension, [int(e) for e in entities])
+    return groups
+
+
+def _elements(dimension: int, entities: list[int]) -> Group:
+    tags: dict[int, list[Ints]] = {}
+    nodes: dict[int, list[Ints]] = {}
+    for entity in entities:
+        for kind, element_tags, node_tags in zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True):
+            tags.setdefault(int(kind), []).append(element_tags.astype(np.int64))
+            nodes.setdefault(int(kind), []).append(node_tags.astype(np.int64).reshape(len(element_tags), -1))
+    return {kind: (np.concatenate(tags[kind]), np.concatenate(nodes[kind])) for kind in tags}
+
+
+def _single_type(volumes: dict[str, Group], dimension: int) -> tuple[str, int]:
+    kinds = {kind for group in volumes.values() for kind in group}
+    names = [gmsh.model.mesh.getElementProperties(kind)[0] for kind in sorted(kinds)]
+    if kinds & set(_SERENDIPITY):
+        raise MeshError(
+            f"gmsh model: wanted complete second-order cells, found {', '.join(names)}; set "
+            "Mesh.SecondOrderIncomplete = 0"
+        )
+    if len(kinds) != 1 or not kinds <= set(ELEMENT_TYPES):
+        raise MeshError(
+            f"gmsh model: wanted one cell shape of order 1 or 2 in the physical {dimension}D groups (triangles, "
+            f"quadrilaterals, tetrahedra or hexahedra), found {', '.join(names) or 'none'}; set Mesh.ElementOrder, and "
+            "recombine everywhere or nowhere"
+        )
+    return ELEMENT_TYPES[kinds.pop()]
+
+
+def _check_facets(groups: dict[str, Group], wanted: tuple[str, int]) -> None:
+    for name, group in groups.items():
+        if set(group) != {_TYPE_NUMBERS[wanted]}:
+            found = ", ".join(gmsh.model.mesh.getElementProperties(kind)[0] for kind in sorted(group))
+            raise MeshError(
+                f"facet group {name!r}: wanted only facets of shape {wanted[0]}, order {wanted[1]}, found {found}; "
+                "mesh the boundary together with the volume"
+            )
+
+
+def _unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, Ints, dict[str, Ints]]:
+    """Element tags, their nodes, and each group's indices into them; a cell may be in several groups."""
+    tags, first = np.unique(np.concatenate([t for t, _ in groups.values()]), return_index=True)
+    nodes = np.concatenate([n for _, n in groups.values()])[first]
+    return tags, nodes, {name: np.searchsorted(tags, t).astype(np.int64) for name, (t, _) in groups.items()}
+
+
+def _renumbered(used: Ints, nodes: Ints, name: str) -> Ints:
+    index = np.minimum(np.searchsorted(used, nodes), len(used) - 1)
+    if not np.array_equal(used[index], nodes):
+        raise MeshError(
+            f"facet group {name!r}: wanted facets of the cells in the physical groups, found nodes that belong to no "
+            "such cell; put the body behind these facets into a named physical group"
+        )
+    return index.astype(np.int64)
+
+
+def _points(used: Ints) -> Floats:
+    """Coordinates (n, 3) of node tags; control points of curves that no cell uses stay out."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    order = np.argsort(tags)
+    return np.asarray(coordinates.reshape(-1, 3)[order[np.searchsorted(tags[order], used)]])
+
+
+def write_msh(mesh: MeshData, path: Path | str) -> None:
+    """Write a gmsh file (format by the suffix, .msh: 4.1) with the mesh's groups as named physical groups.
+
+    Raises MeshError for cells in no volume group: gmsh leaves these out silently.
+    """
+    with gmsh_model("write"):
+        to_gmsh(mesh)
+        binary = gmsh.option.getNumber("Mesh.Binary")
+        gmsh.option.setNumber("Mesh.Binary", 1)  # text would round the coordinates
+        gmsh.write(str(path))
+        gmsh.option.setNumber("Mesh.Binary", binary)
+
+
+def to_gmsh(mesh: MeshData) -> None:
+    """Put the mesh into the current gmsh model as discrete entities with named physical groups; see write_msh."""
+    in_group = np.zeros(len(mesh.cells), dtype=bool)
+    for index in mesh.volumes.values():
+        in_group[index] = True
+    if not in_group.all():
+        raise MeshError(
+            f"write mesh: wanted every cell in a named volume, found {np.count_nonzero(~in_group)} of {len(in_group)} "
+            "cells in none; add them to a volume group"
+        )
+    dimension = CELL_DIMENSION[mesh.shape]
+    _add_elements(dimension, mesh.shape, mesh.order, mesh.cells, mesh.volumes, mesh.points)
+    facets, groups = _distinct_facets(mesh)
+    _add_elements(dimension - 1, FACET_SHAPE[mesh.shape], mesh.order, facets, groups, None)
+
+
+def _distinct_facets(mesh: MeshData) -> tuple[Ints, dict[str, Ints]]:
+    """All facets of the groups, each once, and every group's indices into them."""
+    if not mesh.facets:
+        return np.empty((0, 1), dtype=np.int64), {}
+    every = np.concatenate(list(mesh.facets.values()))
+    _, first, number = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
+    ends = np.cumsum([len(f) for f in mesh.facets.values()])[:-1]
+    return every[first], dict(zip(mesh.facets, np.split(number.ravel(), ends), strict=True))
+
+
+def _add_elements(
+    dimension: int, shape: str, order: int, nodes: Ints, groups: dict[str, Ints], points: Floats | None
+) -> None:
+    """One discrete entity for every combination of groups, and one physical group for every name."""
+    member = np.zeros((len(nodes), len(groups)), dtype=bool)
+    for column, index in enumerate(groups.values()):
+        member[index, column] = True
+    combinations, which = np.unique(member, axis=0, return_inverse=True)
+    entities = [gmsh.model.addDiscreteEntity(dimension) for _ in combinations]
+    if points is not None:
+        tags = np.arange(1, len(points) + 1)
+        gmsh.model.mesh.addNodes(dimension, entities[0], tags, points.ravel())
+    for number, entity in enumerate(entities):
+        chosen = nodes[which.ravel() == number] + 1
+        gmsh.model.mesh.addElementsByType(entity, _TYPE_NUMBERS[shape, order], [], chosen.ravel())
+    for column, name in enumerate(groups):
+        tagged = [e for e, combination in zip(entities, combinations, strict=True) if combination[column]]
+        gmsh.model.addPhysicalGroup(dimension, tagged, name=name)

@@ -1,0 +1,169 @@
+"""What a run leaves on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
+
+    OUT/results/gears.npz            the two sector meshes' surfaces
+    OUT/results/position_0003.npz    one swept position: the converged results of all friction coefficients
+    OUT/results/state.npz            the state to go on from, and how many positions are complete
+
+A file is written under another name and then renamed, so a run killed at any moment leaves complete files only; the
+state is written last, so what it counts is there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.data import Floats, Ints, MeshData
+from meshes.parameters import GearPair
+from solver.gear_position import Memory, PositionResult
+from solver.gear_sweep import SweepState, SweptPosition
+from solver.kinematics import Stand
+
+
+class ArchiveError(RuntimeError):
+    """The archive cannot be read or does not belong to this scene; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class GearShape:
+    """A gear's surface for pictures, in its own frame: of one sector, tooth 0.
+
+    points: (n, 3) [mm]; facets: name -> (f, k) corner indices of a sector's boundary ("flank", "back", "tip", "fillet",
+    "face_low", "face_high", "bore"); flank_nodes: (m,) point of each flank node, in the order of PositionResult.node.
+    """
+
+    points: Floats
+    facets: dict[str, Ints]
+    flank_nodes: Ints
+
+
+def gear_shape(mesh: MeshData, flank_nodes: Ints) -> GearShape:
+    """The surface of a sector mesh."""
+    return GearShape(mesh.points, dict(mesh.facets), flank_nodes)
+
+
+class Archive:
+    """The folder of a run. Only rank 0 writes."""
+
+    def __init__(self, folder: Path, scene_text: str) -> None:
+        self.folder = folder / "results"
+        self.fingerprint = hashlib.sha256(scene_text.encode()).hexdigest()
+
+    def write_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
+        """Keeps both gears' surfaces."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        arrays: dict[str, Any] = {}
+        for name, shape in zip(("pinion", "wheel"), shapes):
+            arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
+            arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
+        write_arrays(self.folder / "gears.npz", arrays)
+
+    def read_gears(self) -> tuple[GearShape, GearShape]:
+        """(pinion, wheel). Raises ArchiveError."""
+        arrays = read_arrays(self.folder / "gears.npz")
+        return _shape(arrays, "pinion"), _shape(arrays, "wheel")
+
+    def write_position(self, index: int, position: SweptPosition) -> None:
+        """Keeps a position and the state after it."""
+        arrays: dict[str, Any] = {"angle": position.angle, "warm_up": position.warm_up, "count": len(position.results)}
+        for i, result in enumerate(position.results):
+            arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
+        write_arrays(self.folder / f"position_{index:04d}.npz", arrays)
+        write_arrays(self.folder / "state.npz", self._state_arrays(index + 1, position.state))
+
+    def read_positions(self, pair: GearPair) -> list[SweptPosition]:
+        """All complete positions, without their states. Raises ArchiveError."""
+        count = int(self._state()["complete"])
+        return [self._position(k, pair) for k in range(count)]
+
+    def read_state(self, pair: GearPair) -> tuple[int, SweepState] | None:
+        """(number of complete positions, state after them), or None where nothing is kept.
+
+        Raises ArchiveError if the archive belongs to another scene.
+        """
+        if not (self.folder / "state.npz").exists():
+            return None
+        arrays = self._state()
+        memories = tuple(
+            _memory(arrays, f"{i}/", pair) if f"{i}/teeth" in arrays else None for i in range(int(arrays["memories"]))
+        )
+        extra = arrays["extra"]
+        return int(arrays["complete"]), SweepState((float(extra[0]), float(extra[1])), memories)
+
+    def _state(self) -> dict[str, Any]:
+        arrays = read_arrays(self.folder / "state.npz")
+        if str(arrays["fingerprint"]) != self.fingerprint:
+            raise ArchiveError(
+                f"{self.folder}: wanted the results of this scene, found those of another one (or of another level); "
+                "choose an empty folder with --out, or run the same scene"
+            )
+        return arrays
+
+    def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
+        arrays: dict[str, Any] = {
+            "fingerprint": self.fingerprint, "complete": complete, "extra": np.array(state.extra),
+            "memories": len(state.memories),
+        }  # fmt: skip
+        for i, memory in enumerate(state.memories):
+            if memory is not None:
+                arrays |= {
+                    f"{i}/teeth": np.array(memory.teeth), f"{i}/angle": memory.stand.angle,
+                    f"{i}/extra": np.array(memory.stand.extra),
+                    f"{i}/pinion": memory.fields[0], f"{i}/wheel": memory.fields[1],
+                }  # fmt: skip
+        return arrays
+
+    def _position(self, index: int, pair: GearPair) -> SweptPosition:
+        arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
+        results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+        return SweptPosition(float(arrays["angle"]), bool(arrays["warm_up"]), results, SweepState((0.0, 0.0), ()))
+
+
+def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
+    """Writes a NumPy archive atomically and durably. Raises OSError (disk full, not writable)."""
+    temporary = path.with_suffix(".tmp")
+    with open(temporary, "wb") as stream:
+        np.savez(stream, **{name.replace("/", "|"): value for name, value in arrays.items()})
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(temporary, path)
+
+
+def read_arrays(path: Path) -> dict[str, Any]:
+    """Reads what `write_arrays` wrote. Raises ArchiveError."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            return {name.replace("|", "/"): archive[name] for name in archive.files}
+    except (OSError, ValueError, EOFError) as error:
+        raise ArchiveError(f"{path}: wanted a results file, found none that can be read ({error}); run the scene again") from error
+
+
+def _shape(arrays: dict[str, Any], name: str) -> GearShape:
+    start = f"{name}/facets/"
+    facets = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
+    return GearShape(arrays[f"{name}/points"], facets, arrays[f"{name}/flank_nodes"])
+
+
+def _result_arrays(result: PositionResult) -> dict[str, Any]:
+    arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name != "stand"}
+    return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
+
+
+def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
+    own = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
+    stand = Stand(pair, float(own.pop("angle")), (float(own["extra"][0]), float(own.pop("extra")[1])))
+    own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
+    scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
+    return PositionResult(stand=stand, **(own | scalars))
+
+
+def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:
+    extra = arrays[start + "extra"]
+    stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
+    teeth = tuple(int(t) for t in arrays[start + "teeth"])
+    return Memory(stand, teeth, (arrays[start + "pinion"], arrays[start + "wheel"]))

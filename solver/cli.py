@@ -1,0 +1,262 @@
+"""The command line `evolvent`, also `python -m solver`: parses, calls the API, turns failures into exit statuses.
+
+0 done, 2 bad input, 3 not converged, 1 anything else. Under mpirun only rank 0 prints; a rank that fails says so and
+ends the run on all ranks.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from enum import IntEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from mpi4py import MPI
+
+from meshes.data import MeshError
+from solver.scene_errors import SceneError
+
+if TYPE_CHECKING:
+    from solver.scene import Scene
+
+# whatever a command needs beyond the scene is imported inside it: `check` and `info` must not wait for PETSc or pyvista
+
+
+class Exit(IntEnum):
+    """Exit statuses."""
+
+    DONE = 0
+    FAILED = 1
+    BAD_INPUT = 2
+    NOT_CONVERGED = 3
+
+
+MEANINGS = (
+    ("solver.newton", "NotConverged", Exit.NOT_CONVERGED),
+    ("solver.run", "BalanceError", Exit.NOT_CONVERGED),
+    ("solver.archive", "ArchiveError", Exit.BAD_INPUT),
+)
+"""Exceptions of modules that may not have been imported; then nothing can have raised them."""
+
+app = typer.Typer(
+    name="evolvent",
+    help="Frictional contact of involute gear pairs by finite elements, from a scene file to pictures.",
+    epilog="""\b
+Examples:
+  evolvent check demos/yang2022.toml
+  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022
+  evolvent plot out/yang2022
+
+Exit status: 0 done, 2 bad input, 3 not converged, 1 anything else.""",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # examples keep their lines
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
+]
+LevelOption = Annotated[
+    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
+]
+
+
+@app.command(
+    epilog="""\b
+Examples:
+  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
+  evolvent run demos/yang2022.toml --out out/t300 --set load.torque_Nm=300 --set contact.friction=[0,0.1]
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume"""
+)
+def run(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.")],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar; the log file is written.")] = False,
+    no_skip: Annotated[bool, typer.Option("--no-skip", help="Also compute what could be skipped; a test.")] = False,
+) -> None:
+    """Compute a scene.
+
+    One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
+    """
+    with reported(parallel=True):
+        loaded = _load(scene, level, settings)
+        _require(not out.is_file(), f"--out: found the file {out}; allowed: a directory; remedy: give another name")
+        from solver.run import run_scene
+
+        run_scene(loaded, out, resume=resume, quiet=quiet, no_skip=no_skip)
+
+
+@app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
+def check(scene: SceneFile, level: LevelOption = None, settings: Overrides = None) -> None:
+    """Validate a scene, print what follows from it.
+
+    That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
+    """
+    with reported():
+        loaded = _load(scene, level, settings)
+        from solver.overview import overview
+
+        typer.echo(overview(loaded))
+
+
+@app.command(epilog="\b\nExample:\n  evolvent mesh demos/yang2022.toml --out pair.msh --level quick")
+def mesh(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.")],
+    level: LevelOption = None,
+    settings: Overrides = None,
+) -> None:
+    """Write the mesh of both sectors for gmsh.
+
+    One tooth sector of each gear, as they stand when they touch at the pitch point, with named groups.
+    """
+    with reported():
+        loaded = _load(scene, level, settings)
+        _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
+        if MPI.COMM_WORLD.rank > 0:
+            return
+        from meshes.gmsh_io import write_msh
+        from meshes.quality import scaled_jacobians
+        from solver.sectors import standing_pair
+
+        made = standing_pair(loaded)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write_msh(made, out)
+        quality = scaled_jacobians(made).min()
+        typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.3f}")
+
+
+@app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")
+def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a run has put its results.")]) -> None:
+    """Draw the pictures of a finished run again."""
+    with reported():
+        found = "no summary.json in it" if directory.is_dir() else "no such directory"
+        remedy = "run `evolvent run SCENE.toml --out DIR` first"
+        wanted = f"{directory}: found {found}; allowed: the --out of a finished run; remedy: {remedy}"
+        _require((directory / "summary.json").is_file(), wanted)
+        if MPI.COMM_WORLD.rank > 0:
+            return
+        from solver.plots import plot_directory
+
+        plot_directory(directory)
+
+
+@app.command(epilog="\b\nExample:\n  evolvent info")
+def info() -> None:
+    """Print the versions of what a result depends on."""
+    with reported():
+        from solver.compat import versions
+
+        typer.echo("\n".join(f"{name:<10} {version or 'not found'}" for name, version in versions().items()))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
+    with _silent_unless_first():
+        try:
+            app(args=None if arguments is None else list(arguments), prog_name="evolvent")
+        except SystemExit as leave:
+            return leave.code if isinstance(leave.code, int) else Exit.FAILED
+    return Exit.DONE
+
+
+@contextlib.contextmanager
+def reported(parallel: bool = False) -> Iterator[None]:
+    """Turn exceptions into one message on stderr and an exit status; in a parallel run end the other ranks too."""
+    try:
+        yield
+    except (typer.Exit, typer.Abort, typer.BadParameter):
+        raise
+    except SceneError as error:  # the same on all ranks
+        raise _leave(str(error), Exit.BAD_INPUT) from error
+    except KeyboardInterrupt as error:
+        _abort_others(parallel, message := "interrupted; `evolvent run ... --resume` continues", Exit.FAILED)
+        raise _leave(message, Exit.FAILED) from error
+    except Exception as error:
+        status = _status(error)
+        plain = status != Exit.FAILED or isinstance(error, (OSError, MemoryError))
+        message = str(error) if plain else f"{_details(error)}\n{type(error).__name__}: {error}"
+        _abort_others(parallel, message, status)
+        raise _leave(message, status) from error
+
+
+def _load(path: Path, level: str | None, settings: Sequence[str] | None) -> Scene:
+    """The scene, read on rank 0 and sent to the others: either all ranks have it or all fail alike."""
+    from solver.scene import load_scene
+
+    result: Scene | SceneError | None = None
+    if MPI.COMM_WORLD.rank == 0:
+        try:
+            overrides = [*(settings or ()), *([f"mesh.level={level}"] if level else ())]
+            result = load_scene(path, overrides)
+        except SceneError as error:
+            result = error
+    result = MPI.COMM_WORLD.bcast(result)
+    assert result is not None
+    if isinstance(result, SceneError):
+        raise result
+    return result
+
+
+def _require(holds: bool, message: str) -> None:
+    """A usage error unless `holds`; `message` says key, found, allowed and remedy."""
+    if not holds:
+        raise typer.BadParameter(message)
+
+
+def _status(error: Exception) -> Exit:
+    """What an exception means for whoever called the program."""
+    if isinstance(error, MeshError):
+        return Exit.BAD_INPUT
+    for module, name, status in MEANINGS:
+        if isinstance(error, getattr(sys.modules.get(module), name, ())):
+            return status
+    return Exit.FAILED
+
+
+def _details(error: Exception) -> str:
+    return "".join(traceback.format_tb(error.__traceback__)).rstrip()
+
+
+def _leave(message: str, status: Exit) -> typer.Exit:
+    typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
+    return typer.Exit(int(status))
+
+
+def _abort_others(parallel: bool, message: str, status: Exit) -> None:
+    """End all ranks: one that waits in a collective call would wait for ever."""
+    world = MPI.COMM_WORLD
+    if not parallel or world.size == 1:
+        return
+    if world.rank > 0:
+        time.sleep(1.0)  # if all ranks fail alike, rank 0 speaks for them
+    print(f"evolvent, rank {world.rank} of {world.size}: {message}", file=sys.__stderr__, flush=True)
+    world.Abort(int(status))
+
+
+@contextlib.contextmanager
+def _silent_unless_first() -> Iterator[None]:
+    """Rank 0 speaks; the others' usage messages and reports would only repeat it."""
+    if MPI.COMM_WORLD.rank == 0:
+        yield
+        return
+    with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):
+        yield
+
+
+if __name__ == "__main__":
+    sys.exit(main())

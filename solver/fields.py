@@ -1,0 +1,135 @@
+"""Fields for ParaView: a time series of the loaded flanks with their pressures, and of the gears around them.
+
+    OUT/fields/contact.pvd      open this one in ParaView, or with pyvista.get_reader; time is the pinion rotation in °
+    OUT/fields/flanks_0003.vtp  the pinion's and the wheel's loaded flanks in contact, placed where they stand
+    OUT/fields/gears_0003.vtp   the modelled teeth around them, without these flanks
+
+Arrays of the flanks, one set for each friction coefficient, are named "pressure_MPa (mu=0.07)" and so on: pressure_MPa;
+traction_MPa: the contact traction on the pinion (pressure and friction) in space; slip_mm_per_rad: velocity of the
+pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. The wheel's flanks carry the
+pressure only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth (pair), roll_distance_mm.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.flank_field import flank_field, line_distance
+from solver.gear_position import PositionResult
+from solver.gear_surfaces import (
+    Polygons,
+    flank_surface,
+    joined,
+    nodal,
+    on_flank,
+    place,
+    placed_teeth,
+    space_vectors,
+)
+from solver.results import write_text
+from solver.run_data import RunData, SolvedPosition, flank_nodes
+
+Arrays = dict[str, Floats]
+
+
+def write_fields(run: RunData, folder: Path) -> Path:
+    """Writes the series of a run into OUT/fields; gives the .pvd file. Raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
+    series = ElementTree.SubElement(collection, "Collection")
+    for k, each in enumerate(run.positions):
+        flanks, arrays = flank_fields(run, each)
+        gears = surrounding(run, each[0].result)
+        for part, (name, surface, values) in enumerate((("flanks", flanks, arrays), ("gears", gears, {}))):
+            file = f"{name}_{k:04d}.vtp"
+            write_polygons(folder / file, surface, values)
+            degrees = f"{np.degrees(run.angles[k]):.6f}"
+            ElementTree.SubElement(series, "DataSet", timestep=degrees, group="", part=str(part), name=name, file=file)
+    ElementTree.indent(collection)
+    path = folder / "contact.pvd"
+    write_text(path, '<?xml version="1.0"?>\n' + ElementTree.tostring(collection, encoding="unicode") + "\n")
+    return path
+
+
+def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Polygons, Arrays]:
+    """The loaded flanks of both gears' teeth in contact at a position, and their arrays; placed for the first μ."""
+    first = solved[0].result
+    parts, columns = [], []
+    for gear in (0, 1):
+        surface = flank_surface(run.shapes[gear], run.pair.face_width)
+        for tooth in sorted({tooth.tooth for each in solved for tooth in each.teeth}):
+            parts.append(place(run, first, gear, tooth, surface))
+            columns.append(_tooth_arrays(run, solved, gear, tooth))
+    return joined(parts), {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+
+
+def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, tooth: int) -> Arrays:
+    """The arrays of one tooth's flank."""
+    shape, nodes = run.shapes[gear], flank_nodes(run.pair.gears[gear], run.shapes[gear])
+    ξ = (1 - 2 * gear) * (nodes.roll_length - run.pair.pitch_point_roll_lengths[gear])
+    arrays = {
+        "gear": np.full(len(nodes.points), float(gear)),
+        "tooth": np.full(len(nodes.points), float(tooth)),
+        "roll_distance_mm": ξ,
+    }
+    for each in solved:
+        values = _pinion_values(run, each.result, tooth) if gear == 0 else _wheel_values(run, each.result, tooth)
+        arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
+    return {name: on_flank(shape, value) for name, value in arrays.items()}
+
+
+def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
+    traction, rate = space_vectors(run, result, result.traction), space_vectors(run, result, result.rate)
+    touching = (result.pressure > 0.0)[:, None]
+    return {
+        "pressure_MPa": nodal(run, result, tooth, result.pressure),
+        "traction_MPa": -nodal(run, result, tooth, traction),
+        "slip_mm_per_rad": nodal(run, result, tooth, np.where(touching, rate, 0.0)),
+        "sticks": nodal(run, result, tooth, result.sticks.astype(float)),
+    }
+
+
+def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
+    """The pinion's pressure carried over along the contact line; the vectors stay with the pinion."""
+    nodes = flank_nodes(run.pair.wheel, run.shapes[1])
+    n = len(nodes.points)
+    pressure = np.zeros(n)
+    if np.any(result.tooth == tooth):
+        s = line_distance(run.pair, result, tooth, 1, nodes.roll_length, nodes.z)
+        field = flank_field(run, result, tooth, result.pressure)
+        for z in np.unique(nodes.z):
+            row = nodes.z == z
+            pressure[row] = field.at(s[row][:, None], np.array([z]))[:, 0]
+    zero = np.zeros((n, 3))
+    return {"pressure_MPa": pressure, "traction_MPa": zero, "slip_mm_per_rad": zero, "sticks": np.zeros(n)}
+
+
+def surrounding(run: RunData, result: PositionResult) -> Polygons:
+    """The teeth in contact without their loaded flanks, and one more on each side, of both gears."""
+    bare = {int(tooth) for tooth in np.unique(result.tooth)}
+    teeth = list(range(min(bare) - 1, max(bare) + 2))
+    placed = [placed_teeth(run, result, gear, teeth, bare) for gear in (0, 1)]
+    return joined([surface for surface in placed if surface is not None])
+
+
+def write_polygons(path: Path, surface: Polygons, arrays: Arrays) -> None:
+    """Writes a .vtp in single precision, atomically. Raises OSError."""
+    mesh: Any = poly_data(Polygons(surface.points.astype(np.float32), surface.faces))
+    for name, values in arrays.items():
+        mesh.point_data[name] = np.ascontiguousarray(values, dtype=np.float32)
+    temporary = path.with_name("writing_" + path.name)
+    mesh.save(temporary)
+    temporary.replace(path)
+
+
+def poly_data(surface: Polygons) -> Any:
+    """A pyvista surface; pyvista, slow to load, is only loaded for it."""
+    import pyvista
+
+    faces = [np.column_stack([np.full(len(face), face.shape[1]), face]).ravel() for face in surface.faces]
+    return pyvista.PolyData(np.ascontiguousarray(surface.points), np.concatenate(faces))

@@ -1,0 +1,76 @@
+"""From a scene to a gear model: meshes, condensed gears, window. With several ranks each gear is condensed on one."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from meshes.data import MeshData
+from meshes.sector import sector_mesh
+from solver.estimates import hertz_estimate
+from solver.gear_body import GearBody, condensed_gear
+from solver.gear_position import GearLoad, GearModel
+from solver.resolution import sector_resolutions
+from solver.scene import Scene
+from solver.skips import is_plane, touching_teeth
+
+WINDOW = 2.2  # half-width of the contact window in largest Hertz half-widths, plus one element
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """A gear model and what it took: seconds of meshing and of assembling, factoring and condensing."""
+
+    model: GearModel
+    mesh_seconds: float
+    condense_seconds: float
+
+
+def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
+    """Meshes and condenses both gears of a scene. Raises MeshError, NotPositiveDefinite, OutOfMemory."""
+    begin = time.perf_counter()
+    meshes = sector_meshes(scene)
+    meshed = time.perf_counter()
+    teeth = contact_teeth(scene)
+    pair = scene.gear_pair()
+    built: list[GearBody | None] = [None, None]
+    for index in (0, 1):
+        if index % comm.size == comm.rank:
+            built[index] = condensed_gear(
+                pair.gears[index], meshes[index], scene.materials()[index], teeth, 1 - 2 * index, index == 0
+            )
+    pinion, wheel = (comm.bcast(built[index], root=index % comm.size) for index in (0, 1))
+    load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
+    model = GearModel(pair, (pinion, wheel), tuple(teeth), load, _window(scene))
+    return Preparation(model, meshed - begin, time.perf_counter() - meshed)
+
+
+def sector_meshes(scene: Scene) -> tuple[MeshData, MeshData]:
+    """The pinion's and the wheel's sector, or their plane sections where the scene is plane."""
+    shape = scene.mesh.shape
+    if is_plane(scene):
+        shape = "quadrilateral" if shape == "hexahedron" else "triangle"
+    gears = scene.gear_pair().gears
+    pinion, wheel = (sector_mesh(g, r, shape) for g, r in zip(gears, sector_resolutions(scene)))
+    return pinion, wheel
+
+
+def contact_teeth(scene: Scene) -> list[int]:
+    """The tooth pairs that can touch within a pitch, and those that deflection may bring into contact."""
+    teeth = touching_teeth(scene)
+    return list(range(teeth[0] - 1, teeth[-1] + 2))
+
+
+def _torque(scene: Scene) -> float:
+    """N·mm; per mm of face width where the scene is plane."""
+    return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
+
+
+def _window(scene: Scene) -> float:
+    """Half-width [mm of profile arc] of the window about a contact line."""
+    estimate = hertz_estimate(scene)
+    ξ = np.linspace(*estimate.pair.path_of_contact, 50)
+    return WINDOW * float(np.max(estimate.half_width(ξ)))

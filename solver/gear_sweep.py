@@ -1,0 +1,104 @@
+"""A pitch of gear positions, one after the other; a generator of converged results.
+
+All teeth of a gear are alike, so one base pitch holds every tooth's whole engagement: at pinion rotation φ + 2π/z_1
+tooth pair i stands where pair i + 1 stood at φ. Later pitches are never computed, they are put together by shifting.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from solver.gear_position import GearModel, Memory, PositionResult, remembered, shared_position, solve_position
+from solver.newton import NotConverged
+
+HALVINGS = 4
+
+
+@dataclass(frozen=True)
+class SweepState:
+    """Where a sweep stands: everything that the next position needs.
+
+    extra: rotations [rad] to start the next search from. memories: one per friction coefficient (None: no past).
+    """
+
+    extra: tuple[float, float]
+    memories: tuple[Memory | None, ...]
+
+
+@dataclass(frozen=True)
+class SweptPosition:
+    """One angle's results, one per friction coefficient, and the state to go on from. warm_up: only there to give
+    friction a past."""
+
+    angle: float
+    warm_up: bool
+    results: tuple[PositionResult, ...]
+    state: SweepState
+
+
+@dataclass(frozen=True)
+class Pitch:
+    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts."""
+
+    angles: tuple[float, ...]
+    warm_up: int
+
+
+def uniform_pitch(z1: int, positions: int, warm_up: int) -> Pitch:
+    """`positions` equal steps over the base pitch 2π/z_1, and a few before it."""
+    step = 2.0 * np.pi / z1 / positions
+    return Pitch(tuple(float(step * k) for k in range(-warm_up, positions)), warm_up)
+
+
+def initial_state(frictions: Sequence[float]) -> SweepState:
+    """The state before the first position."""
+    return SweepState((0.0, 0.0), tuple(None for _ in frictions))
+
+
+def sweep_pitch(
+    model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0
+) -> Iterator[SweptPosition]:
+    """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
+
+    Raises NotConverged, with the angle and the friction coefficient.
+    """
+    span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
+    for k in range(begin, len(pitch.angles)):
+        position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS)
+        state = position.state
+        yield replace(position, warm_up=k < pitch.warm_up)
+
+
+def _advance(
+    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int
+) -> SweptPosition:
+    try:
+        return _position(model, frictions, state, angle, span)
+    except NotConverged as failure:
+        last = next((m.stand.angle for m in state.memories if m is not None), angle - span)
+        if halvings == 0:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°, also after {HALVINGS} halvings of the step: {failure}"
+            ) from failure
+        middle = _advance(model, frictions, state, 0.5 * (last + angle), 0.5 * span, halvings - 1)
+        return _advance(model, frictions, middle.state, angle, 0.5 * span, halvings - 1)
+
+
+def _position(
+    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float
+) -> SweptPosition:
+    begin = time.perf_counter()
+    shared = shared_position(model, angle, state.extra, normal_only=not any(frictions))
+    common = time.perf_counter() - begin
+    results, memories = [], []
+    for μ, memory in zip(frictions, state.memories):
+        begin = time.perf_counter()
+        result, found = solve_position(model, shared, μ, memory, span)
+        memories.append(remembered(model, shared, found) if μ > 0.0 else None)
+        seconds = common / len(frictions) + time.perf_counter() - begin
+        results.append(replace(result, seconds=seconds))
+    return SweptPosition(angle, False, tuple(results), SweepState(shared.contact.stand.extra, tuple(memories)))

@@ -1,0 +1,188 @@
+"""The text of `evolvent check`: derived gear data, Hertz estimates, what is skipped, and what the run will cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from meshes.parameters import GearPair, GearParameters
+from solver.estimates import HertzEstimate, hertz_estimate, memory_megabytes
+from solver.hertz import LoadFactors, yang_estimate
+from solver.resolution import elements_per_contact_width, sector_dofs, sector_resolutions
+from solver.scene import Scene
+from solver.scene_gears import working_angle_of
+from solver.skips import is_plane, skipped, touching_teeth
+
+HANDS = {1: "right", -1: "left"}
+
+
+class Row(NamedTuple):
+    """A line of a table: name, symbol, unit, and one or two values already written with their digits."""
+
+    name: str
+    symbol: str
+    unit: str
+    values: tuple[str, ...]
+
+
+def overview(scene: Scene) -> str:
+    """Everything `evolvent check` prints, as one text; symbols of ISO 21771."""
+    pair, estimate = scene.gear_pair(), hertz_estimate(scene)
+    blocks = [
+        scene.title,
+        table("Gears", _gear_rows(pair), ("pinion", "wheel")),
+        table("Pair", _pair_rows(pair)),
+        table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
+        table("Mesh and cost (estimate)", _cost_rows(scene), ("pinion", "wheel")),
+        "Skipped\n" + "\n".join(f"  - {sentence}" for sentence in skipped(scene)),
+    ]
+    return "\n\n".join(blocks)
+
+
+def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
+    """Aligned columns: name, symbol, unit, values to the right."""
+    lines = [f"{title:<62}" + "".join(f"{head:>13}" for head in heads)]
+    for row in rows:
+        lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f"{text:>13}" for text in row.values))
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _both(name: str, symbol: str, unit: str, digits: int, values: Iterable[float]) -> Row:
+    return Row(name, symbol, unit, tuple(f"{value:.{digits}f}" for value in values))
+
+
+def _one(name: str, symbol: str, unit: str, digits: int, value: float) -> Row:
+    return _both(name, symbol, unit, digits, (value,))
+
+
+def _gear_rows(pair: GearPair) -> list[Row]:
+    gears = pair.gears
+
+    def each(name: str, symbol: str, unit: str, digits: int, attribute: str) -> Row:
+        return _both(name, symbol, unit, digits, (getattr(gear, attribute) for gear in gears))
+
+    tips = [gear.normal_thickness(gear.tip_diameter) for gear in gears]
+    reliefs = [gear.modifications.tip_relief_um for gear in gears]
+    crownings = [gear.modifications.lead_crowning_um for gear in gears]
+    return [
+        Row("teeth", "z", "", tuple(str(gear.z) for gear in gears)),
+        Row("hand", "", "", tuple(_hand(gear) for gear in gears)),
+        each("profile shift coefficient", "x", "", 4, "profile_shift"),
+        each("reference diameter", "d", "mm", 3, "reference_diameter"),
+        each("base radius", "r_b", "mm", 4, "base_radius"),
+        each("tip diameter", "d_a", "mm", 3, "tip_diameter"),
+        each("root diameter", "d_f", "mm", 3, "root_diameter"),
+        _both("working pitch diameter", "d_w", "mm", 3, pair.working_pitch_diameters),
+        _both("diameter at start of active profile", "d_Nf", "mm", 3, pair.active_start_diameters),
+        each("form diameter, where the fillet begins", "d_Ff", "mm", 3, "root_form_diameter"),
+        _both("addendum of the rack", "h_a*", "m_n", 2, pair.addendum_coefficients),
+        each("dedendum of the rack", "h_f*", "m_n", 2, "dedendum_coefficient"),
+        each("tip radius of the rack", "ρ_f", "mm", 3, "rack_tip_radius"),
+        _both("normal tooth thickness at the tip", "s_an", "mm", 4, tips),
+        _both("tip clearance to the mate's root", "c", "mm", 3, pair.tip_clearances),
+        each("face width", "b", "mm", 3, "face_width"),
+        each("bore diameter, held rigidly", "d_i", "mm", 3, "bore_diameter"),
+        _both("tip relief", "C_a", "µm", 1, reliefs),
+        _both("lead crowning", "C_b", "µm", 1, crownings),
+    ]
+
+
+def _hand(gear: GearParameters) -> str:
+    return HANDS[gear.hand] if gear.helix_angle else "spur"
+
+
+def _pair_rows(pair: GearPair) -> list[Row]:
+    pinion = pair.pinion
+    return [
+        _one("normal module", "m_n", "mm", 3, pinion.normal_module),
+        _one("transverse module", "m_t", "mm", 4, pinion.transverse_module),
+        _one("normal pressure angle", "α_n", "°", 4, pinion.normal_pressure_angle_deg),
+        _one("transverse pressure angle", "α_t", "°", 4, math.degrees(pinion.transverse_pressure_angle)),
+        _one("operating pressure angle", "α_wt", "°", 4, math.degrees(pair.operating_pressure_angle)),
+        _one("  without backlash, from x1 + x2", "α_wt", "°", 4, math.degrees(working_angle_of(*pair.gears))),
+        _one("helix angle", "β", "°", 4, pinion.helix_angle_deg),
+        _one("base helix angle", "β_b", "°", 4, math.degrees(pinion.base_helix_angle)),
+        _one("centre distance", "a", "mm", 4, pair.centre_distance),
+        _one("tip shortening that keeps the clearance", "Δy", "m_n", 4, pair.tip_shortening),
+        _one("transverse base pitch", "p_bt", "mm", 4, pinion.transverse_base_pitch),
+        _one("transverse contact ratio", "ε_α", "", 4, pair.transverse_contact_ratio),
+        _one("overlap ratio", "ε_β", "", 4, pair.overlap_ratio),
+        _one("total contact ratio", "ε_γ", "", 4, pair.total_contact_ratio),
+        _one("normal backlash", "j_bn", "mm", 4, pair.normal_backlash),
+        _one("pinion rotation of one engagement", "", "°", 3, math.degrees(pair.engagement_angle)),
+        _one("misalignment over the face width", "", "µm", 1, pair.misalignment_um),
+    ]
+
+
+def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
+    start, end = estimate.pair.path_of_contact
+    shortest, mean, longest = estimate.line_lengths
+
+    def pressure(name: str, xi: float, length: float | None = None) -> Row:
+        return _one(f"p0 {name}", "", "MPa", 1, float(estimate.peak_pressure(xi, length)))
+
+    return [
+        _one(f"torque held on the {scene.load.on}", "T", "N·m", 3, scene.load.torque_Nm),
+        Row("friction coefficients", "μ", "", (", ".join(f"{value:g}" for value in scene.contact.friction),)),
+        _one("normal force on the flanks", "F_bn", "N", 1, estimate.normal_force),
+        _one("contact line length, shortest", "", "mm", 2, shortest),
+        _one("contact line length, mean", "", "mm", 2, mean),
+        _one("contact line length, longest", "", "mm", 2, longest),
+        _one("Hertz half-width at the pitch point", "b", "mm", 4, float(estimate.half_width(0.0))),
+        pressure("at the pitch point, mean length", 0.0),
+        pressure("at the pitch point, shortest length", 0.0, shortest),
+        pressure("at the start of engagement, mean length", start),
+        pressure("at the end of engagement, mean length", end),
+        *_paper_rows(estimate),
+    ]
+
+
+def _paper_rows(estimate: HertzEstimate) -> list[Row]:
+    """Yang et al. 2022, Eq. 4, with and without the load factors that the paper prints."""
+    factors = LoadFactors()
+    named = f"K = {factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
+    return [
+        _one("Eq. 4 of Yang 2022 with K = 1", "σ_H", "MPa", 1, paper_estimate(estimate, LoadFactors.none())),
+        _one(f"  with {named}", "σ_H", "MPa", 1, paper_estimate(estimate, factors)),
+    ]
+
+
+def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
+    """Yang et al. 2022, Eq. 4, for a scene [MPa]."""
+    pinion = estimate.pair.pinion
+    return yang_estimate(
+        torque=estimate.pinion_torque,
+        face_width=estimate.pair.face_width,
+        reference_diameter=pinion.reference_diameter,
+        contact_ratio=estimate.pair.transverse_contact_ratio,
+        teeth_ratio=estimate.pair.ratio,
+        base_helix=pinion.base_helix_angle,
+        pressure_angle=pinion.transverse_pressure_angle,
+        modulus=estimate.modulus,
+        factors=factors,
+    )
+
+
+def _cost_rows(scene: Scene) -> list[Row]:
+    gears, sectors, plane = scene.gear_pair().gears, sector_resolutions(scene), is_plane(scene)
+    dofs = [sector_dofs(gear, sector, scene.mesh.order, plane) for gear, sector in zip(gears, sectors, strict=True)]
+    layers = tuple("plane" if plane else str(sector.face_elements) for sector in sectors)
+    memory = (memory_megabytes(count, plane) for count in dofs)
+    return [
+        Row("level", "", "", (scene.mesh.level,)),
+        Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
+        _one("elements across the contact width 2b", "", "", 1, elements_per_contact_width(scene)),
+        Row("elements along the loaded flank", "", "", tuple(str(sector.profile_elements) for sector in sectors)),
+        Row("layers over the face width", "", "", layers),
+        Row("degrees of freedom of a sector", "", "", tuple(f"{count:,}" for count in dofs)),
+        _both("memory to factor a sector", "", "MB", 0, memory),
+        Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
+        Row("positions, with warm-up", "", "", (str(positions_to_solve(scene)),)),
+        Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
+    ]
+
+
+def positions_to_solve(scene: Scene) -> int:
+    """Positions of the sweep; only friction has a history that must be warmed up."""
+    return scene.sweep.positions + (scene.sweep.warm_up_positions if any(scene.contact.friction) else 0)

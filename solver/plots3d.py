@@ -1,0 +1,119 @@
+"""The gear pair in space, rendered off-screen by pyvista (beside `fields`, the only file that knows it)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+
+from meshes.flank import contact_points
+from solver.flank_field import flank_field, flank_patch
+from solver.gear_position import PositionResult
+from solver.gear_surfaces import (
+    Polygons,
+    all_teeth,
+    place,
+    placed_teeth,
+)
+from solver.plots_style import PINION_BODY, PRESSURE_MAP, WHEEL_BODY
+from solver.run_data import RunData
+
+Image = NDArray[np.uint8]
+"""(height, width, 3)."""
+BODY = (PINION_BODY, WHEEL_BODY)
+LIGHT = {"ambient": 0.28, "diffuse": 0.75, "specular": 0.15, "specular_power": 20.0}
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Looks at `target` [mm] from the direction `along`, `reach` [mm] being half the height that is seen; `up`."""
+
+    target: tuple[float, float, float]
+    along: tuple[float, float, float]
+    reach: float
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+
+def poly_data(surface: Polygons) -> Any:
+    """A pyvista surface."""
+    faces = [np.column_stack([np.full(len(face), face.shape[1]), face]).ravel() for face in surface.faces]
+    return pv.PolyData(np.ascontiguousarray(surface.points), np.concatenate(faces))
+
+
+def contact_teeth(result: PositionResult) -> list[int]:
+    """The tooth pairs under pressure, ascending."""
+    return sorted(set(result.tooth[result.pressure > 0.0].tolist()))
+
+
+def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[int, int]) -> Image:
+    """Both gears at a position; the wheel as glass, so that the contact lines on the pinion's flanks are seen.
+
+    top: the pressure at the upper end of the colours [MPa]; size: width and height in pixels.
+    """
+    pinion, pitch = run.pair.pinion, 0.5 * run.pair.working_pitch_diameters[0]
+    scene = _plotter(size)
+    _add_gear(scene, run, result, 0, all_teeth(run, 0), opacity=1.0)
+    _add_flanks(scene, run, result, 0, top)
+    _add_gear(scene, run, result, 1, all_teeth(run, 1), opacity=0.22)
+    return _picture(scene, Camera((0.72 * pitch, 0.0, 0.0), (0.35, 1.0, 0.6), 0.64 * pinion.tip_diameter))
+
+
+def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, size: tuple[int, int]) -> Image:
+    """One gear's loaded flanks, the other gear taken away; seen from where that stood."""
+    scene = _plotter(size)
+    _add_gear(scene, run, result, gear, all_teeth(run, gear), opacity=1.0)
+    _add_flanks(scene, run, result, gear, top)
+    middle = contact_points(run.pair, 0.0, 0.0)
+    width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
+    along = (0.75, 1.0, 0.3) if gear == 0 else (-0.75, -1.0, 0.3)
+    return _picture(scene, Camera(tuple(middle.tolist()), along, 0.75 * width))
+
+
+def _plotter(size: tuple[int, int]) -> Any:
+    scene = pv.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
+    scene.set_background("white")
+    scene.enable_parallel_projection()
+    scene.enable_depth_peeling(8)
+    return scene
+
+
+def _add_gear(
+    scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float
+) -> None:
+    placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)))
+    assert placed is not None
+    surface = poly_data(placed).triangulate().clean(tolerance=1e-6, absolute=True)
+    smooth = surface.compute_normals(split_vertices=True, feature_angle=35.0, consistent_normals=False)
+    scene.add_mesh(smooth, color=BODY[gear], opacity=opacity, smooth_shading=True, **LIGHT)
+    if opacity < 1.0:
+        edges = surface.extract_feature_edges(feature_angle=35.0, boundary_edges=False, manifold_edges=False)
+        scene.add_mesh(edges, color=BODY[gear], line_width=1.0, opacity=0.6)
+
+
+def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top: float) -> None:
+    """The loaded flanks of the teeth in contact, coloured by pressure."""
+    patch = flank_patch(run, gear)
+    surface = patch.polygons(run)
+    for tooth in contact_teeth(result):
+        field = flank_field(run, result, tooth, result.pressure)
+        mesh = poly_data(place(run, result, gear, tooth, surface))
+        mesh["pressure"] = patch.values(run, result, tooth, field).ravel()
+        scene.add_mesh(
+            mesh, scalars="pressure", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, show_scalar_bar=False,
+            smooth_shading=True, interpolate_before_map=True, **LIGHT,
+        )  # fmt: skip
+
+
+def _picture(scene: Any, camera: Camera) -> Image:
+    target, along = np.array(camera.target), np.array(camera.along)
+    eye = target + 500.0 * along / np.linalg.norm(along)
+    scene.camera_position = [tuple(eye), camera.target, camera.up]
+    scene.camera.parallel_scale = camera.reach
+    scene.reset_camera_clipping_range()
+    scene.enable_anti_aliasing("ssaa")
+    image = scene.screenshot(return_img=True)
+    scene.close()
+    return np.asarray(image)

@@ -1,0 +1,176 @@
+"""What the pair does as a drive: load sharing, transmission error, losses, line load, and the Hertz estimates."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from meshes.data import Floats
+from solver.engagement import engagements
+from solver.estimates import hertz_estimate
+from solver.hertz import LoadFactors
+from solver.overview import paper_estimate
+from solver.plots_stress import OWN_ANGLE
+from solver.plots_style import FAINT, INK, PINION, WHEEL, friction_colours, note, sheet
+from solver.results import friction_rows, loss_percent
+from solver.run_data import RunData
+
+PINION_ANGLE = "pinion rotation φ [°]"
+
+
+def load_sharing(run: RunData) -> Figure:
+    """Share of the normal force that a tooth carries over its engagement."""
+    curves = engagements(run)
+    most = [float(c.share.max()) for c in curves]
+    low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
+    counts = [len(each[0].teeth) for each in run.positions]
+    see = f"A tooth carries at most {100 * most[low]:.0f} % of the load; {min(counts)} to {max(counts)} teeth share it"
+    see += f"; friction μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if low != high else "."
+    figure = sheet("Load sharing", see)
+    axes = figure.subplots()
+    for curve, colour in zip(curves, friction_colours(run.frictions)):
+        axes.plot(np.degrees(curve.angle), 100.0 * curve.share, color=colour, label=f"μ = {curve.friction:g}")
+    angle, share = even_share(run)
+    axes.plot(np.degrees(angle), 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line")
+    axes.set(xlabel=OWN_ANGLE, ylabel="share of the normal force [%]")
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="upper right")
+    return figure
+
+
+def even_share(run: RunData) -> tuple[Floats, Floats]:
+    """(own rotation, share) of a tooth if the load lay evenly on the contact lines of rigid flanks."""
+    from meshes.flank import contact_lines
+
+    rows = []
+    for angle in np.linspace(0.0, run.pitch, 60, endpoint=False):
+        lines = contact_lines(run.pair, float(angle))
+        lengths = [line.z[1] - line.z[0] for line in lines]
+        rows += [(angle + line.tooth * run.pitch, size / sum(lengths)) for line, size in zip(lines, lengths)]
+    table = np.array(sorted(rows))
+    return table[:, 0], table[:, 1]
+
+
+def transmission_error(run: RunData) -> Figure:
+    """Loaded transmission error over a pitch."""
+    rows = friction_rows(run)
+    sizes = [row.transmission_error_peak_to_peak_um for row in rows]
+    low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
+    see = f"Peak to peak {sizes[low]:.2f} µm at μ = {run.frictions[low]:g}"
+    see += f", {sizes[high]:.2f} µm at μ = {run.frictions[high]:g}." if low != high else "."
+    figure = sheet("Loaded transmission error over a pitch", see)
+    axes = figure.subplots()
+    for index, colour in enumerate(friction_colours(run.frictions)):
+        x, y = _closed(run, np.array([1e3 * each[index].result.transmission_error for each in run.positions]))
+        axes.plot(x, y, color=colour, marker=".", markersize=4, label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]:.2f} µm)")
+    axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
+    """φ [°] and values over the pitch, the first position repeated at its end: a pitch later all teeth are alike."""
+    angles = np.append(run.angles, run.angles[0] + run.pitch)
+    return np.degrees(angles), np.append(values, values[0])
+
+
+def losses(run: RunData) -> Figure:
+    """Power lost to friction over a pitch, and the efficiency over μ."""
+    rows = sorted(friction_rows(run), key=lambda row: row.friction)
+    ends = " and ".join(f"{100 - row.loss_percent:.2f} % at μ = {row.friction:g}" for row in {r.friction: r for r in (rows[0], rows[-1])}.values())
+    figure = sheet("Friction loss", f"Efficiency of the mesh over a pitch: {ends}.", (10.6, 4.8))
+    over, total = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+    for index, colour in enumerate(friction_colours(run.frictions)):
+        x, y = _closed(run, np.array([loss_percent(each[index]) for each in run.positions]))
+        over.plot(x, y, color=colour, label=f"μ = {run.frictions[index]:g}")
+    over.set(xlabel=PINION_ANGLE, ylabel="friction power over input power [%]")
+    over.set_ylim(bottom=0.0)
+    over.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    total.plot([row.friction for row in rows], [row.loss_percent for row in rows], color=INK, marker="o")
+    total.set(xlabel="friction coefficient μ", ylabel="mean loss over a pitch [%]")
+    total.set_xlim(left=0.0)
+    total.set_ylim(bottom=0.0)
+    return figure
+
+
+def line_load(run: RunData, index: int = 0) -> Figure:
+    """Line load and sliding along the path of contact."""
+    start, end = run.pair.path_of_contact
+    cuts = [each[index].cut for each in run.positions]
+    ξ, load, edge = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "line_load", "edge"))
+    even = hertz_estimate(run.scene)
+    low, mean, high = (even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0]))
+    inside = load[(ξ > start) & (ξ < end) & ~edge]
+    see = f"From {inside.min():.0f} to {inside.max():.0f} N/mm, {inside.max() / mean:.2f} times the even load at most (μ = {run.frictions[index]:g})."
+    figure = sheet("Line load and sliding along the path of contact", see, (10.0, 6.2))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
+    upper.plot(ξ[~edge], load[~edge], ".", color="#556070", markersize=3, alpha=0.6, label="all slices of all positions")
+    upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=4, label="bears on a tip edge")
+    upper.axhspan(low, high, color="#3b7a57", alpha=0.15)
+    upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks")
+    upper.set_ylabel("line load [N/mm]")
+    upper.set_ylim(bottom=0.0)
+    upper.legend(loc="upper right")
+    _sliding(lower, run)
+    lower.set(xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)", xlim=(start - 0.5, end + 0.5))
+    return figure
+
+
+def _sliding(axes: Axes, run: RunData) -> None:
+    """Specific sliding of both gears, (v_1 − v_2)/v_1 and (v_2 − v_1)/v_2."""
+    ξ = np.linspace(*run.pair.path_of_contact, 300)
+    ρ1, ρ2 = run.pair.curvature_radii(ξ)
+    v1, v2 = ρ1, ρ2 / run.pair.ratio
+    axes.plot(ξ, 1.0 - v2 / v1, color=PINION, label="pinion")
+    axes.plot(ξ, 1.0 - v1 / v2, color=WHEEL, label="wheel")
+    axes.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
+    axes.set_ylabel("specific sliding [–]")
+    axes.set_ylim(-4.0, 1.2)
+    axes.legend(loc="lower right")
+
+
+def hertz_comparison(run: RunData, index: int = 0) -> Figure:
+    """Peak pressures of all slices beside Hertz for their own line load, and the paper's estimate with its factors."""
+    cuts = [each[index].cut for each in run.positions]
+    ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "peak", "hertz"))
+    start, end = run.pair.path_of_contact
+    inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    ratio = peak[inside] / hertz[inside] - 1.0
+    see = f"Computed over Hertz for the slice's own line load: median {100 * np.median(ratio):+.1f} %, nine in ten within {100 * np.quantile(np.abs(ratio), 0.9):.1f} % (μ = {run.frictions[index]:g})."
+    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
+    along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+    along.plot(ξ[inside], peak[inside], ".", color=PINION, markersize=3, alpha=0.5, label="computed, every slice")
+    along.plot(ξ[inside], hertz[inside], ".", color="#c98a1b", markersize=2, alpha=0.5, label="Hertz, the slice's line load")
+    estimate, line = hertz_estimate(run.scene), np.linspace(start, end, 200)
+    along.plot(line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length")
+    along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
+    along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
+    along.set_ylim(bottom=0.0)
+    along.legend(loc="upper right", markerscale=3)
+    _estimates(bars, run, index, ξ, peak)
+    return figure
+
+
+def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
+    """Bars: the paper's estimates, Hertz at the pitch point, and what was computed there."""
+    estimate, factors = hertz_estimate(run.scene), LoadFactors()
+    near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
+    named = f"$K_A${factors.application:g}·$K_v${factors.dynamic:g}·$K_α${factors.transverse:g}·$K_β${factors.face:g}"
+    rows = [
+        (f"Yang Eq. 4 with\n{named}", paper_estimate(estimate, factors), "#b9bec7"),
+        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
+        ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), "#c98a1b"),
+        ("Hertz at the pitch point,\nshortest line", float(estimate.peak_pressure(0.0, estimate.line_lengths[0])), "#c98a1b"),
+        ("computed near the\npitch line, median", float(np.median(peak[near])), PINION),
+        ("computed, largest", float(np.nanmax(peak)), PINION),
+    ]
+    places = np.arange(len(rows))[::-1]
+    axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)
+    for place, (_, value, _) in zip(places, rows):
+        axes.text(value, place, f" {value:.0f}", va="center", fontsize=9)
+    axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
+    axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.18 * max(row[1] for row in rows)))
+    axes.grid(axis="y", visible=False)
+    if run.scene.title.startswith("Yang"):
+        note(axes, "the paper prints 1788 MPa", 0.42, 1.06)

@@ -1,0 +1,92 @@
+"""The figure of the loaded pair in space, and the animation of a pitch: rendered views set into matplotlib figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from PIL import Image
+
+from solver.engagement import Engagement, engagement
+from solver.plots_flank import pressure_top
+from solver.plots_stress import OWN_ANGLE, STRESS
+from solver.plots_style import FAINT, PINION, PRESSURE_MAP, sheet
+from solver.plots3d import gear_picture, pair_picture
+from solver.run_data import RunData
+
+FRAME_MS = 110
+
+
+def loaded_pair(run: RunData, index: int = 0) -> Figure:
+    """The pair with the pressure on its flanks, and both gears' flanks by themselves."""
+    k = loudest(run, index)
+    result, top = run.positions[k][index].result, pressure_top(run, index)
+    teeth = run.positions[k][index].teeth
+    peak = max(tooth.max_pressure for tooth in teeth)
+    see = f"{len(teeth)} teeth carry {run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}."
+    figure = sheet(f"{run.scene.title}: pressure on the flanks", see, (12.4, 7.0))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
+    _image(figure.add_subplot(grid[:, 0]), pair_picture(run, result, top, (1300, 1180)), "the pair, wheel drawn as glass")
+    _image(figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (880, 640)), "pinion flanks, wheel taken away")
+    _image(figure.add_subplot(grid[1, 1]), gear_picture(run, result, 1, top, (880, 640)), "wheel flanks, pinion taken away")
+    bar = figure.colorbar(ScalarMappable(Normalize(0.0, top), PRESSURE_MAP), ax=figure.axes, location="bottom", aspect=55, shrink=0.7, pad=0.015)
+    bar.set_label("pressure [MPa]")
+    return figure
+
+
+def loudest(run: RunData, index: int) -> int:
+    """The position at which most teeth carry load, and of these the one of the largest pressure."""
+    keys = [(len(each[index].teeth), max(t.max_pressure for t in each[index].teeth)) for each in run.positions]
+    return max(range(len(keys)), key=keys.__getitem__)
+
+
+def _image(axes: Axes, image: np.ndarray, title: str) -> None:
+    axes.imshow(image)
+    axes.set_title(title, fontsize=10)
+    axes.axis("off")
+
+
+def animation(run: RunData, path: Path, index: int = 0, step: Callable[[], None] = lambda: None) -> Path:
+    """One pitch as a GIF that runs on without a seam: a pitch later every tooth stands where the one before it stood.
+
+    step: called after each frame. Raises OSError.
+    """
+    curve, top = engagement(run, index), pressure_top(run, index)
+    frames = []
+    for k in range(len(run.positions)):
+        frames.append(_frame(run, index, k, curve, top))
+        step()
+    palette = frames[0].quantize(128, dither=Image.Dither.NONE)
+    reduced = [frame.quantize(128, palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=FRAME_MS, loop=0, optimize=True)
+    return path
+
+
+def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
+    """A frame: the pair, and where its teeth stand on the curve of contact stress."""
+    result = run.positions[k][index].result
+    see = f"φ = {np.degrees(run.angles[k]):5.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact"
+    figure = sheet(run.scene.title, see, (9.0, 4.6))
+    left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    left.imshow(pair_picture(run, result, top, (620, 520)))
+    left.axis("off")
+    right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
+    here = curve.position == k
+    right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)
+    right.set(xlabel=OWN_ANGLE.split("   ")[0], ylabel=STRESS)
+    right.set_ylim(bottom=0.0)
+    return _drawn(figure)
+
+
+def _drawn(figure: Figure) -> Image.Image:
+    canvas = FigureCanvasAgg(figure)
+    figure.set_dpi(100)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())

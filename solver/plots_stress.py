@@ -1,0 +1,180 @@
+"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from meshes.data import Floats
+from solver.engagement import Engagement, crossing, engagements
+from solver.plots_style import FAINT, INK, friction_colours, sheet
+from solver.run_data import RunData
+
+STRESS = "maximum contact stress [MPa]"
+OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
+NAMES = {1: "tooth 1 (ahead, leaves the mesh)", 0: "tooth 2 (through the pitch point)", -1: "tooth 3 (enters, near the root)"}
+"""The paper's three teeth as this run's tooth pairs over the pitch from φ = 0."""
+
+
+def engagement_stress(run: RunData) -> Figure:
+    """Maximum contact stress of one tooth over its whole engagement for every μ; the crossing enlarged (Fig. 9)."""
+    curves = engagements(run)
+    cross = _crossing_deg(curves)
+    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(run, curves, cross), (10.4, 5.6))
+    main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
+    _curves(main, run, curves, [None] * len(curves))
+    _pitches(main, run, curves[0])
+    main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
+    main.legend(title="friction coefficient", loc="upper right")
+    if detail is not None:
+        _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
+        detail.set_title("enlarged at the crossing" if np.isfinite(cross) else "enlarged at the pitch point", fontsize=10)
+        detail.set(xlabel="pinion rotation of the tooth [°]")
+    return figure
+
+
+def tooth_stress(run: RunData) -> Figure:
+    """Teeth 1, 2 and 3 over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
+    curves = engagements(run)
+    see = _see_teeth(run, curves)
+    figure = sheet("Contact stress of teeth 1, 2 and 3 over a pitch of pinion rotation", see, (11.6, 6.6))
+    grid = figure.subplots(2, 3, sharex=True, height_ratios=(1.5, 1.0))
+    for column, tooth in enumerate((1, 0, -1)):
+        top, below = grid[0, column], grid[1, column]
+        members = [c.tooth == tooth for c in curves]
+        _curves(top, run, curves, members, tooth)
+        _change(below, run, curves, members, tooth)
+        top.set_title(NAMES[tooth], fontsize=10)
+        below.set_xlabel("pinion rotation φ [°]")
+    grid[0, 0].set_ylabel(STRESS)
+    grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
+    grid[0, 2].legend(title="friction coefficient", loc="lower right", ncols=2)
+    return figure
+
+
+def friction_trend(run: RunData) -> Figure:
+    """Average and maximum contact stress of teeth 1, 2, 3 over μ (Fig. 10)."""
+    curves = sorted(engagements(run), key=lambda c: c.friction)
+    see, average, largest = _trends(curves)
+    figure = sheet("Contact stress over the friction coefficient", see, (10.0, 4.8))
+    axes = figure.subplots(1, 2)
+    μ = [c.friction for c in curves]
+    for k, (tooth, name) in enumerate(NAMES.items()):
+        style = {"color": ("#3b7a57", "#8a5a9e", "#c98a1b")[k], "marker": "osD"[k], "label": name}
+        axes[0].plot(μ, average[tooth], **style)
+        axes[1].plot(μ, largest[tooth], **style)
+    axes[0].set(xlabel="friction coefficient μ", ylabel="contact stress [MPa]", title="average along the contact line, over the pitch")
+    axes[1].set(xlabel="friction coefficient μ", title="maximum over the pitch")
+    for ax in axes:
+        ax.title.set_fontsize(10)
+        ax.set_ylim(0.0, 1.28 * max(np.nanmax(v) for v in largest.values()))
+    axes[1].legend(loc="upper right")
+    return figure
+
+
+def _curves(
+    axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
+) -> None:
+    """Maximum pressure over rotation; over the pinion's own φ where one tooth is picked out."""
+    for curve, here, colour in zip(curves, members, friction_colours(run.frictions)):
+        x, y = _shown(run, curve, here, tooth)
+        axes.plot(x, y, color=colour, marker=".", markersize=3.0, label=f"μ = {curve.friction:g}")
+
+
+def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
+    if here is None:
+        return np.degrees(curve.angle), curve.max_pressure
+    return np.degrees(curve.angle[here] - tooth * run.pitch), curve.max_pressure[here]
+
+
+def _change(
+    axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray], tooth: int
+) -> None:
+    """Change of the maximum pressure against the smallest μ [%]."""
+    lowest = _lowest(curves)
+    axes.axhline(0.0, color=FAINT, linewidth=1.0)
+    for curve, colour in zip(curves, friction_colours(run.frictions)):
+        angle, change = relative_change(curve, lowest, curve.tooth == tooth)
+        axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * change, color=colour)
+
+
+def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> tuple[Floats, Floats]:
+    """(angles [rad], relative change of the maximum pressure) against another friction coefficient's curve."""
+    key = np.round(curve.angle, 9)
+    _, first, second = np.intersect1d(key[here], np.round(lowest.angle, 9), return_indices=True)
+    mine = np.flatnonzero(here)[first]
+    return curve.angle[mine], curve.max_pressure[mine] / lowest.max_pressure[second] - 1.0
+
+
+def _lowest(curves: Sequence[Engagement]) -> Engagement:
+    return min(curves, key=lambda c: c.friction)
+
+
+def _highest(curves: Sequence[Engagement]) -> Engagement:
+    return max(curves, key=lambda c: c.friction)
+
+
+def _crossing_deg(curves: Sequence[Engagement]) -> float:
+    """Where the curves of the least and of the most friction cross [°]; NaN: nowhere."""
+    return float(np.degrees(crossing(_lowest(curves), _highest(curves)))) if len(curves) > 1 else float("nan")
+
+
+def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: float, half: float) -> None:
+    """The curves near `middle` [°]."""
+    _curves(axes, run, curves, [None] * len(curves))
+    inside = [c.max_pressure[np.abs(np.degrees(c.angle) - middle) <= half] for c in curves]
+    values = np.concatenate(inside)
+    axes.set_xlim(middle - half, middle + half)
+    if np.isfinite(values).any():
+        low, high = np.nanmin(values), np.nanmax(values)
+        axes.set_ylim(low - 0.05 * (high - low) - 1.0, high + 0.05 * (high - low) + 1.0)
+    axes.axvline(middle, color=FAINT, linestyle="--", linewidth=1.0)
+
+
+def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
+    """Marks the rotations at which the next tooth pair comes to the same place, and names the teeth."""
+    low, high = np.degrees(curve.angle[0]), np.degrees(curve.angle[-1])
+    pitch = np.degrees(run.pitch)
+    for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
+        if low < k * pitch < high:
+            axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
+    axes.set_ylim(bottom=0.0)
+    for tooth in (1, 0, -1):
+        left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
+        if right - left > 0.3 * pitch:
+            axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=axes.get_xaxis_transform(), ha="center", color=INK, fontsize=9)  # fmt: skip
+
+
+def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float) -> str:
+    lowest, highest = _lowest(curves), _highest(curves)
+    top = int(np.nanargmax(lowest.max_pressure))
+    peak = f"At μ = {lowest.friction:g} the largest stress, {lowest.max_pressure[top]:.0f} MPa, comes at {np.degrees(lowest.angle[top]):.1f}°"
+    if len(curves) == 1:
+        return peak + "."
+    angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
+    before, after = change[angle < 0.0], change[angle > 0.0]
+    far = f"μ = {highest.friction:g} changes it by {100 * np.nanmax(before):+.1f} % at most before the pitch point and {100 * np.nanmin(after):+.1f} % after it"
+    where = f"; the curves cross at {cross:.1f}°." if np.isfinite(cross) else "; the curves do not cross."
+    return f"{peak}; {far}{where}"
+
+
+def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
+    if len(curves) == 1:
+        return f"One friction coefficient, μ = {curves[0].friction:g}."
+    lowest, highest = _lowest(curves), _highest(curves)
+    parts = []
+    for tooth in (1, 0, -1):
+        _, change = relative_change(highest, lowest, highest.tooth == tooth)
+        parts.append(f"tooth {2 - tooth} by {100 * np.nanmin(change):+.1f} to {100 * np.nanmax(change):+.1f} %")
+    return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
+
+
+def _trends(curves: Sequence[Engagement]) -> tuple[str, dict[int, list[float]], dict[int, list[float]]]:
+    """What to see, and over μ the average and the maximum of each of the three teeth."""
+    average = {t: [float(np.nanmean(c.mean_pressure[c.tooth == t])) for c in curves] for t in NAMES}
+    largest = {t: [float(np.nanmax(c.max_pressure[c.tooth == t])) for c in curves] for t in NAMES}
+    changes = ", ".join(f"tooth {2 - t} {100 * (largest[t][-1] / largest[t][0] - 1):+.1f} %" for t in NAMES)
+    return f"Maximum from μ = {curves[0].friction:g} to {curves[-1].friction:g}: {changes}.", average, largest

@@ -1,0 +1,75 @@
+"""How all figures look: colours, sizes, and the title with the one line that says what to see."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+PINION, WHEEL = "#1f5fa8", "#c0392b"
+"""Curves that belong to the pinion and to the wheel."""
+PINION_BODY, WHEEL_BODY = "#7d9cc4", "#cf8a7f"
+INK, FAINT = "#222222", "#8a8f98"
+PRESSURE_MAP = LinearSegmentedColormap.from_list(
+    "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
+)
+"""Sequential, from bare flank to the largest pressure; its lightness falls all the way."""
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10.0,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#e3e6ea",
+    "grid.linewidth": 0.8,
+    "legend.frameon": False,
+    "legend.fontsize": 9.0,
+    "lines.linewidth": 1.6,
+    "savefig.dpi": 140.0,
+    "figure.facecolor": "white",
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Matplotlib draws in this style inside the block."""
+    with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]  # the stubs list every key as a literal
+        yield
+
+
+def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
+    """An empty figure [inch] with its title and below it the line that says what to see."""
+    figure = Figure(figsize=size, layout="constrained")
+    band = 0.62 / size[1]
+    figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - band))  # type: ignore[union-attr, call-arg]
+    left = 0.14 / size[0]
+    figure.text(left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK)
+    figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=10, color="#444444")
+    return figure
+
+
+def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
+    """One colour per coefficient, darker with more friction."""
+    ranks = np.argsort(np.argsort(frictions)) / max(1, len(frictions) - 1)
+    return [tuple(matplotlib.colormaps["viridis_r"](0.08 + 0.87 * rank)) for rank in ranks]
+
+
+def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:
+    """A small remark inside the axes, at its upper left unless said otherwise."""
+    axes.text(x, y, text, transform=axes.transAxes, va="top", ha="left", fontsize=9, color="#444444")
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Writes a PNG and gives its path back. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path)
+    return path

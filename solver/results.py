@@ -1,0 +1,220 @@
+"""The tables of a run: summary.json, positions.csv, teeth.csv.
+
+`summary` gives plain values in the units that reports use (N·m, µm, MPa, degrees); files are written under another
+name and renamed, so that a reader never sees half a table.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from solver.engagement import Engagement, crossing, engagements
+from solver.gear_results import ToothSummary, balance_error
+from solver.run_data import RunData, SolvedPosition
+
+
+@dataclass(frozen=True)
+class Timings:
+    """Wall seconds of the parts of a run."""
+
+    mesh: float = 0.0
+    assemble: float = 0.0
+    factor: float = 0.0
+    positions: float = 0.0
+    output: float = 0.0
+    total: float = 0.0
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """Smallest scaled Jacobian of both sectors [-] and elements across the contact width 2b, measured."""
+
+    min_scaled_jacobian: float
+    cells_across_contact_width: float
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """What a run knows beside its results. versions: name -> version. skipped: one sentence each."""
+
+    versions: Mapping[str, str]
+    ranks: int
+    dofs: int
+    cells: int
+    mesh: MeshFacts
+    skipped: Sequence[str]
+    timings_s: Timings
+    peak_memory_MB: float
+
+
+@dataclass(frozen=True)
+class ToothRow:
+    """One tooth pair at a position; edge_pressure_MPa: at a tip edge, 0 where none bears."""
+
+    tooth: int
+    force_N: float
+    max_pressure_MPa: float
+    contact_length_mm: float
+    edge_pressure_MPa: float
+
+
+@dataclass(frozen=True)
+class PositionRow:
+    """One position at one friction coefficient.
+
+    max_pressure_MPa: fitted, away from tip edges. tip_edge: whether a tooth bears on a tip edge, where pressure is
+    singular. loss_percent: friction power of the input power.
+    """
+
+    pinion_angle_deg: float
+    friction: float
+    torque_pinion_Nm: float
+    torque_gear_Nm: float
+    transmission_error_um: float
+    max_pressure_MPa: float
+    tip_edge: bool
+    loss_percent: float
+    newton_iterations: int
+    balance_error: float
+    seconds: float
+    teeth: tuple[ToothRow, ...]
+
+
+@dataclass(frozen=True)
+class FrictionRow:
+    """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
+    crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face."""
+
+    friction: float
+    max_pressure_MPa: float
+    max_pressure_angle_deg: float
+    mean_pressure_MPa: float
+    transmission_error_peak_to_peak_um: float
+    loss_percent: float
+    crossing_deg: float
+
+
+def position_rows(run: RunData) -> list[PositionRow]:
+    """All positions of the pitch, all friction coefficients."""
+    return [position_row(solved, run.width) for each in run.positions for solved in each]
+
+
+def position_row(solved: SolvedPosition, width: float) -> PositionRow:
+    """One position; width: see RunData.width."""
+    result = solved.result
+    return PositionRow(
+        pinion_angle_deg=math.degrees(result.stand.angle),
+        friction=result.friction,
+        torque_pinion_Nm=1e-3 * width * result.torques[0],
+        torque_gear_Nm=1e-3 * width * result.torques[1],
+        transmission_error_um=1e3 * result.transmission_error,
+        max_pressure_MPa=max(tooth.max_pressure for tooth in solved.teeth),
+        tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
+        loss_percent=loss_percent(solved),
+        newton_iterations=result.iterations,
+        balance_error=balance_error(result),
+        seconds=result.seconds,
+        teeth=tuple(_tooth_row(tooth, width) for tooth in solved.teeth),
+    )
+
+
+def loss_percent(solved: SolvedPosition) -> float:
+    """Friction power of the input power [%]."""
+    return 100.0 * solved.result.friction_loss / solved.result.torques[0]
+
+
+def _tooth_row(tooth: ToothSummary, width: float) -> ToothRow:
+    length = tooth.contact_length * width
+    return ToothRow(tooth.tooth, tooth.force * width, tooth.max_pressure, length, tooth.edge_pressure)
+
+
+def friction_rows(run: RunData) -> list[FrictionRow]:
+    """One row per friction coefficient, in the scene's order."""
+    curves = engagements(run)
+    lowest = curves[int(np.argmin(run.frictions))]
+    return [_friction_row(run, index, curve, lowest) for index, curve in enumerate(curves)]
+
+
+def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagement) -> FrictionRow:
+    results = [each[index].result for each in run.positions]
+    errors = 1e3 * np.array([result.transmission_error for result in results])
+    top = int(np.nanargmax(curve.max_pressure))
+    loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
+    return FrictionRow(
+        friction=curve.friction,
+        max_pressure_MPa=float(curve.max_pressure[top]),
+        max_pressure_angle_deg=math.degrees(curve.angle[top]),
+        mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
+        transmission_error_peak_to_peak_um=float(np.ptp(errors)),
+        loss_percent=100.0 * loss,
+        crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
+    )
+
+
+def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
+    """What summary.json holds, in plain values."""
+    return {
+        "scene": run.scene.model_dump(mode="json"),
+        **asdict(facts),
+        "frictions": [asdict(row) for row in friction_rows(run)],
+        "positions": [asdict(row) for row in position_rows(run)],
+    }
+
+
+def write_tables(folder: Path, run: RunData, facts: RunFacts) -> None:
+    """Writes summary.json, positions.csv and teeth.csv. Raises OSError."""
+    rows = position_rows(run)
+    write_text(folder / "positions.csv", _csv([_flat(asdict(row)) for row in rows]))
+    teeth = [
+        {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
+        for row in rows
+        for tooth in row.teeth
+    ]
+    write_text(folder / "teeth.csv", _csv(teeth))
+    text = json.dumps(_without_nan(summary(run, facts)), ensure_ascii=False, indent=1, allow_nan=False)
+    write_text(folder / "summary.json", text + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Writes a file atomically. Raises OSError."""
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
+
+
+def _flat(row: dict[str, object]) -> dict[str, object]:
+    """A position without its list of teeth, but with their number."""
+    teeth = row.pop("teeth")
+    assert isinstance(teeth, (list, tuple))
+    return row | {"teeth_in_contact": len(teeth)}
+
+
+def _csv(rows: Sequence[Mapping[str, object]]) -> str:
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: _shown(value) for key, value in row.items()} for row in rows)
+    return stream.getvalue()
+
+
+def _shown(value: object) -> object:
+    """Nine digits are enough for people and for comparing two runs."""
+    return f"{value:.9g}" if isinstance(value, float) else value
+
+
+def _without_nan(value: object) -> object:
+    """JSON knows no NaN: null."""
+    if isinstance(value, Mapping):
+        return {str(key): _without_nan(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

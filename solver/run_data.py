@@ -1,0 +1,119 @@
+"""A finished run in memory: what tables, fields and pictures are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from meshes.data import Floats
+from meshes.parameters import GearPair, GearParameters
+from solver.archive import Archive, ArchiveError, GearShape
+from solver.gear_position import PositionResult
+from solver.gear_results import Slices, ToothSummary, slices, tooth_summaries
+from solver.gear_sweep import SweptPosition
+from solver.scene import Scene, load_scene
+
+
+@dataclass(frozen=True)
+class FlankNodes:
+    """The loaded flank's nodes of a gear's tooth 0 in its own frame: points (n, 3) [mm]."""
+
+    gear: GearParameters
+    points: Floats
+
+    @property
+    def z(self) -> Floats:
+        """Heights (n,) [mm]."""
+        return self.points[:, 2]
+
+    @property
+    def roll_length(self) -> Floats:
+        """Transverse curvature radii √(r² − r_b²) (n,) [mm]."""
+        r = np.hypot(self.points[:, 0], self.points[:, 1])
+        return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
+
+
+@dataclass(frozen=True)
+class SolvedPosition:
+    """One position at one friction coefficient, and what is read from it. 2D values are per mm of width."""
+
+    result: PositionResult
+    cut: Slices
+    teeth: tuple[ToothSummary, ...]
+
+
+@dataclass(frozen=True)
+class RunData:
+    """A scene and its results over one base pitch.
+
+    shapes: surfaces of (pinion, wheel). positions: (positions of the pitch, friction coefficients), without warm-up.
+    """
+
+    scene: Scene
+    shapes: tuple[GearShape, GearShape]
+    positions: tuple[tuple[SolvedPosition, ...], ...]
+
+    @cached_property
+    def pair(self) -> GearPair:
+        """The scene's gears."""
+        return self.scene.gear_pair()
+
+    @cached_property
+    def plane(self) -> bool:
+        """True where the scene was solved in 2D."""
+        return self.positions[0][0].result.points.shape[1] == 2
+
+    @property
+    def width(self) -> float:
+        """By which results must be multiplied: the face width [mm] of a 2D run, 1 in 3D."""
+        return self.pair.face_width if self.plane else 1.0
+
+    @property
+    def frictions(self) -> tuple[float, ...]:
+        """The friction coefficients, in the order of the results."""
+        return tuple(solved.result.friction for solved in self.positions[0])
+
+    @property
+    def angles(self) -> Floats:
+        """Nominal pinion rotations (positions,) [rad] of the pitch."""
+        return np.array([each[0].result.stand.angle for each in self.positions])
+
+    @property
+    def pitch(self) -> float:
+        """Pinion rotation of a base pitch, 2π/z_1 [rad]."""
+        return 2.0 * np.pi / self.pair.pinion.z
+
+    @cached_property
+    def flank(self) -> FlankNodes:
+        """The pinion's flank nodes, in the order of PositionResult.node."""
+        return flank_nodes(self.pair.pinion, self.shapes[0])
+
+
+def flank_nodes(gear: GearParameters, shape: GearShape) -> FlankNodes:
+    """The nodes of a gear's loaded flank."""
+    return FlankNodes(gear, shape.points[shape.flank_nodes])
+
+
+def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[SweptPosition]) -> RunData:
+    """Puts a run together. Raises ArchiveError where no position of the pitch is there yet."""
+    counted = [position for position in swept if not position.warm_up]
+    if not counted:
+        raise ArchiveError("wanted at least one position of the pitch, found none; let the run go on with --resume")
+    flank, materials = flank_nodes(scene.gear_pair().pinion, shapes[0]), scene.materials()
+
+    def solved(result: PositionResult) -> SolvedPosition:
+        cut = slices(result, flank, materials)  # type: ignore[arg-type]  # reads only gear, z and roll_length
+        return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)))
+
+    return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in counted))
+
+
+def read_run(folder: Path) -> RunData:
+    """The run that `folder` holds: OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
+    scene = load_scene(folder / "scene.toml")
+    archive = Archive(folder, scene.resolved_toml())
+    return run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))

@@ -1,0 +1,211 @@
+"""The scene: read, overridden, checked, written back with its defaults.
+
+A scene is TOML, read into frozen models. Whatever is wrong with it is said in one `SceneError` before anything is
+computed or written.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import BaseModel, ValidationError, model_validator
+
+from meshes.parameters import GearPair
+from solver.estimates import hertz_estimate
+from solver.material import Material
+from solver.scene_errors import Problem, SceneError, problems_of, scene_problem, shown
+from solver.scene_gears import ImpossibleGears, make_pair
+from solver.schema import Contact, Gear, Load, Materials, Mesh, Output, Pair, Section, Sweep, key
+
+__all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
+
+EXAMPLE = "demos/yang2022.toml is a complete example"
+WIDEST_CONTACT = 0.2
+"""Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
+
+
+class Scene(Section):
+    """A scene, valid and complete with its defaults.
+
+    Raises ValidationError when made directly; `load_scene` and `scene_from_text` raise SceneError with one sentence a
+    problem, and also check that the gears can exist and mesh.
+    """
+
+    title: str = key(
+        "a name for reports and pictures", "a text of up to 200 characters", default="gear pair", max_length=200
+    )
+    pair: Pair
+    pinion: Gear
+    wheel: Gear
+    material: Materials = Materials()
+    mesh: Mesh = Mesh()
+    contact: Contact = Contact()
+    load: Load
+    sweep: Sweep = Sweep()
+    output: Output = Output()
+
+    @model_validator(mode="after")
+    def _gears_mesh(self) -> Self:
+        pinion, wheel = self.pinion.hand or "right", self.wheel.hand
+        if self.pair.helix_angle_deg > 0 and wheel == pinion:
+            allowed = f"the opposite of pinion.hand, which is {shown(pinion)}"
+            remedy = "delete the key, the wheel's hand follows from the pinion's"
+            raise scene_problem(Problem("wheel.hand", shown(wheel), allowed, remedy))
+        try:
+            self.gear_pair()
+        except ImpossibleGears as error:
+            raise scene_problem(error.problem) from error
+        return self
+
+    @model_validator(mode="after")
+    def _strain_is_small(self) -> Self:
+        estimate = hertz_estimate(self)
+        half_width, radius = float(estimate.half_width(0.0)), float(estimate.pair.relative_curvature_radius(0.0))
+        if half_width > WIDEST_CONTACT * radius:
+            most = self.load.torque_Nm * (WIDEST_CONTACT * radius / half_width) ** 2
+            size = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
+            found = f"{shown(self.load.torque_Nm)} ({size})"
+            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
+            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
+            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+        return self
+
+    def gear_pair(self) -> GearPair:
+        """The two gears at their centre distance, with every derived quantity."""
+        return make_pair(self.pair, self.pinion, self.wheel)
+
+    def materials(self) -> tuple[Material, Material]:
+        """(pinion's, wheel's)."""
+        common = self.material
+        pairs = [
+            (common.E_GPa if own.E_GPa is None else own.E_GPa, common.nu if own.nu is None else own.nu)
+            for own in (common.pinion, common.wheel)
+        ]
+        pinion, wheel = (Material(1e3 * modulus, ratio) for modulus, ratio in pairs)
+        return pinion, wheel
+
+    def resolved_toml(self) -> str:
+        """The scene as TOML with all its defaults, each key with its meaning; reading it gives the same scene.
+
+        A default that follows from other keys stands in a comment, so that it still follows when these are changed.
+        """
+        return "\n".join(_toml_lines(self, derived_values(self))) + "\n"
+
+
+def derived_values(scene: Scene) -> dict[str, Any]:
+    """Dotted key -> the value that it has when it isn't given."""
+    pair = scene.gear_pair()
+    values: dict[str, Any] = {"pair.centre_distance_mm": pair.centre_distance}
+    for name, gear, material in zip(("pinion", "wheel"), pair.gears, scene.materials(), strict=True):
+        values |= {
+            f"{name}.tip_diameter_mm": gear.tip_diameter,
+            f"{name}.root_diameter_mm": gear.root_diameter,
+            f"{name}.rack_tip_radius_mm": gear.rack_tip_radius,
+            f"{name}.hand": "right" if gear.hand > 0 else "left",
+            f"{name}.bore_diameter_mm": gear.bore_diameter,
+            f"{name}.tip_relief_start_diameter_mm": gear.modifications.tip_relief_start_diameter,
+            f"material.{name}.E_GPa": material.youngs_modulus / 1e3,
+            f"material.{name}.nu": material.poissons_ratio,
+        }
+    return values
+
+
+def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") -> Iterator[str]:
+    """The lines of a section: its keys, then its subsections."""
+    if name:
+        yield f"\n[{name}]"
+    subsections = []
+    for own, field in type(section).model_fields.items():
+        value, dotted = getattr(section, own), f"{name}.{own}" if name else own
+        if isinstance(value, BaseModel):
+            subsections.append((dotted, value))
+        elif value is not None:
+            yield f"{own} = {_toml_value(value)}  # {field.description}"
+        elif dotted in derived:
+            yield f"# {own} = {_toml_value(derived[dotted])}  # {field.description}"
+        else:
+            yield f"# {own}: not given  # {field.description}"
+    for subname, value in subsections:
+        yield from _toml_lines(value, derived, subname)
+
+
+def _toml_value(value: object) -> str:
+    """A text, number, truth value or tuple of them as TOML; JSON's escapes of texts are TOML's."""
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_toml_value, value)) + "]"
+    if isinstance(value, (str, bool)):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return repr(value)
+
+
+def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
+    """Read, override and check a scene file.
+
+    overrides: "key=value" with a dotted key and a TOML value, as `--set` takes them. Raises SceneError.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        found = error.strerror if isinstance(error, OSError) else "bytes that are no UTF-8 text"
+        remedy = f"check the path {path}; {EXAMPLE}"
+        raise SceneError([Problem("scene file", str(found), "a readable TOML file", remedy)], str(path)) from error
+    return scene_from_text(text, overrides, source=str(path))
+
+
+def scene_from_text(text: str, overrides: Sequence[str] = (), source: str = "") -> Scene:
+    """A scene from TOML text; see load_scene."""
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        remedy = f'mend that line; texts stand in "quotes", every key only once; {EXAMPLE}'
+        raise SceneError([Problem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)], source) from error
+    try:
+        for override in overrides:
+            _apply(values, override)
+        return scene_from_values(values)
+    except SceneError as error:
+        raise SceneError(error.problems, source) from error.__cause__
+
+
+def scene_from_values(values: Mapping[str, Any]) -> Scene:
+    """A scene from nested dictionaries; see load_scene."""
+    try:
+        return Scene.model_validate(dict(values))
+    except ValidationError as error:
+        raise SceneError(problems_of(error, Scene)) from error
+
+
+def _apply(values: dict[str, Any], override: str) -> None:
+    """Put one "section.key=value" into the nested values."""
+    name, equals, text = override.partition("=")
+    names = [part.strip() for part in name.split(".")]
+    if not equals or not all(names):
+        remedy = "write for example --set load.torque_Nm=300"
+        raise SceneError([Problem("--set", shown(override), "section.key=value", remedy)])
+    table = values
+    for depth, part in enumerate(names[:-1]):
+        inner = table.setdefault(part, {})
+        if not isinstance(inner, dict):
+            found = f"a key below {'.'.join(names[: depth + 1])}, which has the value {shown(inner)}"
+            raise SceneError([Problem(name, found, "section.key=value", "see docs/scene.md for the keys")])
+        table = inner
+    table[names[-1]] = _parsed(name, text.strip())
+
+
+def _parsed(name: str, text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        parsed = {}
+    if list(parsed) == ["value"]:
+        return parsed["value"]
+    if re.fullmatch(r"[A-Za-z][\w -]*", text):  # shells take the quotes away: --set mesh.level=quick
+        return text
+    remedy = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
+    raise SceneError([Problem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])

@@ -1,0 +1,176 @@
+"""A body's contact surface: facets, nodal normals, weights; taken from named facet groups of a mesh.
+
+A surface is plain arrays, so that the search and the contact terms never touch the mesh they came from. Node order in
+a facet is basix's (corners of a quadrilateral in tensor order, then edges, then the interior), and the order of the
+corners is such that t1 × t2 (in 2D: the tangent turned clockwise) points out of the body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_matrix
+
+from meshes.data import FACET_SHAPE, Floats, Ints, MeshData
+from solver.facet import TURNED_OVER, area_vector, hats, monomials, reference_cell, subcell_rule
+from solver.lagrange import gmsh_permutation
+from solver.lagrange import tabulate as shape_functions
+
+# Degree of the rule on each sub-facet for ∫ψ_j N_k: exact on plane facets (also distorted ones), ample on curved ones.
+MASS_DEGREE = 6
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The contact surface of one body.
+
+    points: (n, d) node coordinates [mm], d = 2 or 3.
+    normals: (n, d) outward unit normals: mean of the facets' own normals at the node, weighted by facet area.
+    facets: (m, k) indices into points, basix order, oriented outwards.
+    shape, order: "interval", "quadrilateral" or "triangle"; 1 or 2.
+    nodes: (n,) the node of the body's mesh of each point.
+    """
+
+    points: Floats
+    normals: Floats
+    facets: Ints
+    shape: str
+    order: int
+    nodes: Ints
+
+    @classmethod
+    def from_arrays(cls, points: ArrayLike, facets: ArrayLike, shape: str, order: int,
+                    nodes: ArrayLike | None = None) -> Surface:
+        """A surface of outward oriented facets (basix order); the nodal normals are computed here.
+
+        ValueError if the sizes do not fit, a point is not finite, or a facet is folded or empty.
+        """
+        x, f = np.asarray(points, dtype=np.float64), np.asarray(facets, dtype=np.int64)
+        cell = reference_cell(shape, order)
+        if f.ndim != 2 or f.shape[1] != len(cell.nodes) or x.shape[1] != cell.nodes.shape[1] + 1:
+            raise ValueError(f"{shape} facets of order {order} need (m, {len(cell.nodes)}) node indices and "
+                             f"(n, {cell.nodes.shape[1] + 1}) points; found {f.shape} and {x.shape}")
+        if not np.isfinite(x).all():
+            raise ValueError(f"{int((~np.isfinite(x)).any(axis=1).sum())} of {len(x)} surface points are not finite")
+        own = np.arange(len(x)) if nodes is None else np.asarray(nodes, dtype=np.int64)
+        bare = cls(x, np.zeros_like(x), f, shape, order, own)
+        return replace(bare, normals=_nodal_normals(bare))
+
+    def evaluate(self, field: Floats, facets: Ints, xi: Floats) -> tuple[Floats, list[Floats]]:
+        """A nodal field (n, c) at xi (t, p, dt) of the facets (t,): values (t, p, c), derivative per direction."""
+        cell = reference_cell(self.shape, self.order)
+        nodal = cell.coefficients @ field[self.facets[facets]]
+        value, first = monomials(cell, xi)
+        return value @ nodal, [f @ nodal for f in first]
+
+    def positions(self, facets: Ints, xi: Floats) -> Floats:
+        """The points [mm] at xi (t, p, dt) of the facets (t,): (t, p, d)."""
+        return self.evaluate(self.points, facets, xi)[0]
+
+    def area_vectors(self, facets: Ints, xi: Floats) -> Floats:
+        """Outward facet normal times dA/dξ [mm or mm²] at xi (t, p, dt) of the facets (t,): (t, p, d)."""
+        return area_vector(self.evaluate(self.points, facets, xi)[1])
+
+    def areas(self) -> Floats:
+        """The length [mm] or area [mm²] of each facet: (m,)."""
+        return self._rule()[2].sum(axis=1)
+
+    def weights(self) -> Floats:
+        """m_j = ∫ψ_j [mm or mm²], ψ_j the hats of the node grid: (n,), all positive."""
+        psi, _, measure = self._rule()
+        total = np.bincount(self.facets.ravel(), (measure @ psi).ravel(), minlength=len(self.points))
+        return total.astype(np.float64)
+
+    def mass(self) -> Any:
+        """M_jk = ∫ψ_j N_k [mm or mm²], N_k the Lagrange shape functions: scipy csr (n, n). Its row sums are m_j."""
+        psi, shape, measure = self._rule()
+        local = np.einsum("mq,qj,qk->mjk", measure, psi, shape, optimize=True)
+        k = self.facets.shape[1]
+        rows, columns = np.repeat(self.facets, k, axis=1).ravel(), np.tile(self.facets, (1, k)).ravel()
+        return csr_matrix((local.ravel(), (rows, columns)), shape=(len(self.points),) * 2)
+
+    def moved(self, rotation: ArrayLike, translation: ArrayLike) -> Surface:
+        """The surface after x -> rotation (d, d) x + translation (d,) [mm]."""
+        turn = np.asarray(rotation, dtype=np.float64)
+        return replace(self, points=self.points @ turn.T + np.asarray(translation), normals=self.normals @ turn.T)
+
+    def _rule(self) -> tuple[Floats, Floats, Floats]:
+        """Hats (q, k), shape functions (q, k) and measures (m, q) of a rule on all sub-facets."""
+        xi, w = subcell_rule(self.shape, self.order, MASS_DEGREE)
+        every = np.arange(len(self.facets))
+        vectors = self.area_vectors(every, np.broadcast_to(xi, (len(every), *xi.shape)))
+        psi, shape = hats(self.shape, self.order, xi), shape_functions(self.shape, self.order, xi)[0]
+        return psi, shape, np.linalg.norm(vectors, axis=-1) * w
+
+
+def _nodal_normals(surface: Surface) -> Floats:
+    cell = reference_cell(surface.shape, surface.order)
+    every = np.arange(len(surface.facets))
+    points = np.concatenate([cell.nodes, cell.centre[None]])
+    vectors = surface.area_vectors(every, np.broadcast_to(points, (len(every), *points.shape)))
+    vectors, centre = vectors[:, :-1], vectors[:, -1:]
+    if np.any(folded := np.sum(vectors * centre, axis=2).min(axis=1) <= 0.0):
+        bad = int(np.argmax(folded))
+        raise ValueError(f"{folded.sum()} of {len(every)} facets are folded or empty (first: {bad}, its normals at the "
+                         "nodes and at the centre should differ by less than 90°): mend or refine the mesh")
+    unit = vectors / np.linalg.norm(vectors, axis=2, keepdims=True)
+    total = np.zeros_like(surface.points)
+    np.add.at(total, surface.facets, surface.areas()[:, None, None] * unit)
+    return total / np.linalg.norm(total, axis=1, keepdims=True)
+
+
+def surface_of(mesh: MeshData, group: str | Sequence[str]) -> Surface:
+    """The contact surface made of one or more named facet groups, turned outwards with the cells behind the facets.
+
+    ValueError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
+    """
+    names = [group] if isinstance(group, str) else list(group)
+    for name in names:
+        if name not in mesh.facets:
+            raise ValueError(f"the mesh has no facet group {name!r}; it has {sorted(mesh.facets)}")
+    shape, order = FACET_SHAPE[mesh.shape], mesh.order
+    found = [np.asarray(mesh.facets[name], dtype=np.int64) for name in names]
+    if sum(map(len, found)) == 0:
+        raise ValueError(f"facet group {' + '.join(names)} is empty: a contact surface needs at least one facet")
+    gmsh = np.concatenate([f for f in found if len(f)])[:, gmsh_permutation(shape, order)]
+    facets = _outward(mesh, gmsh, shape)
+    nodes, local = np.unique(facets, return_inverse=True)
+    points = mesh.points[nodes, : mesh.dimension]
+    return Surface.from_arrays(points, local.reshape(facets.shape), shape, order, nodes)
+
+
+def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
+    """The facets (global nodes), those turned over whose normal points into the cell behind them."""
+    points = mesh.points[:, : mesh.dimension]
+    corners = {"triangle": 3, "quadrilateral": 4, "tetrahedron": 4, "hexahedron": 8}[mesh.shape]
+    behind = _cells_behind(mesh.cells[:, :corners], facets[:, : len(reference_cell(shape, 1).nodes)], len(points))
+    surface = Surface(points, points, facets, shape, mesh.order, np.arange(len(points)))
+    every = np.arange(len(facets))
+    middle = np.broadcast_to(reference_cell(shape, 1).centre, (len(every), 1, mesh.dimension - 1))
+    inside = points[mesh.cells[behind, :corners]].mean(axis=1)
+    away = surface.positions(every, middle)[:, 0] - inside
+    inwards = np.einsum("md,md->m", surface.area_vectors(every, middle)[:, 0], away) < 0.0
+    return np.where(inwards[:, None], facets[:, TURNED_OVER[shape, mesh.order]], facets)
+
+
+def _cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
+    """The one cell that has all corners of each facet."""
+    def incidence(items: Ints) -> Any:
+        rows = np.repeat(np.arange(len(items)), items.shape[1])
+        return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
+
+    shared = (incidence(facets) @ incidence(cells).T).tocoo()
+    whole = shared.data > facets.shape[1] - 0.5
+    rows, columns = shared.row[whole], shared.col[whole]
+    count = np.bincount(rows, minlength=len(facets))
+    if np.any(count != 1):
+        bad = int(np.flatnonzero(count != 1)[0])
+        raise ValueError(f"a contact facet must have one cell behind it; facet {bad} with nodes {facets[bad].tolist()} "
+                         f"has {count[bad]}: put only boundary facets of this body into the group")
+    behind = np.empty(len(facets), dtype=np.int64)
+    behind[rows] = columns
+    return behind

@@ -53,6 +53,7 @@ def schur_complement(matrix: sp.spmatrix, size: int, settings: DissectionSetting
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
     mumps.fill_symmetric(result)
+    mumps.return_free_memory()
     return result
 
 
@@ -66,6 +67,7 @@ def _update(matrix: sp.csr_matrix, inner: Ints, outer: Ints, settings: Dissectio
     front = _Front.of(matrix, inner[separator], outer)
     del rows, within
     for part in filter(len, parts):
+        mumps.return_free_memory()
         front.add(matrix, inner[part], settings)
     return front.eliminated()
 

@@ -78,13 +78,14 @@ def sign_changes(x: Floats, y: Floats) -> Floats:
     """Where the curve y (n,) over x (n,) crosses zero, by linear interpolation; NaN in y is passed over."""
     known = np.isfinite(y)
     x, y = x[known], y[known]
-    k = np.flatnonzero(np.sign(y[:-1]) * np.sign(y[1:]) < 0)
+    positive = y >= 0.0
+    k = np.flatnonzero(positive[:-1] != positive[1:])
     return np.asarray(x[k] - y[k] * (x[k + 1] - x[k]) / (y[k + 1] - y[k]))
 
 
 def crossing(low: Engagement, high: Engagement) -> float:
-    """The tooth's rotation [rad] after which more friction means less contact stress: where the curves of maximum
-    pressure at two friction coefficients cross for the last time, nearest to the pitch point. NaN where they do not."""
+    """The tooth's rotation [rad] at which the curves of maximum pressure of two friction coefficients cross, the one
+    nearest to the pitch point; NaN where they do not cross."""
     angle, first, second = np.intersect1d(np.round(low.angle, 9), np.round(high.angle, 9), return_indices=True)
     found = sign_changes(angle, high.max_pressure[second] - low.max_pressure[first])
     return float(found[np.argmin(np.abs(found))]) if len(found) else float("nan")

@@ -2,7 +2,7 @@
 
 Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 without friction, else d:
 
-    f − m·law(J) = 0,   J = J_0 + H δ − A f          (contact)
+    f − F(J) = 0,   J = J_0 + H δ − A f          (contact)
     Hᵀ f = F                                         (balance of the free rigid motions)
 
 The bodies are eliminated exactly (A is their compliance), so this is the finite element system and not a model of it.
@@ -12,29 +12,28 @@ The tangent is reduced to the nodes in contact and factored densely.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 
 from meshes.data import Floats
 from solver import newton
 from solver.friction import Law, coulomb, starting_guess
 from solver.newton import NotConverged
-from solver.nitsche import ContactOperator
+from solver.nitsche import ContactOperator, LawOf
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 40
 
-LawOf = Callable[[Floats], Law]
 
 
 @dataclass(frozen=True)
 class CondensedSystem:
     """What a position's equilibrium needs of the bodies.
 
-    operator: contact at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r) local jumps of the free rigid
+    operator: contact at q points, jumps at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r) local jumps of the free rigid
     motions. jump: J_0 (n·k,) jumps of the external loads and prescribed motions [mm]. load: F (r,) [N, N·mm].
     lever: (r,) what one unit of each motion moves the contact [mm per unit], to compare forces with moments.
     """
@@ -63,7 +62,7 @@ class CondensedSystem:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A converged state: forces f (n, k) [N] and tractions (n, k) [MPa] in local frames, motions δ (r,), jumps (n, k)
+    """A converged state: nodal forces f (n, k) [N] and tractions at the points (q, k) [MPa] in local frames, motions δ (r,), jumps (n, k)
     [mm]; Newton iterations and the residual [N] that was left."""
 
     force: Floats
@@ -85,9 +84,9 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
 def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (n,) bool, the nodes assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
+    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
     """
-    chosen = np.ones(len(system.operator.nodes), dtype=bool) if start is None else start
+    chosen = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
     problem = _Contact(system, lambda t: coulomb(t, 0.0))
     return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
 
@@ -95,8 +94,8 @@ def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Eq
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
     """Equilibrium in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
     one where friction alone carries a load. slip: as there. Raises NotConverged."""
-    law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros_like(slip)), slip)
-    every = np.ones(len(system.operator.nodes), dtype=bool)
+    law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
+    every = np.ones(len(system.operator.weights), dtype=bool)
     return _converged(law, _assumed_contact(system, every, slip), "contact without slip")
 
 
@@ -105,8 +104,8 @@ def frictional(
 ) -> Equilibrium:
     """Equilibrium with Coulomb friction.
 
-    slip: (n, d−1) what slipped since the last state apart from the present displacement [mm]; heading: (n, d−1) the
-    known direction of slip, or zero; start: the equilibrium without friction, or `stuck`. Raises NotConverged.
+    friction: a number or (q,). slip: (n, d−1) what slipped since the last state apart from the present displacement
+    [mm]; heading: (q, d−1) the known direction of slip, or zero; start: the equilibrium without friction, or `stuck`. Raises NotConverged.
     """
     force = np.zeros((len(system.operator.nodes), system.k))
     force[:, : start.force.shape[1]] = start.force
@@ -141,48 +140,34 @@ class _Contact:
 
     def residual(self, x: Floats) -> Floats:
         force, _, law = self.state(x)
-        contact = force - self.system.operator.weights[:, None] * law.traction
+        contact = force - self.system.operator.forces(law.traction)
         balance = (self.system.motion.T @ force.ravel() - self.system.load) / self.system.lever
         return np.concatenate([contact.ravel(), balance])
 
     def solve(self, x: Floats, right: Floats) -> Floats:
         """The tangent's inverse: dense on the nodes in contact, the others only take their own residual."""
         k, r, system = self.k, self.r, self.system
-        slope = self._slope(x)
-        active = np.flatnonzero(slope.any(axis=(1, 2)))
-        if len(active) == 0 and r:
+        M = self.system.operator.tangent(self.state(x)[2])
+        rows = _rows_of_nodes(M, k)
+        if len(rows) == 0 and r:
             raise NotConverged("no node in contact while a motion is free: bring the bodies together, or hold the motion")
-        rows = (k * active[:, None] + np.arange(k)).ravel()
         rest = np.setdiff1d(np.arange(self.n * k), rows)
         A, H = system.compliance, system.motion / system.lever
-        result = right.copy()
+        M, H_a = M[rows][:, rows], H[rows]
         known = A[np.ix_(rows, rest)] @ right[rest] if np.any(right[rest]) else np.zeros(len(rows))
-        b = np.concatenate([right[rows] - _rowwise(slope[active], known), right[self.n * k :] - H[rest].T @ right[rest]])
-        y = _regular_solve(self._tangent(slope[active], A[np.ix_(rows, rows)], H[rows]), b)
+        b = np.concatenate([right[rows] - M @ known, right[self.n * k :] - H[rest].T @ right[rest]])
+        y = _regular_solve(_bordered(M, A[np.ix_(rows, rows)], H_a), b)
+        result = right.copy()
         result[rows], result[self.n * k :] = y[: len(rows)], y[len(rows) :]
         return result
 
-    def _slope(self, x: Floats) -> Floats:
-        """∂f/∂J of each node, (n, k, k)."""
-        op = self.system.operator
-        return op.weights[:, None, None] * self.state(x)[2].derivative * op.trial_slope(self.k)[:, None, :]
-
-    @staticmethod
-    def _tangent(slope: Floats, A: Floats, H: Floats) -> Floats:
-        a, r = H.shape
-        T = np.zeros((a + r, a + r))
-        T[:a, :a] = _rowwise(slope, A)
-        T[np.arange(a), np.arange(a)] += 1.0
-        T[:a, a:] = -_rowwise(slope, H)
-        T[a:, :a] = H.T
-        return T
-
 
 def _regular_solve(matrix: Floats, right: Floats) -> Floats:
+    """matrix⁻¹ right, overwriting the matrix. Raises NotConverged where it is singular to rounding."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", la.LinAlgWarning)
         try:
-            return la.solve(matrix, right, check_finite=False)
+            return la.solve(matrix, right, overwrite_a=True, check_finite=False)
         except (la.LinAlgError, la.LinAlgWarning) as error:
             raise NotConverged(
                 "a free rigid motion meets no resistance: wanted a support, or friction that does not slide everywhere; "
@@ -190,14 +175,25 @@ def _regular_solve(matrix: Floats, right: Floats) -> Floats:
             ) from error
 
 
-def _rowwise(blocks: Floats, matrix: Floats) -> Floats:
-    """Block-diagonal times matrix: blocks (n, k, k), matrix (n·k, ...)."""
-    n, k, _ = blocks.shape
-    return np.matmul(blocks, matrix.reshape(n, k, -1)).reshape(matrix.shape)
+def _rows_of_nodes(M: sp.csr_matrix, k: int) -> np.ndarray:
+    """The rows of all nodes that M, (n·k, n·k), couples to anything."""
+    touched = np.flatnonzero(np.diff(M.indptr).reshape(-1, k).any(axis=1))
+    return (k * touched[:, None] + np.arange(k)).ravel()
+
+
+def _bordered(M: sp.csr_matrix, A: Floats, H: Floats) -> Floats:
+    """[I + M A, −M H; Hᵀ, 0]."""
+    a, r = H.shape
+    T = np.zeros((a + r, a + r))
+    T[:a, :a] = M @ A
+    T[np.arange(a), np.arange(a)] += 1.0
+    T[:a, a:] = -(M @ H)
+    T[a:, :a] = H.T
+    return T
 
 
 def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:
-    """x of the linear problem in which the chosen nodes touch (and may pull)."""
+    """x of the linear problem in which the chosen points touch (and may pull)."""
 
     def law(trial: Floats) -> Law:
         return Law(np.where(chosen[:, None], trial, 0.0), chosen[:, None, None] * np.eye(system.k))

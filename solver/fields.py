@@ -63,7 +63,7 @@ def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Poly
     for gear in (0, 1):
         surface = flank_surface(run.shapes[gear], run.pair.face_width)
         for tooth in sorted({tooth.tooth for each in solved for tooth in each.teeth}):
-            parts.append(place(run, first, gear, tooth, surface))
+            parts.append(place(first, gear, tooth, surface))
             columns.append(_tooth_arrays(run, solved, gear, tooth))
     return joined(parts), {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
 

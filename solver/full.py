@@ -11,8 +11,9 @@ import scipy.sparse.linalg as spla
 
 from meshes.data import Floats
 from solver import newton
-from solver.equilibrium import ITERATIONS, LawOf
+from solver.equilibrium import ITERATIONS
 from solver.friction import Law, coulomb, starting_guess
+from solver.nitsche import LawOf
 from solver.problem import Position, Problem, Step, prepare
 
 
@@ -44,16 +45,13 @@ class FullContact:
 
     def residual(self, x: Floats) -> Floats:
         """(size,) [N, N·mm]."""
-        f = (self.op.weights[:, None] * self.state(x).traction).ravel()
+        f = self.op.forces(self.state(x).traction).ravel()
         bulk = self.K @ x[: self.K.shape[0]] + self.pushed.T @ f - self.load
         return np.concatenate([bulk, self.condensed.motion.T @ f - self.condensed.load])
 
     def tangent(self, x: Floats) -> sp.csc_matrix:
         """∂residual/∂x, sparse."""
-        d = self.op.d
-        D = self.op.weights[:, None, None] * self.state(x).derivative * self.op.trial_slope(d)[:, None, :]
-        n = len(D)
-        slope = sp.bsr_matrix((D, np.arange(n), np.arange(n + 1)), shape=(n * d, n * d)).tocsr()
+        slope = self.op.tangent(self.state(x))
         H = sp.csr_matrix(self.condensed.motion)
         left, right = sp.hstack([self.pushed, H]), sp.hstack([self.seen, H])
         return (sp.block_diag([self.K, sp.csr_matrix((H.shape[1], H.shape[1]))]) + left.T @ slope @ right).tocsc()
@@ -83,7 +81,7 @@ def full_equilibrium(position: Position, slip: Floats, start: Floats | None = No
     root = newton.solve(smooth, _glued(position) if start is None else start, "full system", ITERATIONS, 1e-11)
     contact = smooth
     if μ.any() and root.converged:
-        stuck = FullContact(position, lambda t: starting_guess(t, μ, np.zeros_like(slip)), slip)
+        stuck = FullContact(position, lambda t: starting_guess(t, μ, np.zeros((len(t), t.shape[1] - 1))), slip)
         contact = FullContact(position, lambda t: coulomb(t, μ), slip)
         guess = newton.solve(stuck, root.x, "full system, stuck", 1, 1e-11)
         root = newton.solve(contact, guess.x, "full system with friction", ITERATIONS, 1e-11)

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
 from meshes.parameters import GearPair
@@ -65,7 +64,7 @@ class GearContact:
 
     @cached_property
     def points(self) -> tuple[Floats, Floats]:
-        """ψ-weighted mean positions (n, d) of the pinion's flank and of the wheel's flank opposite, common frame."""
+        """Positions (n, d) of the pinion's nodes and of the wheel's flank opposite, in the common frame."""
         first, second = [], []
         for t in self.teeth:
             first.append(t.operator.jump1 @ self._placed_points(0, t.tooth))
@@ -91,21 +90,6 @@ class GearContact:
         z = self.bodies[0].z[self.node]
         return self.stand.pair.roll_distance(self.stand.angle, self.tooth, z)
 
-    @cached_property
-    def maps(self) -> tuple[tuple[Ints, sp.csr_matrix], tuple[Ints, sp.csr_matrix]]:
-        """For each gear the chain rows (m, 2) that matter and the map (n·d, m·d) from them to local jumps."""
-        return self._map(0), self._map(1)
-
-    def _map(self, gear: int) -> tuple[Ints, sp.csr_matrix]:
-        body, rows, blocks = self.bodies[gear], [], []
-        R = self.stand.rotation(gear, self.d)
-        for t in self.teeth:
-            local = t.operator.local_map(gear + 1, R)
-            nodes = np.unique((t.operator.jump1 if gear == 0 else t.operator.jump2).indices)
-            rows.append(body.rows(t.tooth, nodes))
-            blocks.append(local[:, (self.d * nodes[:, None] + np.arange(self.d)).ravel()])
-        return np.concatenate(rows), sp.block_diag(blocks, format="csr")
-
     def system(self, loaded: int, torque: float, normal_only: bool = False) -> CondensedSystem:
         """Condensed system with one free rotation: of gear `loaded`, under `torque` [N·mm; per mm of width in 2D].
 
@@ -113,29 +97,75 @@ class GearContact:
         """
         k = 1 if normal_only else self.d
         n = len(self.node) * k
-        A = np.zeros((n, n))
-        for body, (rows, E) in zip(self.bodies, self.maps):
-            E = E[:: self.d] if normal_only else E
-            A += E @ (E @ body.chain.block(rows)).T
+        A = sum(self._compliance(gear, k) for gear in (0, 1))
         motion = self.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
-        return CondensedSystem(self.operator, A, motion, np.zeros(n), np.array([torque]), lever)
+        return CondensedSystem(self.operator, np.asarray(A), motion, np.zeros(n), np.array([torque]), lever)
+
+    def rows(self, gear: int) -> tuple[Ints, list[slice]]:
+        """Rows (m, 2) of a gear's chain that the contact sees, and which of them belong to each tooth pair."""
+        nodes = [self._touched(t, gear) for t in self.teeth]
+        ends = np.cumsum([0] + [len(own) for own in nodes])
+        rows = np.concatenate([self.bodies[gear].rows(t.tooth, own) for t, own in zip(self.teeth, nodes)])
+        return rows, [slice(a, b) for a, b in zip(ends[:-1], ends[1:])]
+
+    @staticmethod
+    def _touched(t: ToothContact, gear: int) -> Ints:
+        return np.unique((t.operator.jump1 if gear == 0 else t.operator.jump2).indices)
+
+    def local_maps(self, gear: int, k: int) -> list[Floats]:
+        """For each tooth pair (n_t·k, m_t·d): a gear's displacements, in its frame, to local jumps."""
+        R, d = self.stand.rotation(gear, self.d), self.d
+        result = []
+        for t in self.teeth:
+            op = t.operator
+            jump = (op.jump1 if gear == 0 else -op.jump2)[:, self._touched(t, gear)].toarray()
+            axes = (op.frames @ R)[:, :k]
+            result.append(np.einsum("jm,jka->jkma", jump, axes).reshape(len(op.nodes) * k, jump.shape[1] * d))
+        return result
+
+    def _compliance(self, gear: int, k: int) -> Floats:
+        """A gear's part of the compliance of local jumps, (n·k, n·k)."""
+        rows, parts = self.rows(gear)
+        C = self.bodies[gear].chain.block(rows)
+        maps = self.local_maps(gear, k)
+        dofs = [slice(self.d * part.start, self.d * part.stop) for part in parts]
+        half = np.concatenate([E @ C[own] for E, own in zip(maps, dofs)])
+        return np.concatenate([half[:, own] @ E.T for E, own in zip(maps, dofs)], axis=1)
 
     @cached_property
     def at_edge(self) -> np.ndarray:
-        """(n,) bool: the node bears on a tip edge, the pinion's own or the wheel's. There the flank ends in a corner
-        and the pressure is singular, a matter of the mesh."""
+        """(q,) bool: points in the last row of facets before a tip edge, the pinion's own or the wheel's. Where these
+        carry load the flank ends in a corner and the pressure is singular, a matter of the mesh."""
         parts = []
         for t in self.teeth:
-            own = self.bodies[0].tip_zone[t.operator.nodes]
-            other = np.abs(t.operator.jump2) @ self.bodies[1].tip_zone.astype(float) > 1e-9
-            parts.append(own | other)
+            own = t.operator.shape @ self.bodies[0].tip_zone[t.operator.nodes].astype(float)
+            other = np.abs(t.operator.shape) @ (np.abs(t.operator.jump2) @ self.bodies[1].tip_zone)
+            parts.append((np.abs(own) > 1e-9) | (other > 0.05))
         return np.concatenate(parts)
 
+    @cached_property
+    def point_tooth(self) -> Ints:
+        """(q,) tooth pair of each point."""
+        return np.concatenate([np.full(len(t.operator.weights), t.tooth) for t in self.teeth])
+
+    @cached_property
+    def across(self) -> Floats:
+        """(q,) signed distance [mm of profile arc] of the points from the nominal contact line, which is the flank's
+        generator and perpendicular to the profile; positive towards the pinion's tip."""
+        pair, base = self.stand.pair, self.bodies[0].gear.base_radius
+        ρ_line = pair.pitch_point_roll_lengths[0] + self.ξ
+        arc = (self.bodies[0].roll_length[self.node] ** 2 - ρ_line**2) / (2.0 * base)
+        return np.asarray(self.operator.shape @ arc)
+
+    @cached_property
+    def distance(self) -> Floats:
+        """(q,) as `arc_distance`, at the points."""
+        return np.asarray(self.operator.hat @ arc_distance(self.bodies[0], self.stand, self.tooth, self.node))
+
     def reaches_rim(self, pressed: np.ndarray) -> bool:
-        """Whether a node in contact (n,) bool lies at the window's rim, where the pressure may have been cut off."""
-        distance = arc_distance(self.bodies[0], self.stand, self.tooth, self.node)
-        return bool(np.any(pressed & (distance > 0.85 * self.half_width)))
+        """Whether a point in contact (q,) bool lies at the window's rim, where the pressure may have been cut off."""
+        return bool(np.any(pressed & (self.distance > self.half_width)))
 
 
 def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) -> Floats:
@@ -178,9 +208,8 @@ def _tooth_operator(
     pairing = pair_surfaces(first, second, reach, reach, facets)
     if len(pairing.weight) == 0:
         return None
-    operator = contact_operator(pairing, first, second, pinion.traction.stabiliser)
-    keep = np.flatnonzero(near[operator.nodes])
-    return operator.restricted(keep) if len(keep) else None
+    frames = pinion.traction.frames @ stand.rotation(0, d, tooth).T
+    return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
 
 
 def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:

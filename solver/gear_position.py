@@ -13,7 +13,7 @@ from meshes.data import Floats, Ints
 from meshes.parameters import GearPair
 from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part
 from solver.gear_body import GearBody
-from solver.gear_contact import GearContact, arc_distance, gear_contact
+from solver.gear_contact import GearContact, gear_contact
 from solver.kinematics import Stand, nominal_slip
 from solver.newton import NotConverged
 
@@ -35,34 +35,56 @@ class Memory:
 
 
 @dataclass(frozen=True)
+class ContactPoints:
+    """The contact of a position at its q quadrature points on the pinion's flanks.
+
+    tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
+    contact line [mm]. weights [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative
+    velocity of pinion over wheel per radian of pinion rotation, local [mm/rad]. sticks, edge: (q,) bool; edge: in the
+    last row of facets before a tip edge.
+    """
+
+    tooth: Ints
+    z: Floats
+    ξ: Floats
+    across: Floats
+    weights: Floats
+    traction: Floats
+    rate: Floats
+    sticks: np.ndarray
+    edge: np.ndarray
+
+    @property
+    def pressure(self) -> Floats:
+        """λ (q,) [MPa]."""
+        return self.traction[:, 0]
+
+
+@dataclass(frozen=True)
 class PositionResult:
-    """A converged position at one friction coefficient; nodes are those of the pinion's flanks within the window.
+    """A converged position at one friction coefficient.
 
     stand: with the free rotation. torques: (pinion, wheel) moments of the contact forces about the axes [N·mm; per mm
-    of width in 2D]. tooth, node: (n,). ξ: (n,) roll distance of the node's slice [mm]. weights: (n,) [mm²; mm].
-    traction: (n, d) λ, τ in local frames [MPa]. rate: (n, d) relative velocity of pinion over wheel per radian of
-    pinion rotation, local [mm/rad]. sticks, edge: (n,) bool. iterations: Newton's. residual: relative force residual.
+    of width in 2D]. contact: at the quadrature points. Averages at the n nodes of the pinion's flanks within the
+    window, for pictures: tooth, node (n,), weights m (n,) [mm²; mm] and traction (n, d) λ, τ [MPa], Σ m t the whole
+    force. iterations: Newton's, all stages. residual: relative force residual.
     """
 
     stand: Stand
     friction: float
     torques: tuple[float, float]
+    contact: ContactPoints
     tooth: Ints
     node: Ints
-    ξ: Floats
     weights: Floats
     traction: Floats
-    rate: Floats
-    points: Floats
-    sticks: np.ndarray
-    edge: np.ndarray
     iterations: int
     residual: float
     seconds: float = 0.0
 
     @property
     def pressure(self) -> Floats:
-        """λ (n,) [MPa]."""
+        """Averaged λ (n,) [MPa]."""
         return self.traction[:, 0]
 
     @property
@@ -74,7 +96,9 @@ class PositionResult:
     @property
     def friction_loss(self) -> float:
         """Power lost to friction per rad/s of pinion speed [N·mm; per mm of width in 2D]."""
-        return float(np.sum(self.weights[:, None] * self.traction[:, 1:] * self.rate[:, 1 : self.traction.shape[1]]))
+        c = self.contact
+        k = c.traction.shape[1]
+        return float(np.sum(c.weights[:, None] * c.traction[:, 1:] * c.rate[:, 1:k]))
 
     @property
     def energy_imbalance(self) -> float:
@@ -123,10 +147,9 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
         if not contact.teeth:
             raise NotConverged(f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none")
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        near = arc_distance(model.bodies[0], stand, contact.tooth, contact.node) <= 0.5 * half_width
-        smooth = frictionless(system if normal_only else normal_part(system), near)
+        smooth = frictionless(system if normal_only else normal_part(system), contact.distance <= 0.5 * half_width)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
-        if contact.reaches_rim(smooth.force[:, 0] > 0.0):
+        if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
         elif abs(shift) <= RELOCATE:
             return SharedPosition(contact, system, smooth)
@@ -158,16 +181,22 @@ def solve_position(
         span = span if before is None else contact.stand.angle - before.stand.angle
         rate = relative_velocity(contact)
         slip = slipped(model, contact, memory, rate, ξ_before, span)
-        far = np.abs(contact.ξ) > NEAR_PITCH * model.pair.pinion.normal_module
-        size = np.linalg.norm(rate[:, 1:], axis=1, keepdims=True)
-        heading = np.where(far[:, None] & (size > 0.0), rate[:, 1:] / np.where(size > 0.0, size, 1.0), 0.0)
-        found = frictional(shared.system, friction, slip, heading, smooth)
+        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth)
     return position_result(model, contact, found, friction, smooth.iterations), found
 
 
 def relative_velocity(contact: GearContact) -> Floats:
     """(n, d) velocity of pinion over wheel per radian of pinion rotation, local frames."""
     return contact.spins[0] - contact.spins[1] / contact.stand.pair.ratio
+
+
+def known_heading(contact: GearContact, rate: Floats) -> Floats:
+    """(q, d−1) direction of slip where the slice is far enough from the pitch point to know it, else zero."""
+    shape = contact.operator.shape
+    v = shape @ rate[:, 1:]
+    size = np.linalg.norm(v, axis=1, keepdims=True)
+    far = np.abs(shape @ contact.ξ)[:, None] > NEAR_PITCH * contact.stand.pair.pinion.normal_module
+    return np.where(far & (size > 0.0), v / np.where(size > 0.0, size, 1.0), 0.0)
 
 
 def slice_roll(contact: GearContact, stand: Stand) -> Floats:
@@ -205,19 +234,24 @@ def remembered_jump(contact: GearContact, before: Memory) -> Floats:
 def remembered(model: GearModel, shared: SharedPosition, found: Equilibrium) -> Memory:
     """The memory of a converged state: displacement of all flank nodes of all teeth."""
     contact, d = shared.contact, shared.contact.d
-    force = np.zeros((len(contact.node), d))
-    force[:, : found.force.shape[1]] = found.force
+    k = found.force.shape[1]
+    ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
+    forces = np.split(found.force, ends)
     fields = []
-    for body, (rows, E) in zip(model.bodies, contact.maps):
+    for gear, body in enumerate(model.bodies):
         n = len(body.flank.points)
         everywhere = np.concatenate([body.rows(t, np.arange(n)) for t in model.teeth])
-        u = body.chain.apply(rows, -(E.T @ force.ravel()).reshape(-1, d), everywhere)
+        pushed = [-(E.T @ f.ravel()).reshape(-1, d) for E, f in zip(contact.local_maps(gear, k), forces)]
+        u = body.chain.apply(contact.rows(gear)[0], np.concatenate(pushed), everywhere)
         fields.append(u.reshape(len(model.teeth), n, d))
     place = np.searchsorted(model.teeth, contact.tooth)
-    R = contact.stand.rotation(0, d)
-    fields[0][place, contact.node] += contact.operator.flux(force) @ R
+    fields[0][place, contact.node] += contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(0, d)
     stand = turned(contact.stand, model.load.on, float(found.motion[0]))
     return Memory(stand, model.teeth, (fields[0], fields[1]))
+
+
+def _with_all_components(values: Floats, d: int) -> Floats:
+    return np.hstack([values, np.zeros((len(values), d - values.shape[1]))])
 
 
 def position_result(
@@ -225,24 +259,36 @@ def position_result(
 ) -> PositionResult:
     """Torques, tractions and flags of a converged state."""
     k = found.force.shape[1]
-    op = contact.operator
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
-    traction = found.force / op.weights[:, None]
-    bound = friction * traction[:, 0]
-    size = np.linalg.norm(traction[:, 1:], axis=1) if k > 1 else np.zeros(len(bound))
+    weights, traction = contact.operator.averaged(found.traction)
     return PositionResult(
         stand=turned(contact.stand, model.load.on, float(found.motion[0])),
         friction=friction,
         torques=(torques[0], torques[1]),
+        contact=_contact_points(contact, found.traction, friction),
         tooth=contact.tooth,
         node=contact.node,
-        ξ=contact.ξ,
-        weights=op.weights,
+        weights=weights,
         traction=traction,
-        rate=relative_velocity(contact),
-        points=contact.points[0],
-        sticks=(bound > 0.0) & (size < bound * (1.0 - 1e-9)),
-        edge=contact.at_edge,
         iterations=found.iterations + (extra_iterations if friction > 0.0 else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
+    )
+
+
+def _contact_points(contact: GearContact, traction: Floats, friction: float) -> ContactPoints:
+    """What is kept of the points: those under pressure."""
+    pressed = np.flatnonzero(traction[:, 0] > 0.0)
+    shape, t = contact.operator.shape[pressed], traction[pressed]
+    bound = friction * t[:, 0]
+    size = np.linalg.norm(t[:, 1:], axis=1)
+    return ContactPoints(
+        tooth=contact.point_tooth[pressed],
+        z=shape @ contact.bodies[0].z[contact.node],
+        ξ=shape @ contact.ξ,
+        across=contact.across[pressed],
+        weights=contact.operator.weights[pressed],
+        traction=t,
+        rate=shape @ relative_velocity(contact),
+        sticks=size < bound * (1.0 - 1e-9),
+        edge=contact.at_edge[pressed],
     )

@@ -11,16 +11,15 @@ from solver.gear_body import GearBody
 from solver.gear_position import PositionResult
 from solver.material import Material
 
-FEWEST = 3  # nodes under pressure that a fit of a half-ellipse needs
+FEWEST = 5  # points under pressure that a fit of a half-ellipse needs
 
 
 @dataclass(frozen=True)
 class Slices:
-    """The contact of a position cut at the flank's node rows of equal height; one entry per tooth pair and row that
-    carries load.
+    """The contact of a position cut into the layers of the mesh along z; one entry per tooth pair and layer with load.
 
-    tooth, z [mm], ξ [mm], width (of the slice along z) [mm; 1 in 2D], line_load [N/mm of contact line], peak: fitted
-    pressure [MPa], largest: of the nodes [MPa], half_width: fitted, of the profile arc [mm], hertz: p0 for the slice's
+    tooth, z (middle) [mm], ξ [mm], width (along z) [mm; 1 in 2D], line_load [N/mm of contact line], peak: fitted
+    pressure [MPa], largest: of the points [MPa], half_width: fitted, across the line [mm], hertz: p0 for the slice's
     own line load and exact curvatures [MPa]; edge: bears on a tip edge, where peak is NaN.
     """
 
@@ -50,56 +49,49 @@ class ToothSummary:
 
 def slices(result: PositionResult, pinion: GearBody, materials: tuple[Material, Material]) -> Slices:
     """Cuts a position's contact into slices of constant z."""
-    z = np.round(pinion.z[result.node], 9)
-    widths = slice_widths(pinion)
-    arc = pinion.roll_length[result.node] ** 2 / (2.0 * pinion.gear.base_radius)
-    keys = sorted({(int(t), float(h)) for t, h, p in zip(result.tooth, z, result.pressure) if p > 0.0})
-    rows = [_slice(result, (result.tooth == t) & (z == h), arc, widths[h], t, h, pinion, materials) for t, h in keys]
-    columns = list(zip(*rows)) if rows else [()] * 10
-    return Slices(*(np.array(c) for c in columns))
-
-
-def slice_widths(pinion: GearBody) -> dict[float, float]:
-    """Height z -> extent [mm] along z that the node row stands for (1 in 2D: loads are per mm there)."""
-    heights = np.unique(np.round(pinion.z, 9))
-    if len(heights) == 1:
-        return {float(heights[0]): 1.0}
-    edges = np.concatenate([[heights[0]], 0.5 * (heights[1:] + heights[:-1]), [heights[-1]]])
-    return dict(zip(heights.tolist(), np.diff(edges).tolist()))
-
-
-def _slice(
-    result: PositionResult, here: np.ndarray, arc: Floats, width: float, tooth: int, z: float, pinion: GearBody,
-    materials: tuple[Material, Material],
-) -> tuple[float, ...]:  # fmt: skip
-    pair = result.stand.pair
-    p, s, m = result.pressure[here], arc[here], result.weights[here]
-    cos_b = np.cos(pair.pinion.base_helix_angle)
-    load = float(np.sum(p * m)) / (width / cos_b)
-    ξ = float(result.ξ[here][0])
-    edge = bool(np.any(result.edge[here] & (p > 0.0)))
-    ρ = float(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
+    edges = layer_edges(pinion)
+    c = result.contact
+    layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, len(edges) - 2)
     modulus = 1.0 / sum(1.0 / material.plane_modulus for material in materials)
-    peak, half = (np.nan, np.nan) if edge else fitted_peak(s, p)
-    hertz = float(np.sqrt(load * modulus / (np.pi * ρ)))
-    return tooth, z, ξ, width, load, peak, float(p.max()), half, hertz, edge
+    keys = np.unique(np.column_stack([c.tooth, layer]), axis=0)
+    rows = [_slice(result, (c.tooth == t) & (layer == k), edges[k : k + 2], modulus) for t, k in keys]
+    columns = list(zip(*rows)) if rows else [()] * 9
+    return Slices(keys[:, 0], *(np.array(column) for column in columns))
 
 
-def fitted_peak(s: Floats, p: Floats) -> tuple[float, float]:
-    """Peak and half-width of the half-ellipse p² = p0²(1 − (s − s0)²/b²) that fits nodal pressures best.
+def layer_edges(pinion: GearBody) -> Floats:
+    """Heights (l + 1,) of the element layers' ends [mm]; in 2D one layer of unit width (loads are per mm there)."""
+    if pinion.d == 2:
+        return np.array([-0.5, 0.5])
+    return np.unique(np.round(pinion.z, 9))[:: pinion.mesh.order]
 
-    The fit takes the nodes above a third of the largest pressure (the contact's ends are a matter of the node spacing).
-    Where fewer than three such nodes, or no ellipse, are found: the largest pressure and NaN.
+
+def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: float) -> tuple[float | bool, ...]:
+    pair, c = result.stand.pair, result.contact
+    p, w = c.pressure[here], c.weights[here]
+    width = float(ends[1] - ends[0])
+    load = float(np.sum(p * w)) / (width / np.cos(pair.pinion.base_helix_angle))
+    ξ = float(np.average(c.ξ[here], weights=p * np.abs(w)))
+    edge = bool(np.any(c.edge[here]))
+    ρ = float(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
+    peak, half = (np.nan, np.nan) if edge else fitted_peak(c.across[here], p, w, load)
+    hertz = float(np.sqrt(max(load, 0.0) * modulus / (np.pi * ρ)))
+    return float(ends.mean()), ξ, width, load, peak, float(p.max()), half, hertz, edge
+
+
+def fitted_peak(s: Floats, p: Floats, w: Floats, load: float) -> tuple[float, float]:
+    """Peak [MPa] and half-width [mm] of the half-ellipse with the line load F [N/mm] and the second moment of pressures p
+    at points s across the line, with quadrature weights w: b = 2√(M_2/F), p0 = 2F/πb.
+
+    Integrals of the contact pressure converge faster than its values, which scatter where the patch just enters a cell.
+    Where fewer than five points are pressed: the largest pressure and NaN.
     """
-    high = p > p.max() / 3.0
-    if high.sum() < FEWEST:
+    if len(p) < FEWEST:
         return float(p.max()), float("nan")
-    centre = s[high].mean()
-    c2, c1, c0 = np.polyfit(s[high] - centre, p[high] ** 2, 2)
-    if c2 >= 0.0:
-        return float(p.max()), float("nan")
-    top = c0 - c1**2 / (4.0 * c2)
-    return float(np.sqrt(top)), float(np.sqrt(-top / c2))
+    force = p @ w
+    centre = (p * s) @ w / force
+    half = 2.0 * np.sqrt((p * (s - centre) ** 2) @ w / force)
+    return float(2.0 * load / (np.pi * half)), float(half)
 
 
 def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
@@ -108,10 +100,10 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
     summaries = []
     for tooth in np.unique(cut.tooth):
         here = cut.tooth == tooth
-        nodes = result.tooth == tooth
         peak = float(np.nanmax(cut.peak[here], initial=0.0))
         edge = float(cut.largest[here & cut.edge].max(initial=0.0))
-        force = float(np.sum(result.pressure[nodes] * result.weights[nodes]))
+        own = result.contact.tooth == tooth
+        force = float(np.sum(result.contact.pressure[own] * result.contact.weights[own]))
         summaries.append(ToothSummary(int(tooth), force, peak, edge, float(cut.width[here].sum() / cos_b)))
     return summaries
 

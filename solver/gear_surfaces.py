@@ -11,8 +11,8 @@ import numpy as np
 
 from meshes.data import Floats, Ints
 from solver.archive import GearShape
+from solver.frames import tangent_frames
 from solver.gear_position import PositionResult
-from solver.nitsche import tangent_frames
 from solver.run_data import RunData
 
 CUTS = ("cut_low", "cut_high")
@@ -40,12 +40,15 @@ class Polygons:
 
 
 def joined(parts: list[Polygons]) -> Polygons:
-    """Several surfaces as one; they have the same kinds of faces."""
+    """Several surfaces as one."""
     starts = np.cumsum([0] + [len(part.points) for part in parts[:-1]])
-    faces = tuple(
-        np.concatenate([part.faces[k] + start for part, start in zip(parts, starts)]) for k in range(len(parts[0].faces))
+    faces: dict[int, list[Ints]] = {}
+    for part, start in zip(parts, starts):
+        for face in part.faces:
+            faces.setdefault(face.shape[1], []).append(face + start)
+    return Polygons(
+        np.concatenate([part.points for part in parts]), tuple(np.concatenate(same) for same in faces.values())
     )
-    return Polygons(np.concatenate([part.points for part in parts]), faces)
 
 
 def compact(points: Floats, faces: tuple[Ints, ...]) -> Polygons:
@@ -123,7 +126,7 @@ def _loop(segments: Ints) -> Ints:
     return np.array(loop)
 
 
-def place(run: RunData, result: PositionResult, gear: int, tooth: int, surface: Polygons) -> Polygons:
+def place(result: PositionResult, gear: int, tooth: int, surface: Polygons) -> Polygons:
     """Tooth 0's surface of gear 0 or 1 where tooth pair `tooth` has it at a position."""
     return surface.moved(result.stand.rotation(gear, 3, tooth), result.stand.centre(gear, 3))
 
@@ -131,10 +134,13 @@ def place(run: RunData, result: PositionResult, gear: int, tooth: int, surface: 
 def placed_teeth(run: RunData, result: PositionResult, gear: int, teeth: list[int], bare: set[int]) -> Polygons | None:
     """Sectors of a gear at a position as one surface; those in `bare` without their loaded flanks. None: no teeth."""
     kinds = [
-        (sector_surface(run.shapes[gear], run.pair.face_width, with_flank), [t for t in teeth if (t in bare) != with_flank])
+        (
+            sector_surface(run.shapes[gear], run.pair.face_width, with_flank),
+            [t for t in teeth if (t in bare) != with_flank],
+        )
         for with_flank in (True, False)
     ]
-    placed = [place(run, result, gear, tooth, surface) for surface, members in kinds for tooth in members]
+    placed = [place(result, gear, tooth, surface) for surface, members in kinds for tooth in members]
     return joined(placed) if placed else None
 
 

@@ -63,7 +63,10 @@ class SparseCholesky:
     """
 
     def __init__(self, upper: sp.spmatrix, settings: FactorSettings = STANDARD) -> None:
-        self._factor = _factorise(symmetric_matrix(upper), 0, settings)
+        # MUMPS points into the matrix, and reads it in iterative refinement
+        matrix = symmetric_matrix(upper)
+        self._factor = _factorise(matrix, 0, settings)
+        weakref.finalize(self, _destroy, self._factor, matrix).atexit = False
 
     def solve(self, right: Floats) -> Floats:
         """X (n × c) with A X = `right` (n × c)."""
@@ -72,6 +75,7 @@ class SparseCholesky:
         b = PETSc.Mat().createDense(columns.shape, array=columns, comm=PETSc.COMM_SELF)
         x = PETSc.Mat().createDense(columns.shape, array=solution, comm=PETSc.COMM_SELF)
         self._factor.matSolve(b, x)
+        _destroy(b, x)
         return solution
 
 
@@ -83,12 +87,14 @@ def schur_complement(upper: sp.spmatrix, size: int, settings: FactorSettings = S
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
-    factor = _factorise(symmetric_matrix(upper), size, settings)
+    matrix = symmetric_matrix(upper)
+    factor = _factorise(matrix, size, settings)
     schur, status, data = ctypes.c_void_p(), ctypes.c_int(), ctypes.POINTER(ctypes.c_double)()
     _call("MatFactorGetSchurComplement", _handle(factor), ctypes.byref(schur), ctypes.byref(status))
     # the dense matrix outlives the factor, and with it all that MUMPS holds
     _call("PetscObjectReference", schur)
     _call("MatDenseGetArray", schur, ctypes.byref(data))
+    _destroy(factor, matrix)
     complement = np.ctypeslib.as_array(data, (size, size))
     weakref.finalize(complement, _release, schur, data).atexit = False
     return complement
@@ -112,6 +118,13 @@ def fill_symmetric(matrix: Floats, tile: int = 512) -> None:
         diagonal = matrix[rows, rows]
         diagonal[:] = np.triu(diagonal) + np.triu(diagonal, 1).T
         matrix[start + tile :, rows] = matrix[rows, start + tile :].T
+
+
+def return_free_memory() -> None:
+    """Give freed memory back to the system; glibc holds on to gigabytes of it otherwise (elsewhere: nothing)."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
 
 
 def library() -> ctypes.CDLL:
@@ -138,6 +151,12 @@ def _handle(obj: PETSc.Object) -> ctypes.c_void_p:
     return ctypes.c_void_p(obj.handle)
 
 
+def _destroy(*objects: PETSc.Object) -> None:
+    """Free at once: petsc4py itself only delays what goes out of scope (PetscObjectDelayedDestroy), gigabytes here."""
+    for obj in objects:
+        obj.destroy()
+
+
 def _release(schur: ctypes.c_void_p, data: ctypes._Pointer[ctypes.c_double]) -> None:
     if not PETSc.Sys.isFinalized():
         _call("MatDenseRestoreArray", schur, ctypes.byref(data))
@@ -145,11 +164,17 @@ def _release(schur: ctypes.c_void_p, data: ctypes._Pointer[ctypes.c_double]) -> 
 
 
 def _factorise(matrix: PETSc.Mat, schur_size: int, settings: FactorSettings) -> PETSc.Mat:
+    size = matrix.getSize()[0]
     for workspace in settings.workspace:
         factor = _attempt(matrix, schur_size, settings, workspace)
-        if factor.getMumpsInfog(1) not in _WORKSPACE_TOO_SMALL:
+        if factor.getMumpsInfog(1) not in _WORKSPACE_TOO_SMALL or workspace == settings.workspace[-1]:
             break
-    _check(factor, matrix.getSize()[0], schur_size)
+        _destroy(factor)
+    try:
+        _check(factor, size, schur_size)
+    except (NotPositiveDefinite, OutOfMemory):
+        _destroy(factor, matrix)
+        raise
     return factor
 
 
@@ -167,7 +192,9 @@ def _attempt(matrix: PETSc.Mat, schur_size: int, settings: FactorSettings, works
         first = matrix.getSize()[0] - schur_size
         last = PETSc.IS().createStride(schur_size, first, 1, comm=PETSc.COMM_SELF)
         _call("MatFactorSetSchurIS", _handle(factor), _handle(last))
+        _destroy(last)
     pc.setUp()
+    _destroy(pc)
     return factor
 
 

@@ -1,46 +1,56 @@
 """The contact operator of one pair of surfaces at one position.
 
-At node j of surface 1, with hat function ψ_j and m_j = ∫ψ_j over the part of surface 1 that faces surface 2:
+The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes, e_1 = u_1 − F the extended trace
+of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar: its integrals run over
+segments, so that non-matching meshes pass the patch test). Contact is decided at the quadrature points x_q:
 
-    J_j = (1/m_j) ∫ψ_j (e_1 − u_2∘π),  e_1 = u_1 − F the extended trace of body 1     (weighted jump)
-    G_j = (1/m_j) ∫ψ_j g n·n_j                                                        (weighted gap)
-    λ_j = [γ_j(n_j·J_j − G_j)]_+ ,  τ_j = P_B(μλ_j)(γ_t,j (J_j + s_j)_t)
+    p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) Σ_k N_k(x) (J_k + s_k)_t
+    λ = [p]_+ ,  τ = P_B(μλ)(q)                                   (local components, frames at the nodes)
+    f_k = ∫ N_k (λ, τ) dΓ
 
-and the nodal contact force f_j = m_j(λ_j n_j + τ_j) presses −f on body 1 and +f on body 2 through the same weights.
-This is the one-sided Nitsche method (Chouly, Fabre, Hild, Mlika, Pousin, Renard 2017) with its flux recovered at the
-nodes (solver/traction.py) and its nonlinearity evaluated there.
+f presses −f on body 1 and Πᵀf on body 2. This is the one-sided Nitsche method (Chouly, Fabre, Hild, Mlika, Pousin,
+Renard 2017) with its flux recovered at the nodes (solver/traction.py).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints
-from solver.lagrange import tabulate
+from solver.friction import Law
+from solver.lagrange import quadrature, tabulate
 from solver.search import Pairing
 from solver.surface import Surface, hats
 
-NEGLIGIBLE = 1e-9  # share of a node's own weight below which its overlap with the other surface is nothing
+LawOf = Callable[[Floats], Law]
+ROUNDING = 1e-15  # entries of the projection below this share of its largest are rounding
 
 
 @dataclass(frozen=True)
 class ContactOperator:
-    """Weighted jump and gap at the n nodes of surface 1 that face surface 2; all in the common frame.
+    """Jump at n nodes of surface 1 and contact at q points on it; in the common frame.
 
-    nodes: (n,) indices into surface 1. weights: (n,) m_j. gap: (n,) G_j [mm].
-    frames: (n, d, d) rows n, t1[, t2]. jump1: (n, n1), jump2: (n, n2) the weights of J = jump1·e_1 − jump2·u_2.
-    stabiliser: (n, 2) γ, γ_t.
+    nodes: (n,) indices into surface 1. frames: (n, d, d) rows n, t1[, t2]. jump1: (n, n1), jump2: (n, n2) the weights
+    of J = jump1·e_1 − jump2·u_2. mass: (n, n) ∫N_k N_l. shape: (q, n) shape functions at the points; hat: (q, n) piecewise linear ones.
+    points: (q, d) positions. weights: (q,) [mm²; mm in 2D]. gap: (q,) [mm]. stabiliser: (q, 2) γ, γ_t [MPa/mm].
     """
 
     nodes: Ints
-    weights: Floats
-    gap: Floats
     frames: Floats
     jump1: sp.csr_matrix
     jump2: sp.csr_matrix
+    mass: sp.csr_matrix
+    shape: sp.csr_matrix
+    hat: sp.csr_matrix
+    points: Floats
+    weights: Floats
+    gap: Floats
     stabiliser: Floats
 
     @property
@@ -49,29 +59,52 @@ class ContactOperator:
         return self.frames.shape[1]
 
     def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
-        """Trial tractions (n, d') from local jumps (n, d'), d' = 1 (normal only) or d; slip (n, d−1) is added to J_t."""
-        p = self.stabiliser[:, :1] * (jump[:, :1] - self.gap[:, None])
-        if jump.shape[1] == 1:
-            return p
-        tangential = jump[:, 1:] if slip is None else jump[:, 1:] + slip
-        return np.hstack([p, self.stabiliser[:, 1:] * tangential])
+        """Trial tractions (q, k) from local jumps (n, k), k = 1 (normal only) or d; slip (n, d−1) is added to J_t."""
+        k = jump.shape[1]
+        if slip is not None and k > 1:
+            jump = jump + np.hstack([np.zeros((len(jump), 1)), slip])
+        at_points = self.shape @ jump
+        at_points[:, 0] -= self.gap
+        return at_points * self.slope(k)
 
-    def trial_slope(self, d: int) -> Floats:
-        """∂trial/∂J of each local component, (n, d)."""
-        return np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (d - 1))
+    def slope(self, k: int) -> Floats:
+        """∂trial/∂J of each local component at the points, (q, k)."""
+        return np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (k - 1))
 
-    def flux(self, force: Floats) -> Floats:
-        """F = Γ⁻¹S (n, d) [mm] in the common frame at a converged state, where the recovered traction S is −(λn + τ);
-        from local nodal forces (n, d). The true trace is u_1 = e_1 + F."""
-        compliance = 1.0 / (self.weights[:, None] * self.trial_slope(self.d))
-        return -np.einsum("jia,ji->ja", self.frames, force * compliance)
+    def forces(self, traction: Floats) -> Floats:
+        """Nodal forces f (n, k) [N] from tractions at the points (q, k)."""
+        return np.asarray(self.shape.T @ (self.weights[:, None] * traction))
 
-    def restricted(self, keep: Ints) -> ContactOperator:
-        """The operator on some of its nodes only."""
-        return ContactOperator(
-            self.nodes[keep], self.weights[keep], self.gap[keep], self.frames[keep],
-            self.jump1[keep], self.jump2[keep], self.stabiliser[keep],
-        )  # fmt: skip
+    def tangent(self, law: Law) -> sp.csr_matrix:
+        """∂f/∂J (n·k, n·k), sparse."""
+        active = np.flatnonzero(law.derivative.any(axis=(1, 2)))
+        N, k, n = self.shape[active], law.traction.shape[1], len(self.nodes)
+        D = self.weights[active, None, None] * law.derivative[active] * self.slope(k)[active][:, None, :]
+        if k == 1:
+            return (N.T @ sp.diags(D[:, 0, 0]) @ N).tocsr()
+        blocks = [[N.T @ sp.diags(D[:, a, b]) @ N for b in range(k)] for a in range(k)]
+        order = np.arange(n * k).reshape(k, n).T.ravel()
+        return sp.bmat(blocks, format="csr")[order][:, order]
+
+    def averaged(self, traction: Floats) -> tuple[Floats, Floats]:
+        """Weights m_j (n,) and tractions (n, k) averaged with the hat functions: Σ m_j t_j is the whole force."""
+        m = self.hat.T @ self.weights
+        mean = self.hat.T @ (self.weights[:, None] * traction)
+        return m, mean / np.where(m > 0.0, m, 1.0)[:, None]
+
+    def flux(self, traction: Floats) -> Floats:
+        """F = Γ⁻¹S (n, d) [mm] at the nodes in the common frame at a converged state, where the recovered traction S is
+        −(λn + τ); from tractions at the points (q, d). The true trace is u_1 = e_1 + F.
+
+        It is projected, not averaged: doing so again in the next step then changes nothing, and no traction is smeared.
+        """
+        local = spla.splu(self.mass.tocsc()).solve(self.forces(traction / self.slope(self.d)))
+        return -np.einsum("jia,ji->ja", self.frames, local)
+
+    def common(self, traction: Floats) -> Floats:
+        """Tractions (q, d) in the common frame from local ones (q, k)."""
+        axes = [self.shape @ self.frames[:, i] for i in range(traction.shape[1])]
+        return np.asarray(sum(traction[:, i : i + 1] * axis for i, axis in enumerate(axes)))
 
     def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
         """(n·d, n_s·d): displacements of surface `side` (1 or 2), in its body's frame, to local jumps.
@@ -90,64 +123,86 @@ def frames_times(frames: Floats, weights: sp.csr_matrix) -> sp.csr_matrix:
     return sp.bsr_matrix((blocks, weights.indices, weights.indptr), shape=shape).tocsr()
 
 
-def contact_operator(pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats) -> ContactOperator:
-    """The weighted jump and gap from the quadrature points of a search; surfaces in the common frame."""
-    ψ = hats(first.shape, first.order, pairing.xi1)
+def contact_operator(
+    pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats, facets: Ints | None = None
+) -> ContactOperator:
+    """The operator from the quadrature points of a search; surfaces in the common frame.
+
+    stabiliser: (n1, 2) γ, γ_t and frames: (n1, d, d) at the nodes of surface 1. facets: of surface 1, whose space holds
+    the jump; by default those that have a point.
+    """
+    facets = np.unique(pairing.facet1) if facets is None else facets
+    nodes = np.unique(first.facets[facets])
+    place = np.full(len(first.points), -1)
+    place[nodes] = np.arange(len(nodes))
     N1 = tabulate(first.shape, first.order, pairing.xi1)[0]
     N2 = tabulate(second.shape, second.order, pairing.xi2)[0]
-    nodes1, nodes2 = first.facets[pairing.facet1], second.facets[pairing.facet2]
-    wψ = pairing.weight[:, None] * ψ
-    n1, n2 = len(first.points), len(second.points)
-    m = np.bincount(nodes1.ravel(), wψ.ravel(), n1)
-    keep = np.flatnonzero(m > NEGLIGIBLE * first.weights())
-    average = sp.diags(1.0 / m[keep])
-    x1 = np.einsum("qk,qka->qa", N1, first.points[nodes1])
-    x2 = np.einsum("qk,qka->qa", N2, second.points[nodes2])
-    opening = np.zeros((n1, first.points.shape[1]))
-    np.add.at(opening, nodes1, wψ[:, :, None] * (x2 - x1)[:, None, :])
-    normals = first.normals[keep]
+    ψ = hats(first.shape, first.order, pairing.xi1)
+    own, other = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
+    shape, hat = _rows(own, N1, len(nodes)), _rows(own, ψ, len(nodes))
+    mass = _mass(first, facets, nodes)
     return ContactOperator(
-        keep,
-        m[keep],
-        np.einsum("ja,ja->j", normals, opening[keep] / m[keep, None]),
-        tangent_frames(normals),
-        (average @ _weighted(nodes1, wψ, nodes1, N1, (n1, n1))[keep]).tocsr(),
-        (average @ _weighted(nodes1, wψ, nodes2, N2, (n1, n2))[keep]).tocsr(),
-        stabiliser[keep],
+        nodes,
+        frames[nodes],
+        sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points))),
+        _projection(pairing, first, second, nodes, mass, shape, _rows(other, N2, len(second.points))),
+        mass,
+        shape,
+        hat,
+        np.einsum("qk,qka->qa", N1, first.points[first.facets[pairing.facet1]]),
+        pairing.weight,
+        pairing.gap,
+        hat @ stabiliser[nodes],
     )
 
 
-def _weighted(rows: Ints, wψ: Floats, columns: Ints, N: Floats, shape: tuple[int, int]) -> sp.csr_matrix:
-    i = np.broadcast_to(rows[:, :, None], (*rows.shape, N.shape[1]))
-    j = np.broadcast_to(columns[:, None, :], i.shape)
-    values = wψ[:, :, None] * N[:, None, :]
-    return sp.csr_matrix((values.ravel(), (i.ravel(), j.ravel())), shape)
+def _projection(
+    pairing: Pairing, first: Surface, second: Surface, nodes: Ints, M: sp.csr_matrix, N1: sp.csr_matrix, N2: sp.csr_matrix
+) -> sp.csr_matrix:
+    """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is continued from its nearest nodes, so
+    that Π is defined there too and keeps constants."""
+    w = sp.diags(pairing.weight)
+    covered = N1.T @ w @ N1
+    nearest = cKDTree(second.points).query(first.points[nodes])[1]
+    P = sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nearest)), (len(nodes), len(second.points)))
+    right = (N1.T @ w @ N2 + (M - covered) @ P).tocsc()
+    used = np.flatnonzero(np.diff(right.indptr))
+    dense = spla.splu(M.tocsc()).solve(right[:, used].toarray())
+    dense[np.abs(dense) < ROUNDING * np.abs(dense).max()] = 0.0
+    block = sp.csr_matrix(dense)
+    return sp.csr_matrix((block.data, used[block.indices], block.indptr), (len(nodes), len(second.points)))
 
 
-def tangent_frames(normals: Floats) -> Floats:
-    """Orthonormal frames (n, d, d) with rows n, t1[, t2]; t1 lies in the xy plane (a gear's transverse plane)."""
-    n = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-    if n.shape[1] == 2:
-        return np.stack([n, np.stack([-n[:, 1], n[:, 0]], axis=1)], axis=1)
-    flat = np.hypot(n[:, 0], n[:, 1])
-    along_z = flat < 1e-8
-    t1 = np.stack([-n[:, 1], n[:, 0], np.zeros(len(n))], axis=1) / np.where(along_z, 1.0, flat)[:, None]
-    t1[along_z] = (1.0, 0.0, 0.0)
-    t1 -= np.einsum("ja,ja->j", t1, n)[:, None] * n
-    t1 /= np.linalg.norm(t1, axis=1, keepdims=True)
-    return np.stack([n, t1, np.cross(n, t1)], axis=1)
+def _mass(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
+    """∫N_k N_l over some facets, (n, n) for their nodes."""
+    xi, w = quadrature(surface.shape, 2 * surface.order + 2)
+    N, dN = tabulate(surface.shape, surface.order, xi)
+    tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)
+    area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
+    values = np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
+    local = np.searchsorted(nodes, surface.facets[facets])
+    i, j = np.broadcast_arrays(local[:, :, None], local[:, None, :])
+    return sp.csr_matrix((values.ravel(), (i.ravel(), j.ravel())), (len(nodes), len(nodes)))
+
+
+def _rows(columns: Ints, values: Floats, count: int) -> sp.csr_matrix:
+    """One row a point: values (q, k) in columns (q, k)."""
+    q, k = columns.shape
+    return sp.csr_matrix((values.ravel(), columns.ravel(), k * np.arange(q + 1)), (q, count))
 
 
 def stacked(operators: list[ContactOperator]) -> ContactOperator:
-    """Several contacts as one list of nodes (their jumps stay block-diagonal)."""
+    """Several contacts as one list of nodes and points (their jumps stay block-diagonal)."""
     if len(operators) == 1:
         return operators[0]
+
+    def rows(name: str) -> Floats:
+        return np.concatenate([getattr(op, name) for op in operators])
+
+    def diagonal(name: str) -> sp.csr_matrix:
+        return sp.block_diag([getattr(op, name) for op in operators], format="csr")
+
     return ContactOperator(
-        np.concatenate([op.nodes for op in operators]),
-        np.concatenate([op.weights for op in operators]),
-        np.concatenate([op.gap for op in operators]),
-        np.concatenate([op.frames for op in operators]),
-        sp.block_diag([op.jump1 for op in operators], format="csr"),
-        sp.block_diag([op.jump2 for op in operators], format="csr"),
-        np.concatenate([op.stabiliser for op in operators]),
-    )
+        rows("nodes"), rows("frames"), diagonal("jump1"), diagonal("jump2"), diagonal("mass"), diagonal("shape"), diagonal("hat"),
+        rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The gear pair in space, rendered off-screen by pyvista (beside `fields`, the only file that knows it)."""
+"""The gear pair in space, rendered off-screen by pyvista; only this file and `fields`, which writes files, know it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,10 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from meshes.flank import contact_points
+from solver.fields import poly_data
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_position import PositionResult
-from solver.gear_surfaces import (
-    Polygons,
-    all_teeth,
-    place,
-    placed_teeth,
-)
+from solver.gear_surfaces import all_teeth, place, placed_teeth
 from solver.plots_style import PINION_BODY, PRESSURE_MAP, WHEEL_BODY
 from solver.run_data import RunData
 
@@ -37,12 +33,6 @@ class Camera:
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
 
-def poly_data(surface: Polygons) -> Any:
-    """A pyvista surface."""
-    faces = [np.column_stack([np.full(len(face), face.shape[1]), face]).ravel() for face in surface.faces]
-    return pv.PolyData(np.ascontiguousarray(surface.points), np.concatenate(faces))
-
-
 def contact_teeth(result: PositionResult) -> list[int]:
     """The tooth pairs under pressure, ascending."""
     return sorted(set(result.tooth[result.pressure > 0.0].tolist()))
@@ -58,7 +48,7 @@ def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[i
     _add_gear(scene, run, result, 0, all_teeth(run, 0), opacity=1.0)
     _add_flanks(scene, run, result, 0, top)
     _add_gear(scene, run, result, 1, all_teeth(run, 1), opacity=0.22)
-    return _picture(scene, Camera((0.72 * pitch, 0.0, 0.0), (0.35, 1.0, 0.6), 0.64 * pinion.tip_diameter))
+    return _picture(scene, Camera((0.66 * pitch, 0.0, 0.0), (0.35, 1.0, 0.6), 0.6 * pinion.tip_diameter))
 
 
 def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, size: tuple[int, int]) -> Image:
@@ -69,7 +59,7 @@ def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, si
     middle = contact_points(run.pair, 0.0, 0.0)
     width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
     along = (0.75, 1.0, 0.3) if gear == 0 else (-0.75, -1.0, 0.3)
-    return _picture(scene, Camera(tuple(middle.tolist()), along, 0.75 * width))
+    return _picture(scene, Camera(tuple(middle.tolist()), along, 0.5 * width))
 
 
 def _plotter(size: tuple[int, int]) -> Any:
@@ -80,9 +70,7 @@ def _plotter(size: tuple[int, int]) -> Any:
     return scene
 
 
-def _add_gear(
-    scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float
-) -> None:
+def _add_gear(scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float) -> None:
     placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)))
     assert placed is not None
     surface = poly_data(placed).triangulate().clean(tolerance=1e-6, absolute=True)
@@ -99,7 +87,7 @@ def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top
     surface = patch.polygons(run)
     for tooth in contact_teeth(result):
         field = flank_field(run, result, tooth, result.pressure)
-        mesh = poly_data(place(run, result, gear, tooth, surface))
+        mesh = poly_data(place(result, gear, tooth, surface))
         mesh["pressure"] = patch.values(run, result, tooth, field).ravel()
         scene.add_mesh(
             mesh, scalars="pressure", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, show_scalar_bar=False,

@@ -7,12 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from meshes.data import Floats
+from meshes.flank import contact_lines
 from solver.engagement import engagements
 from solver.estimates import hertz_estimate
 from solver.hertz import LoadFactors
 from solver.overview import paper_estimate
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, friction_colours, note, sheet
+from solver.plots_style import FAINT, INK, PINION, WHEEL, friction_colours, note, sheet, signed
 from solver.results import friction_rows, loss_percent
 from solver.run_data import RunData
 
@@ -32,7 +33,9 @@ def load_sharing(run: RunData) -> Figure:
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         axes.plot(np.degrees(curve.angle), 100.0 * curve.share, color=colour, label=f"μ = {curve.friction:g}")
     angle, share = even_share(run)
-    axes.plot(np.degrees(angle), 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line")
+    axes.plot(
+        np.degrees(angle), 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line"
+    )
     axes.set(xlabel=OWN_ANGLE, ylabel="share of the normal force [%]")
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper right")
@@ -41,8 +44,6 @@ def load_sharing(run: RunData) -> Figure:
 
 def even_share(run: RunData) -> tuple[Floats, Floats]:
     """(own rotation, share) of a tooth if the load lay evenly on the contact lines of rigid flanks."""
-    from meshes.flank import contact_lines
-
     rows = []
     for angle in np.linspace(0.0, run.pitch, 60, endpoint=False):
         lines = contact_lines(run.pair, float(angle))
@@ -63,7 +64,14 @@ def transmission_error(run: RunData) -> Figure:
     axes = figure.subplots()
     for index, colour in enumerate(friction_colours(run.frictions)):
         x, y = _closed(run, np.array([1e3 * each[index].result.transmission_error for each in run.positions]))
-        axes.plot(x, y, color=colour, marker=".", markersize=4, label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]:.2f} µm)")
+        axes.plot(
+            x,
+            y,
+            color=colour,
+            marker=".",
+            markersize=4,
+            label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]:.2f} µm)",
+        )
     axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
@@ -78,7 +86,10 @@ def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
 def losses(run: RunData) -> Figure:
     """Power lost to friction over a pitch, and the efficiency over μ."""
     rows = sorted(friction_rows(run), key=lambda row: row.friction)
-    ends = " and ".join(f"{100 - row.loss_percent:.2f} % at μ = {row.friction:g}" for row in {r.friction: r for r in (rows[0], rows[-1])}.values())
+    ends = " and ".join(
+        f"{100 - row.loss_percent:.2f} % at μ = {row.friction:g}"
+        for row in {r.friction: r for r in (rows[0], rows[-1])}.values()
+    )
     figure = sheet("Friction loss", f"Efficiency of the mesh over a pitch: {ends}.", (10.6, 4.8))
     over, total = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     for index, colour in enumerate(friction_colours(run.frictions)):
@@ -100,12 +111,17 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     cuts = [each[index].cut for each in run.positions]
     ξ, load, edge = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "line_load", "edge"))
     even = hertz_estimate(run.scene)
-    low, mean, high = (even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0]))
+    low, mean, high = (
+        even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0])
+    )
     inside = load[(ξ > start) & (ξ < end) & ~edge]
-    see = f"From {inside.min():.0f} to {inside.max():.0f} N/mm, {inside.max() / mean:.2f} times the even load at most (μ = {run.frictions[index]:g})."
+    see = f"From {inside.min():.0f} to {inside.max():.0f} N/mm, at most {inside.max() / mean:.2f} times the even load"
+    see += f" (μ = {run.frictions[index]:g})."
     figure = sheet("Line load and sliding along the path of contact", see, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
-    upper.plot(ξ[~edge], load[~edge], ".", color="#556070", markersize=3, alpha=0.6, label="all slices of all positions")
+    upper.plot(
+        ξ[~edge], load[~edge], ".", color="#556070", markersize=3, alpha=0.6, label="all slices of all positions"
+    )
     upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=4, label="bears on a tip edge")
     upper.axhspan(low, high, color="#3b7a57", alpha=0.15)
     upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks")
@@ -113,7 +129,9 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     upper.set_ylim(bottom=0.0)
     upper.legend(loc="upper right")
     _sliding(lower, run)
-    lower.set(xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)", xlim=(start - 0.5, end + 0.5))
+    lower.set(
+        xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)", xlim=(start - 0.5, end + 0.5)
+    )
     return figure
 
 
@@ -137,13 +155,19 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     start, end = run.pair.path_of_contact
     inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
     ratio = peak[inside] / hertz[inside] - 1.0
-    see = f"Computed over Hertz for the slice's own line load: median {100 * np.median(ratio):+.1f} %, nine in ten within {100 * np.quantile(np.abs(ratio), 0.9):.1f} % (μ = {run.frictions[index]:g})."
+    middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
+    see = f"Computed over Hertz for the slice's own line load: median {middle} %, nine in ten within {most:.1f} %"
+    see += f" (μ = {run.frictions[index]:g})."
     figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(ξ[inside], peak[inside], ".", color=PINION, markersize=3, alpha=0.5, label="computed, every slice")
-    along.plot(ξ[inside], hertz[inside], ".", color="#c98a1b", markersize=2, alpha=0.5, label="Hertz, the slice's line load")
+    along.plot(
+        ξ[inside], hertz[inside], ".", color="#c98a1b", markersize=2, alpha=0.5, label="Hertz, the slice's line load"
+    )
     estimate, line = hertz_estimate(run.scene), np.linspace(start, end, 200)
-    along.plot(line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length")
+    along.plot(
+        line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length"
+    )
     along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
     along.set_ylim(bottom=0.0)
@@ -161,7 +185,11 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
         (f"Yang Eq. 4 with\n{named}", paper_estimate(estimate, factors), "#b9bec7"),
         ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
         ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), "#c98a1b"),
-        ("Hertz at the pitch point,\nshortest line", float(estimate.peak_pressure(0.0, estimate.line_lengths[0])), "#c98a1b"),
+        (
+            "Hertz at the pitch point,\nshortest line",
+            float(estimate.peak_pressure(0.0, estimate.line_lengths[0])),
+            "#c98a1b",
+        ),
         ("computed near the\npitch line, median", float(np.median(peak[near])), PINION),
         ("computed, largest", float(np.nanmax(peak)), PINION),
     ]

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import Slices
-from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, sheet
+from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, sheet, signed
 from solver.run_data import RunData, SolvedPosition
 
 FACE = "face width z [mm]"
@@ -34,7 +35,7 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
     """The envelope of the pressure over the engagement, and single positions with the nominal contact lines."""
     steps = [round(k * len(run.positions) / 3) for k in range(3)]
     top = pressure_top(run, index)
-    see, _ = _see_map(run, index)
+    see = _see_map(run, index)
     figure = sheet(f"Pressure on the unrolled pinion flank, μ = {run.frictions[index]:g}", see, (12.0, 6.2))
     axes = figure.subplots(1, 4, sharey=True, width_ratios=(1.5, 1, 1, 1))
     shown = _envelope_map(axes[0], run, index, top)
@@ -58,19 +59,23 @@ def pressure_top(run: RunData, index: int) -> float:
 
 
 def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
-    """(heights (h,), fitted peak pressure (len(ξ), h) [MPa]) that a line at ξ leaves at each height; NaN off the path.
+    """(heights (h,), fitted peak pressure (len(ξ), h) [MPa]) that a line at ξ leaves at each height; NaN where
+    no position came near, or only with a tip edge.
 
     The contact line passes every height once in an engagement, so the peaks of all positions of the pitch are one
     curve over ξ there.
     """
     cuts = [each[index].cut for each in run.positions]
     z, line, peak = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ", "peak"))
+    reach = 0.75 * run.pair.pinion.base_radius * run.pitch / len(run.positions)
     heights, known = np.unique(z), np.isfinite(peak)
     columns = []
     for height in heights:
         here = np.flatnonzero((z == height) & known)
         order = here[np.argsort(line[here])]
-        columns.append(np.interp(ξ, line[order], peak[order], left=np.nan, right=np.nan) if len(order) else ξ * np.nan)
+        column = np.interp(ξ, line[order], peak[order]) if len(order) else np.full(len(ξ), np.nan)
+        gap = np.abs(ξ[:, None] - line[order]).min(axis=1, initial=np.inf)
+        columns.append(np.where(gap <= reach, column, np.nan))
     return heights, np.column_stack(columns)
 
 
@@ -78,8 +83,9 @@ def _envelope_map(axes: Axes, run: RunData, index: int, top: float):  # type: ig
     ξ = np.linspace(*run.pair.path_of_contact, 240)
     heights, peak = envelope(run, index, ξ)
     shown = axes.pcolormesh(heights, ξ, peak, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud", rasterized=True)
-    levels = axes.contour(heights, ξ, peak, levels=np.linspace(0.0, top, 9)[3:8], colors="white", linewidths=0.7)
-    axes.clabel(levels, fmt="%.0f", fontsize=8)
+    levels = MaxNLocator(8).tick_values(np.nanmin(peak), np.nanmax(peak))
+    lines = axes.contour(heights, ξ, peak, levels=levels, colors="white", linewidths=0.7)
+    axes.clabel(lines, fmt="%.0f", fontsize=8)
     angle = run.angles[0]
     for tooth in range(-3, 4):
         _nominal_lines(axes, run, angle + tooth * run.pitch / 3.0, only=0)
@@ -92,7 +98,9 @@ def _position_map(axes: Axes, run: RunData, solved: SolvedPosition, top: float) 
     fields = [flank_field(run, result, int(tooth), result.pressure) for tooth in np.unique(result.tooth)]
     teeth = [patch.values(run, result, int(tooth), field) for tooth, field in zip(np.unique(result.tooth), fields)]
     ξ = patch.roll_length - run.pair.pitch_point_roll_lengths[0]
-    axes.pcolormesh(patch.z, ξ, np.max(teeth, axis=0), cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud", rasterized=True)
+    axes.pcolormesh(
+        patch.z, ξ, np.max(teeth, axis=0), cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud", rasterized=True
+    )
     _nominal_lines(axes, run, solved.result.stand.angle)
 
 
@@ -123,19 +131,21 @@ def _diameters(axes: Axes, run: RunData) -> None:
     axes.secondary_yaxis("right", functions=(to_diameter, to_roll)).set_ylabel("pinion diameter [mm]")
 
 
-def _see_map(run: RunData, index: int) -> tuple[str, float]:
+def _see_map(run: RunData, index: int) -> str:
     cuts = [each[index].cut for each in run.positions]
     peak, ξ = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("peak", "ξ"))
     top = int(np.nanargmax(peak))
     side = "below the pitch line, towards the root" if ξ[top] < 0 else "above the pitch line, towards the tip"
-    see = f"The largest pressure, {peak[top]:.0f} MPa, comes at ξ = {ξ[top]:+.2f} mm, {side}; dashed: contact lines of rigid flanks, green: pitch line."
-    return see, float(peak[top])
+    see = f"The largest pressure, {peak[top]:.0f} MPa, comes at ξ = {signed(ξ[top], 2)} mm, {side}"
+    return see + "; dashed: contact lines of rigid flanks, green: pitch line."
 
 
 def line_pressure_over_z(run: RunData) -> Figure:
     """Fitted peak pressure over z along the lines of teeth 2 and 3 at the paper's moment, for every μ (Fig. 12)."""
     k = paper_position(run)
-    figure = sheet(f"Pressure along the contact lines at φ = {np.degrees(run.angles[k]):.2f}°", _see_line(run, k), (11.0, 5.2))
+    figure = sheet(
+        f"Pressure along the contact lines at φ = {np.degrees(run.angles[k]):.2f}°", _see_line(run, k), (11.0, 5.2)
+    )
     axes = figure.subplots(1, 2, sharey=True)
     for ax, tooth in zip(axes, (0, -1)):
         for solved, colour in zip(run.positions[k], friction_colours(run.frictions)):
@@ -145,7 +155,9 @@ def line_pressure_over_z(run: RunData) -> Figure:
             if point.tooth == tooth:
                 ax.axvline(point.z, color=FAINT, linestyle=":", linewidth=1.0)
                 ax.text(point.z, 0.97, point.name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
-        ax.set(xlabel=FACE, title=f"tooth {2 - tooth}: " + ("through the pitch line" if tooth == 0 else "near the root"))
+        ax.set(
+            xlabel=FACE, title=f"tooth {2 - tooth}: " + ("through the pitch line" if tooth == 0 else "near the root")
+        )
         ax.title.set_fontsize(10)
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
@@ -161,9 +173,14 @@ def points_over_friction(run: RunData) -> Figure:
     μ = np.array(run.frictions)[order]
     values = {p.name: np.array([at_point(run.positions[k][i].cut, p) for i in order]) for p in points}
     spread = {name: v.max() - v.min() for name, v in values.items()}
+    part = {name: 100.0 * spread[name] / v.min() for name, v in values.items()}
     ranked = sorted(spread, key=lambda name: -spread[name])
     see = "Largest change with friction: " + ", ".join(f"{n} {spread[n]:.0f} MPa" for n in ranked) + "."
-    figure = sheet(f"Pressure at the points A to D over the friction coefficient, φ = {np.degrees(run.angles[k]):.2f}°", see, (10.4, 4.8))
+    figure = sheet(
+        f"Pressure at the points A to D over the friction coefficient, φ = {np.degrees(run.angles[k]):.2f}°",
+        see,
+        (10.4, 4.8),
+    )
     axes, side = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     for point, colour, marker in zip(points, ("#3b7a57", "#2d6fb0", "#8a5a9e", "#c98a1b"), "osD^"):
         axes.plot(μ, values[point.name], color=colour, marker=marker, label=point.name)
@@ -172,7 +189,7 @@ def points_over_friction(run: RunData) -> Figure:
     axes.legend(title="point", ncols=4, loc="upper right")
     side.axis("off")
     rows = [
-        [p.name, f"{2 - p.tooth}", f"{p.z:+.2f}", f"{p.ξ:+.2f}", f"{spread[p.name]:.1f}", f"{100 * spread[p.name] / values[p.name].min():.1f} %"]
+        [p.name, f"{2 - p.tooth}", signed(p.z, 2), signed(p.ξ, 2), f"{spread[p.name]:.1f}", f"{part[p.name]:.1f} %"]
         for p in points
     ]  # fmt: skip
     heads = ["point", "tooth", "z\n[mm]", "ξ\n[mm]", "max − min\n[MPa]", "of min"]
@@ -188,13 +205,24 @@ def paper_position(run: RunData) -> int:
     return int(np.argmin(np.abs(np.degrees(run.angles) - 0.4725)))
 
 
+def has_two_lines(run: RunData) -> bool:
+    """True if teeth 2 and 3 both have a contact line at the paper's moment, tooth 2's across the pitch line."""
+    lines = {line.tooth: line for line in contact_lines(run.pair, float(run.angles[paper_position(run)]))}
+    return -1 in lines and 0 in lines and min(lines[0].roll_distance) < 0.0 < max(lines[0].roll_distance)
+
+
 def paper_points(run: RunData, k: int) -> list[Point]:
     """A, B, C on tooth 2's contact line: halfway from its root end to the pitch line, at the pitch line, halfway to its
     tip end; D in the middle of tooth 3's line, near the root. The paper gives no coordinates, only these words."""
     lines = {line.tooth: line for line in contact_lines(run.pair, float(run.angles[k]))}
     second, third = lines[0], lines[-1]
     root, tip = sorted(second.roll_distance)
-    wanted = [("A", second, 0.5 * root), ("B", second, 0.0), ("C", second, 0.5 * tip), ("D", third, float(np.mean(third.roll_distance)))]
+    wanted = [
+        ("A", second, 0.5 * root),
+        ("B", second, 0.0),
+        ("C", second, 0.5 * tip),
+        ("D", third, float(np.mean(third.roll_distance))),
+    ]
     points = []
     for name, line, ξ in wanted:
         (ξ0, ξ1), (z0, z1) = line.roll_distance, line.z
@@ -222,7 +250,7 @@ def _see_line(run: RunData, k: int) -> str:
     for tooth in (0, -1):
         _, _, peak = line_of(run.positions[k][lowest].cut, tooth)
         _, _, other = line_of(run.positions[k][highest].cut, tooth)
-        change = f", {100 * (other.mean() / peak.mean() - 1):+.1f} % on average" if highest != lowest else ""
+        change = f", {signed(100 * (other.mean() / peak.mean() - 1))} % on average" if highest != lowest else ""
         texts.append(f"tooth {2 - tooth} {peak.min():.0f} to {peak.max():.0f} MPa{change}")
     ends = f"μ = {run.frictions[lowest]:g}" + (f", and to {run.frictions[highest]:g}" if highest != lowest else "")
     return f"At {ends}: " + "; ".join(texts) + "."

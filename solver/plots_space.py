@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from solver.engagement import Engagement, engagement
+from solver.plots3d import gear_picture, pair_picture
 from solver.plots_flank import pressure_top
 from solver.plots_stress import OWN_ANGLE, STRESS
 from solver.plots_style import FAINT, PINION, PRESSURE_MAP, sheet
-from solver.plots3d import gear_picture, pair_picture
 from solver.run_data import RunData
 
 FRAME_MS = 110
@@ -29,13 +29,28 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     result, top = run.positions[k][index].result, pressure_top(run, index)
     teeth = run.positions[k][index].teeth
     peak = max(tooth.max_pressure for tooth in teeth)
-    see = f"{len(teeth)} teeth carry {run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}."
+    load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
+    see = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
+    see += f", μ = {run.frictions[index]:g}."
     figure = sheet(f"{run.scene.title}: pressure on the flanks", see, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
-    _image(figure.add_subplot(grid[:, 0]), pair_picture(run, result, top, (1300, 1180)), "the pair, wheel drawn as glass")
-    _image(figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (880, 640)), "pinion flanks, wheel taken away")
-    _image(figure.add_subplot(grid[1, 1]), gear_picture(run, result, 1, top, (880, 640)), "wheel flanks, pinion taken away")
-    bar = figure.colorbar(ScalarMappable(Normalize(0.0, top), PRESSURE_MAP), ax=figure.axes, location="bottom", aspect=55, shrink=0.7, pad=0.015)
+    _image(
+        figure.add_subplot(grid[:, 0]), pair_picture(run, result, top, (1500, 1060)), "the pair, wheel drawn as glass"
+    )
+    _image(
+        figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (960, 560)), "pinion flanks, wheel taken away"
+    )
+    _image(
+        figure.add_subplot(grid[1, 1]), gear_picture(run, result, 1, top, (960, 560)), "wheel flanks, pinion taken away"
+    )
+    bar = figure.colorbar(
+        ScalarMappable(Normalize(0.0, top), PRESSURE_MAP),
+        ax=figure.axes,
+        location="bottom",
+        aspect=55,
+        shrink=0.7,
+        pad=0.015,
+    )
     bar.set_label("pressure [MPa]")
     return figure
 

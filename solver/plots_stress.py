@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,12 +11,16 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements
-from solver.plots_style import FAINT, INK, friction_colours, sheet
+from solver.plots_style import FAINT, TEETH, friction_colours, sheet, signed
 from solver.run_data import RunData
 
 STRESS = "maximum contact stress [MPa]"
 OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
-NAMES = {1: "tooth 1 (ahead, leaves the mesh)", 0: "tooth 2 (through the pitch point)", -1: "tooth 3 (enters, near the root)"}
+NAMES = {
+    1: "tooth 1 (ahead, leaves the mesh)",
+    0: "tooth 2 (through the pitch point)",
+    -1: "tooth 3 (enters, near the root)",
+}
 """The paper's three teeth as this run's tooth pairs over the pitch from φ = 0."""
 
 
@@ -23,7 +28,7 @@ def engagement_stress(run: RunData) -> Figure:
     """Maximum contact stress of one tooth over its whole engagement for every μ; the crossing enlarged (Fig. 9)."""
     curves = engagements(run)
     cross = _crossing_deg(curves)
-    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(run, curves, cross), (10.4, 5.6))
+    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross), (10.4, 5.6))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     _pitches(main, run, curves[0])
@@ -31,7 +36,9 @@ def engagement_stress(run: RunData) -> Figure:
     main.legend(title="friction coefficient", loc="upper right")
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
-        detail.set_title("enlarged at the crossing" if np.isfinite(cross) else "enlarged at the pitch point", fontsize=10)
+        detail.set_title(
+            "enlarged at the crossing" if np.isfinite(cross) else "enlarged at the pitch point", fontsize=10
+        )
         detail.set(xlabel="pinion rotation of the tooth [°]")
     return figure
 
@@ -39,10 +46,10 @@ def engagement_stress(run: RunData) -> Figure:
 def tooth_stress(run: RunData) -> Figure:
     """Teeth 1, 2 and 3 over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(run, curves)
+    see = _see_teeth(curves)
     figure = sheet("Contact stress of teeth 1, 2 and 3 over a pitch of pinion rotation", see, (11.6, 6.6))
     grid = figure.subplots(2, 3, sharex=True, height_ratios=(1.5, 1.0))
-    for column, tooth in enumerate((1, 0, -1)):
+    for column, tooth in enumerate(NAMES):
         top, below = grid[0, column], grid[1, column]
         members = [c.tooth == tooth for c in curves]
         _curves(top, run, curves, members, tooth)
@@ -51,27 +58,30 @@ def tooth_stress(run: RunData) -> Figure:
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
-    grid[0, 2].legend(title="friction coefficient", loc="lower right", ncols=2)
+    grid[0, 0].legend(loc="best")
     return figure
 
 
 def friction_trend(run: RunData) -> Figure:
-    """Average and maximum contact stress of teeth 1, 2, 3 over μ (Fig. 10)."""
+    """Average and maximum contact stress of teeth 1, 2, 3 over μ, and their changes (Fig. 10)."""
     curves = sorted(engagements(run), key=lambda c: c.friction)
-    see, average, largest = _trends(curves)
-    figure = sheet("Contact stress over the friction coefficient", see, (10.0, 4.8))
-    axes = figure.subplots(1, 2)
-    μ = [c.friction for c in curves]
-    for k, (tooth, name) in enumerate(NAMES.items()):
-        style = {"color": ("#3b7a57", "#8a5a9e", "#c98a1b")[k], "marker": "osD"[k], "label": name}
-        axes[0].plot(μ, average[tooth], **style)
-        axes[1].plot(μ, largest[tooth], **style)
-    axes[0].set(xlabel="friction coefficient μ", ylabel="contact stress [MPa]", title="average along the contact line, over the pitch")
-    axes[1].set(xlabel="friction coefficient μ", title="maximum over the pitch")
-    for ax in axes:
-        ax.title.set_fontsize(10)
-        ax.set_ylim(0.0, 1.28 * max(np.nanmax(v) for v in largest.values()))
-    axes[1].legend(loc="upper right")
+    found, μ = trends(curves), [c.friction for c in curves]
+    changes = ", ".join(f"tooth {2 - t.tooth} {signed(100 * (t.largest[-1] / t.largest[0] - 1))} %" for t in found)
+    see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
+    figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
+    grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
+    for trend, colour, marker in zip(found, TEETH, "osD"):
+        for column, values in enumerate((trend.average, trend.largest)):
+            grid[0, column].plot(μ, values, color=colour, marker=marker, label=NAMES[trend.tooth])
+            grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
+    for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
+        grid[0, column].set_title(title, fontsize=10)
+        grid[0, column].set_ylim(0.0, 1.3 * max(np.max(t.largest) for t in found))
+        grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
+        grid[1, column].set_xlabel("friction coefficient μ")
+    grid[0, 0].set_ylabel("contact stress [MPa]")
+    grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
+    grid[0, 1].legend(loc="upper right")
     return figure
 
 
@@ -90,9 +100,7 @@ def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int)
     return np.degrees(curve.angle[here] - tooth * run.pitch), curve.max_pressure[here]
 
 
-def _change(
-    axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray], tooth: int
-) -> None:
+def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray], tooth: int) -> None:
     """Change of the maximum pressure against the smallest μ [%]."""
     lowest = _lowest(curves)
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
@@ -107,6 +115,11 @@ def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> 
     _, first, second = np.intersect1d(key[here], np.round(lowest.angle, 9), return_indices=True)
     mine = np.flatnonzero(here)[first]
     return curve.angle[mine], curve.max_pressure[mine] / lowest.max_pressure[second] - 1.0
+
+
+def present(curves: Sequence[Engagement]) -> list[int]:
+    """Which of the three teeth have a contact stress in this pitch."""
+    return [t for t in NAMES if all(np.isfinite(c.max_pressure[c.tooth == t]).any() for c in curves)]
 
 
 def _lowest(curves: Sequence[Engagement]) -> Engagement:
@@ -142,39 +155,55 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
     axes.set_ylim(bottom=0.0)
-    for tooth in (1, 0, -1):
+    for tooth in NAMES:
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
         if right - left > 0.3 * pitch:
-            axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=axes.get_xaxis_transform(), ha="center", color=INK, fontsize=9)  # fmt: skip
+            across = axes.get_xaxis_transform()
+            axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=across, ha="center", fontsize=9)
 
 
-def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float) -> str:
+def _see_engagement(curves: Sequence[Engagement], cross: float) -> str:
     lowest, highest = _lowest(curves), _highest(curves)
     top = int(np.nanargmax(lowest.max_pressure))
-    peak = f"At μ = {lowest.friction:g} the largest stress, {lowest.max_pressure[top]:.0f} MPa, comes at {np.degrees(lowest.angle[top]):.1f}°"
+    place = signed(float(np.degrees(lowest.angle[top])))
+    peak = f"Largest {lowest.max_pressure[top]:.0f} MPa at {place}° (μ = {lowest.friction:g})"
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
-    before, after = change[angle < 0.0], change[angle > 0.0]
-    far = f"μ = {highest.friction:g} changes it by {100 * np.nanmax(before):+.1f} % at most before the pitch point and {100 * np.nanmin(after):+.1f} % after it"
-    where = f"; the curves cross at {cross:.1f}°." if np.isfinite(cross) else "; the curves do not cross."
-    return f"{peak}; {far}{where}"
+    before, after = (signed(100 * np.nanmean(change[side])) for side in (angle < 0.0, angle > 0.0))
+    where = f"the curves cross at {signed(cross)}°" if np.isfinite(cross) else "the curves do not cross"
+    means = f"μ = {highest.friction:g} changes it by {before} % on average before the pitch point, {after} % after it"
+    return f"{peak}; {means}; {where}."
 
 
-def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
+def _see_teeth(curves: Sequence[Engagement]) -> str:
     if len(curves) == 1:
         return f"One friction coefficient, μ = {curves[0].friction:g}."
     lowest, highest = _lowest(curves), _highest(curves)
     parts = []
-    for tooth in (1, 0, -1):
+    for tooth in present(curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
-        parts.append(f"tooth {2 - tooth} by {100 * np.nanmin(change):+.1f} to {100 * np.nanmax(change):+.1f} %")
+        low, high = (signed(100 * bound) for bound in (np.nanmin(change), np.nanmax(change)))
+        parts.append(f"tooth {2 - tooth} {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
 
 
-def _trends(curves: Sequence[Engagement]) -> tuple[str, dict[int, list[float]], dict[int, list[float]]]:
-    """What to see, and over μ the average and the maximum of each of the three teeth."""
-    average = {t: [float(np.nanmean(c.mean_pressure[c.tooth == t])) for c in curves] for t in NAMES}
-    largest = {t: [float(np.nanmax(c.max_pressure[c.tooth == t])) for c in curves] for t in NAMES}
-    changes = ", ".join(f"tooth {2 - t} {100 * (largest[t][-1] / largest[t][0] - 1):+.1f} %" for t in NAMES)
-    return f"Maximum from μ = {curves[0].friction:g} to {curves[-1].friction:g}: {changes}.", average, largest
+@dataclass(frozen=True)
+class Trend:
+    """Over μ ascending: average and maximum contact stress [MPa] of a tooth over the pitch."""
+
+    tooth: int
+    average: Floats
+    largest: Floats
+
+
+def trends(curves: Sequence[Engagement]) -> list[Trend]:
+    """Of the three teeth; the average is along the contact line, then over the positions."""
+    return [
+        Trend(
+            tooth,
+            np.array([np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]),
+            np.array([np.nanmax(c.max_pressure[c.tooth == tooth]) for c in curves]),
+        )
+        for tooth in present(curves)
+    ]

@@ -15,7 +15,11 @@ from matplotlib.figure import Figure
 PINION, WHEEL = "#1f5fa8", "#c0392b"
 """Curves that belong to the pinion and to the wheel."""
 PINION_BODY, WHEEL_BODY = "#7d9cc4", "#cf8a7f"
+TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b")
+"""The paper's teeth 1, 2, 3."""
 INK, FAINT = "#222222", "#8a8f98"
+CHARACTER = 0.0700
+"""Mean width [inch] of a character of 10 points."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
 )
@@ -53,7 +57,9 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
     figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - band))  # type: ignore[union-attr, call-arg]
     left = 0.14 / size[0]
     figure.text(left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK)
-    figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=10, color="#444444")
+    fitting = (size[0] - 0.3) / (CHARACTER * max(1, len(see)))
+    see_size = 10.0 * min(1.0, fitting)
+    figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
     return figure
 
 
@@ -61,6 +67,11 @@ def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
     """One colour per coefficient, darker with more friction."""
     ranks = np.argsort(np.argsort(frictions)) / max(1, len(frictions) - 1)
     return [tuple(matplotlib.colormaps["viridis_r"](0.08 + 0.87 * rank)) for rank in ranks]
+
+
+def signed(value: float, digits: int = 1) -> str:
+    """A number with its sign, a true minus."""
+    return f"{value:+.{digits}f}".replace("-", "−")
 
 
 def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:

@@ -8,8 +8,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -94,10 +94,10 @@ class Step:
 
 @dataclass(frozen=True)
 class ContactResult:
-    """One contact of a solution, at the n nodes of the first surface that face the second one.
+    """One contact of a solution, at the q quadrature points of the first surface that face the second one.
 
-    points: (n, d) their positions. pressure: (n,) λ [MPa]. traction: (n, d) λn + τ in the common frame [MPa], what the
-    first body presses on the second with. force: (n, d) nodal forces [N]. sticks: (n,) bool.
+    points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
+    (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with.
     """
 
     points: Floats
@@ -105,7 +105,11 @@ class ContactResult:
     weights: Floats
     pressure: Floats
     traction: Floats
-    force: Floats
+
+    @property
+    def force(self) -> Floats:
+        """Resultant (d,) on the second body [N; N/mm in 2D]."""
+        return self.weights @ self.traction
 
 
 @dataclass(frozen=True)
@@ -246,7 +250,8 @@ class Position:
     def _operator(self, contact: Contact, first: Surface, second: Surface) -> ContactOperator:
         reach = contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
         traction = self.prepared[contact.first[0]].tractions[contact.first[1]]
-        return contact_operator(pair_surfaces(first, second, reach, reach), first, second, traction.stabiliser)
+        frames = traction.frames @ self.placements[contact.first[0]].rotation.T
+        return contact_operator(pair_surfaces(first, second, reach, reach), first, second, traction.stabiliser, frames)
 
     def _map(self, body: int) -> sp.csr_matrix:
         """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
@@ -265,8 +270,8 @@ class Position:
 
     @property
     def friction(self) -> Floats:
-        """μ of each node, (Σn,)."""
-        return np.concatenate([np.full(len(op.nodes), c.friction) for c, op in zip(self.problem.contacts, self.operators)])
+        """μ of each point, (Σq,)."""
+        return np.concatenate([np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)])
 
     def load_jump(self) -> Floats:
         """Local jumps (Σn·d,) that the external loads alone would make."""
@@ -298,16 +303,22 @@ class Position:
     def _with_friction(self, system: CondensedSystem, μ: Floats, before: _History | None) -> Equilibrium:
         """From the frictionless state; where there is none (only friction carries the load) or Newton's method fails
         from there, from the state in which all contact sticks."""
-        slip = self.slip(before)
+        slip, unknown = self.slip(before), np.zeros((len(μ), self.d - 1))
         try:
-            return frictional(system, μ, slip, np.zeros_like(slip), frictionless(normal_part(system)))
+            return frictional(system, μ, slip, unknown, frictionless(normal_part(system)))
         except NotConverged:
-            return frictional(system, μ, slip, np.zeros_like(slip), stuck(system, slip))
+            return frictional(system, μ, slip, unknown, stuck(system, slip))
 
     def _forces(self, found: Equilibrium) -> Floats:
         force = np.zeros((len(found.force), self.d))
         force[:, : found.force.shape[1]] = found.force
         return force
+
+    def _tractions(self, found: Equilibrium) -> list[Floats]:
+        """Local tractions (q, d) at the points of each contact."""
+        traction = np.zeros((len(found.traction), self.d))
+        traction[:, : found.traction.shape[1]] = found.traction
+        return np.split(traction, np.cumsum([len(op.weights) for op in self.operators])[:-1])
 
     def _body_motions(self, found: Equilibrium) -> list[Floats]:
         result, at = [], 0
@@ -321,10 +332,7 @@ class Position:
     def _solution(self, system: CondensedSystem, found: Equilibrium) -> Solution:
         force = self._forces(found)
         on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
-        ends = np.cumsum([len(op.nodes) for op in self.operators])[:-1]
-        contacts = tuple(
-            _contact_result(op, pair[0], f) for op, pair, f in zip(self.operators, self.placed, np.split(force, ends))
-        )
+        contacts = tuple(_contact_result(op, t) for op, t in zip(self.operators, self._tractions(found)))
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
         return Solution(contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step)
@@ -336,26 +344,27 @@ class Position:
             self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
             for b, E, δ in zip(self.prepared, self.maps, motions)
         ]
-        points = []
-        at = 0
-        for contact, op, pair in zip(self.problem.contacts, self.operators, self.placed):
-            f = force.reshape(-1, self.d)[at : at + len(op.nodes)]
-            at += len(op.nodes)
-            pair_points = []
-            for side, surface in zip((contact.first, contact.second), pair):
-                start = self.prepared[side[0]].offsets[side[1]]
-                u = y[side[0]][start : start + surface.points.size].reshape(-1, self.d)
-                pair_points.append(surface.points + u @ self.placements[side[0]].rotation.T)
-            pair_points[0][op.nodes] += op.flux(f)
-            points.append((pair_points[0], pair_points[1]))
-        return _History(tuple(points))
+        return _History(tuple(map(partial(self._deformed, y), self.problem.contacts, self.operators, self.placed, self._tractions(found))))
+
+    def _deformed(
+        self, y: list[Floats], contact: Contact, op: ContactOperator, pair: tuple[Surface, Surface], traction: Floats
+    ) -> tuple[Floats, Floats]:
+        """Deformed positions of both surfaces of a contact, from the functionals y of the bodies."""
+        result = []
+        for side, surface in zip((contact.first, contact.second), pair):
+            start = self.prepared[side[0]].offsets[side[1]]
+            u = y[side[0]][start : start + surface.points.size].reshape(-1, self.d)
+            result.append(surface.points + u @ self.placements[side[0]].rotation.T)
+        result[0][op.nodes] += op.flux(traction)
+        return result[0], result[1]
 
     def slip(self, before: _History | None) -> Floats:
         """(Σn, d−1): tangential change of [x] at the present pairs of points, but for the present displacement."""
         result = []
         for i, (op, pair) in enumerate(zip(self.operators, self.placed)):
-            now = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
-            then = now if before is None else op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
+            now = then = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
+            if before is not None:
+                then = op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
             result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
         return np.concatenate(result)
 
@@ -378,9 +387,5 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     return RigidMotions(own.shapes, load, value)
 
 
-def _contact_result(op: ContactOperator, first: Surface, force: Floats) -> ContactResult:
-    local = force / op.weights[:, None]
-    common = np.einsum("jia,ji->ja", op.frames, local)
-    return ContactResult(
-        first.points[op.nodes], op.frames[:, 0], op.weights, local[:, 0], common, common * op.weights[:, None]
-    )
+def _contact_result(op: ContactOperator, local: Floats) -> ContactResult:
+    return ContactResult(op.points, op.common(np.eye(op.d)[:1].repeat(len(local), axis=0)), op.weights, local[:, 0], op.common(local))

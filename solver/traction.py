@@ -19,9 +19,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats, Ints, MeshData
+from solver.frames import tangent_frames
 from solver.lagrange import gmsh_permutation, node_points, quadrature, tabulate
 from solver.material import Material, traction_rows
-from solver.surface import Surface
+from solver.surface import Surface, hats
 
 SAFETY = 2.0  # γ over its coercivity limit; the solution is insensitive to it between 1.1 and 50
 
@@ -30,39 +31,33 @@ SAFETY = 2.0  # γ over its coercivity limit; the solution is insensitive to it 
 class NitscheTraction:
     """What Nitsche's method needs of one contact surface of a body with N mesh nodes.
 
-    traction: (n·d, N·d) σ(u)n recovered at the surface's n nodes [MPa/mm].
-    stabiliser: (n, 2) γ and γ_t at the nodes [MPa/mm].
-    weights: (n,) m_j [mm²; mm in 2D].
+    frames: (n, d, d) at the surface's n nodes, in the body's frame. traction: (n·d, N·d) σ(u)n recovered at the nodes
+    [MPa/mm]. stabiliser: (n, 2) γ and γ_t at the nodes [MPa/mm].
     """
 
     surface: Surface
+    frames: Floats
     traction: sp.csr_matrix
     stabiliser: Floats
-    weights: Floats
 
     def flux(self) -> sp.csr_matrix:
         """F = Γ⁻¹S, (n·d, N·d)."""
-        n = self.surface.normals
-        γ, γ_t = self.stabiliser.T
-        eye = np.eye(n.shape[1])
-        nn = np.einsum("ja,jb->jab", n, n)
-        inverse = nn / γ[:, None, None] + (eye - nn) / γ_t[:, None, None]
-        return (_block_diagonal(inverse) @ self.traction).tocsr()
+        return (_block_diagonal(np.swapaxes(self.frames, 1, 2)) @ self._local_flux()).tocsr()
 
-    def averaged_flux(self) -> sp.csr_matrix:
-        """F̄_j = (1/m_j)∫ψ_j F: what the weighted jump sees of F where the surfaces overlap fully."""
-        d = self.surface.normals.shape[1]
-        average = sp.diags(1.0 / self.weights) @ self.surface.mass()
-        return (sp.kron(average, sp.identity(d)) @ self.flux()).tocsr()
+    def _local_flux(self) -> sp.csr_matrix:
+        """F in the nodes' frames."""
+        d = self.frames.shape[1]
+        scale = np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (d - 1))
+        return (_block_diagonal(self.frames / scale[:, :, None]) @ self.traction).tocsr()
 
     def constant_term(self) -> sp.csr_matrix:
-        """Σ_j m_j F̄_j·Γ_j F̄_j, (N·d, N·d): what −θ times goes into the body's stiffness."""
-        n = self.surface.normals
-        γ, γ_t = self.stabiliser.T
-        nn = np.einsum("ja,jb->jab", n, n)
-        Γ = γ[:, None, None] * nn + γ_t[:, None, None] * (np.eye(n.shape[1]) - nn)
-        F = self.averaged_flux()
-        return (F.T @ _block_diagonal(self.weights[:, None, None] * Γ) @ F).tocsr()
+        """∫ (γ F_n² + γ_t |F_t|²), (N·d, N·d): what −θ times goes into the body's stiffness."""
+        F, d = self._local_flux(), self.frames.shape[1]
+        total = sp.csr_matrix((F.shape[1], F.shape[1]))
+        for component in range(d):
+            own = F[component::d]
+            total = total + own.T @ _weighted_mass(self.surface, self.stabiliser[:, min(component, 1)]) @ own
+        return total.tocsr()
 
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:
@@ -72,7 +67,7 @@ def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safet
     stabiliser = np.zeros((len(surface.points), 2))
     for corner in surface.facets.T:
         np.maximum.at(stabiliser, corner, constants)
-    return NitscheTraction(surface, _recovered(cells, material), stabiliser, surface.weights())
+    return NitscheTraction(surface, tangent_frames(surface.normals), _recovered(cells, material), stabiliser)
 
 
 def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
@@ -204,13 +199,22 @@ def rigid_modes(points: Floats) -> Floats:
     return np.concatenate([shift, turn], axis=2)
 
 
-def _facet_mass(surface: Surface) -> Floats:
-    """∫_F N_i N_j of each facet, (f, kf, kf)."""
+def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:
+    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ (n,) at the nodes, piecewise linear between, 1 by default."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets], dN)
     area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
+    if γ is not None:
+        area = area * (γ[surface.facets] @ hats(surface.shape, surface.order, xi).T)
     return np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
+
+
+def _weighted_mass(surface: Surface, γ: Floats) -> sp.csr_matrix:
+    """∫γ N_i N_j over the surface, (n, n)."""
+    i, j = np.broadcast_arrays(surface.facets[:, :, None], surface.facets[:, None, :])
+    n = len(surface.points)
+    return sp.csr_matrix((_facet_mass(surface, γ).ravel(), (i.ravel(), j.ravel())), (n, n))
 
 
 def _block_diagonal(blocks: Floats) -> sp.bsr_matrix:

@@ -1,0 +1,43 @@
+# make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
+# make test   sets up what is missing, runs the tests
+# make setup  only that;  make lint, make docker, make clean as they say
+.PHONY: demo test setup lint docker clean
+.DELETE_ON_ERROR:
+
+# A machine upgraded to the next Debian release needs another environment.
+release := $(shell . /etc/os-release; echo $${VERSION_ID:-unstable})
+ready := .venv/.ready-debian-$(release)
+
+# One BLAS thread a process: two ranks with two threads each on two cores are slower than two with one.
+test: export OMP_NUM_THREADS ?= 1
+# Tests start mpirun: as root in a container, with more ranks than a small machine has cores, on this machine only.
+export OMPI_ALLOW_RUN_AS_ROOT ?= 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM ?= 1
+export OMPI_MCA_rmaps_base_oversubscribe ?= 1
+export PRTE_MCA_rmaps_default_mapping_policy ?= :oversubscribe
+export OMPI_MCA_btl ?= self,vader
+export OMPI_MCA_btl_vader_single_copy_mechanism ?= none
+
+demo: $(ready)
+	.venv/bin/evolvent run demos/yang2022.toml --level quick --out out/yang2022
+
+test: $(ready)
+	.venv/bin/python -m pytest $(PYTEST_ARGS)
+
+setup: $(ready)
+
+$(ready): packages/debian.txt packages/select packages/install packages/venv pyproject.toml
+	packages/install
+	packages/venv .venv
+	touch $@
+
+lint: $(ready)
+	.venv/bin/python -m pip install -q "ruff>=0.4" "mypy>=1.10"
+	.venv/bin/ruff check .
+	.venv/bin/mypy
+
+docker:
+	docker build -t evolvent .
+
+clean:
+	rm -rf .venv out build *.egg-info

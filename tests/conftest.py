@@ -1,0 +1,53 @@
+"""Shared by all tests: quiet libraries, and scripts on a number of MPI ranks."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from solver import compat
+
+ROOT = Path(__file__).resolve().parents[1]
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _quiet() -> None:
+    compat.silence_logs()
+
+
+@pytest.fixture(scope="session")
+def run_script() -> Run:
+    """run_script(script, *arguments, ranks=1, timeout=120): the finished process with its output, status unchecked.
+
+    script: a path from the checkout's root, or "-c" with the program as the first argument.
+    """
+
+    def run(script: str, *arguments: str, ranks: int = 1, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
+        launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks)]
+        command = [*launcher, sys.executable, script, *arguments]
+        return subprocess.run(
+            command, cwd=ROOT, env=_environment(), capture_output=True, text=True, timeout=timeout, check=False
+        )
+
+    return run
+
+
+def _environment() -> dict[str, str]:
+    """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    return {
+        **os.environ,
+        "PYTHONPATH": path,
+        "OMP_NUM_THREADS": "1",
+        "MPLBACKEND": "Agg",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+    }

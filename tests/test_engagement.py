@@ -1,0 +1,83 @@
+"""One tooth's whole engagement from one pitch by shifting."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from synthetic_run import even_line_load, synthetic_run
+
+from meshes.flank import contact_lines
+from solver.engagement import Engagement, crossing, engagement, engagements, sign_changes
+from solver.hertz import line_peak_pressure
+from solver.run_data import RunData
+
+
+@pytest.fixture(scope="module")
+def run() -> RunData:
+    return synthetic_run("sweep.positions=12", "contact.friction=[0.0, 0.2]")
+
+
+def test_shifted_pitch_is_the_whole_engagement(run: RunData) -> None:
+    """Problem: the positions of one pitch (21.18°) with the pairs −2 … 1. Exact: shifted by their pitches they are one
+    curve over ε_γ·2π/z_1 = 63.9°, evenly spaced, each rotation once."""
+    curve = engagement(run, 0)
+    step = run.pitch / len(run.positions)
+    np.testing.assert_allclose(np.diff(curve.angle), step, rtol=1e-9)
+    assert np.ptp(curve.angle) == pytest.approx(run.pair.engagement_angle, abs=2.0 * step)
+    assert np.degrees(run.pair.engagement_angle) == pytest.approx(63.9, abs=0.05)
+
+
+def test_force_of_a_tooth_follows_its_own_contact_line(run: RunData) -> None:
+    """Problem: even line load q(φ), so a tooth's force is q times the length of its line. Exact: that of the line which
+    tooth 0 would have at the tooth's own rotation, a pitch or more away from where it was computed; quadrature on the
+    quick mesh leaves a few per cent."""
+    curve = engagement(run, 0)
+    cos_b = np.cos(run.pair.pinion.base_helix_angle)
+    for angle, position, force in zip(curve.angle, curve.position, curve.force):
+        lines = [line for line in contact_lines(run.pair, float(angle)) if line.tooth == 0]
+        length = (lines[0].z[1] - lines[0].z[0]) / cos_b
+        exact = even_line_load(run.scene, float(run.angles[position]), 0.0) * length
+        assert force == pytest.approx(exact, rel=0.06, abs=150.0)
+
+
+def test_shares_sum_to_one_at_every_position(run: RunData) -> None:
+    """Exact: at each computed position the shares of all teeth sum to 1, wherever they lie on the shifted curve."""
+    for curve in engagements(run):
+        sums = np.bincount(curve.position, curve.share)
+        np.testing.assert_allclose(sums, 1.0, rtol=1e-12)
+
+
+def test_maximum_pressure_is_hertz_at_the_smallest_radius(run: RunData) -> None:
+    """Problem: Hertz pressure with even load. Exact: the largest pressure on a line is at its root end, where the
+    relative radius is smallest; the slices (0.5 mm apart) come close to it. Lines on a tip edge are left out."""
+    curve, pair = engagement(run, 0), run.pair
+    modulus = 1.0 / sum(1.0 / material.plane_modulus for material in run.scene.materials())
+    inside = np.flatnonzero((curve.angle > 0.0) & (curve.edge_pressure == 0.0))
+    for k in inside:
+        (line,) = [line for line in contact_lines(pair, float(curve.angle[k])) if line.tooth == 0]
+        q = even_line_load(run.scene, float(run.angles[curve.position[k]]), 0.0)
+        radius = float(pair.relative_curvature_radius(min(line.roll_distance)))
+        exact = float(line_peak_pressure(q, radius, modulus))
+        assert curve.max_pressure[k] == pytest.approx(exact, rel=0.03)
+
+
+def test_sign_changes() -> None:
+    """y = x² − 2 on a grid that misses ±√2; linear interpolation errs by h²/8·y''/|y'| < 1e-4; NaN is skipped."""
+    x = np.linspace(-3.0, 3.0, 302)
+    y = x**2 - 2.0
+    y[10] = np.nan
+    np.testing.assert_allclose(sign_changes(x, y), [-np.sqrt(2.0), np.sqrt(2.0)], atol=1e-4)
+    assert len(sign_changes(x, np.ones_like(x))) == 0
+
+
+def _curve(friction: float, angle: np.ndarray, pressure: np.ndarray) -> Engagement:
+    zero = np.zeros(len(angle))
+    return Engagement(friction, angle, zero.astype(int), zero.astype(int), zero, zero, pressure, pressure, zero, zero)
+
+
+def test_crossing_finds_where_friction_turns_from_harm_to_relief() -> None:
+    """Two curves 1000 − 10(x − 0.05)μ/0.3 … cross at x = 0.05 by construction; parallel curves do not cross."""
+    x = np.linspace(-0.5, 0.5, 41)
+    low, high = _curve(0.1, x, 1000.0 + 0.0 * x), _curve(0.3, x, 1000.0 - 40.0 * (x - 0.05))
+    assert crossing(low, high) == pytest.approx(0.05, abs=1e-9)
+    assert np.isnan(crossing(low, _curve(0.3, x, 990.0 + 0.0 * x)))

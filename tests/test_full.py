@@ -1,0 +1,75 @@
+"""Condensation is elimination: the condensed and the full system have the same solution, and the full tangent is right."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_equilibrium import ball, cylinder
+
+from solver.body import Freedom
+from solver.friction import coulomb
+from solver.full import FullContact, full_equilibrium, full_solution
+from solver.problem import Nitsche, Placement, Position, Step, prepare
+
+CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) for μ in (0.0, 0.1)]
+
+
+@pytest.mark.parametrize(("make", "θ", "μ"), CASES)
+def test_condensed_is_full(make, θ, μ):
+    """Pressure, traction, rigid motion and the whole displacement field of both ways agree to 1e-8 (θ = 1, 0, −1, with
+    and without friction, 2D and 3D)."""
+    problem = replace(make(μ), nitsche=Nitsche(theta=θ))
+    x, system = full_solution(problem, Step())
+    position = Position(problem, prepare(problem), Step())
+    _compare(position, None, x, system)
+
+
+@pytest.mark.parametrize("θ", [1.0, -1.0])
+@pytest.mark.parametrize("μ", [0.0, 0.1])
+def test_after_finite_sliding(θ, μ):
+    """The block has moved 0.8 mm sideways (several nodes) under the cylinder: new projections, the old compliance, and
+    the slip since the first step. The block then drags the cylinder along with μ times the load."""
+    problem = replace(cylinder(μ, first=1, extra=(Freedom("x", displacement=0.0),)), nitsche=Nitsche(theta=θ))
+    prepared = prepare(problem)
+    rest = Placement.at_rest(2)
+    _, before = Position(problem, prepared, Step()).solve(None)
+    moved = Step(placements=(rest, Placement(np.eye(2), np.array([0.8, 0.0]))))
+    position = Position(problem, prepared, moved)
+    x, system = full_equilibrium(position, position.slip(before))
+    contact = _compare(position, before, x, system)
+    assert contact.force[0] == pytest.approx(μ * 5e3, abs=1e-6 * 5e3)
+
+
+def _compare(position, before, x, system):
+    solution, _ = position.solve(before)
+    contact = solution.contacts[0]
+    full = system.op.weights[:, None] * system.state(x).traction
+    common = np.einsum("jia,ji->ja", system.op.frames, full)
+    assert np.abs(contact.force - common).max() < 1e-8 * np.abs(common).max()
+    motion = np.concatenate([m[p.free] for m, p in zip(solution.motions, position.motions, strict=True)])
+    assert np.allclose(motion, x[system.K.shape[0] :], rtol=1e-8)
+    at = 0
+    for index, body in enumerate(position.prepared):
+        a = body.assembled
+        u = np.zeros(a.stiffness.shape[0])
+        u[a.free] = x[at : at + len(a.free)]
+        at += len(a.free)
+        whole = u.reshape(-1, a.d) + a.motions.shapes @ solution.motions[index]
+        assert np.abs(solution.displacement(index) - whole).max() < 1e-8 * np.abs(whole).max()
+    return contact
+
+
+@pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
+def test_full_tangent(θ):
+    """∂residual/∂x against central differences in a random direction near the solution, 1e-6 relative."""
+    problem = replace(cylinder(), nitsche=Nitsche(theta=θ))
+    x, _ = full_solution(problem, Step())
+    position = Position(problem, prepare(problem), Step())
+    system = FullContact(position, lambda t: coulomb(t, 0.2), position.slip(None))
+    rng = np.random.default_rng(0)
+    x = x * (1.0 + 1e-3 * rng.normal(size=len(x)))
+    direction, step = rng.normal(size=len(x)) * 1e-4, 1e-5
+    difference = (system.residual(x + step * direction) - system.residual(x - step * direction)) / (2.0 * step)
+    assert np.linalg.norm(system.tangent(x) @ direction - difference) < 1e-6 * np.linalg.norm(difference)

@@ -1,0 +1,154 @@
+"""The public API: steps, sweeps, placements, several contacts, what is refused; and the page of docs that shows it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_equilibrium import FRICTION, cylinder
+
+from meshes.blocks import rectangle
+from solver.body import Body, Fixed, Freedom, Rigid, Traction
+from solver.problem import Contact, Placement, Problem, Solution, Step, solve, sweep
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def test_own_problem_page(tmp_path):
+    """The program in docs/own_problem.md runs as it stands, has at most 40 lines, and carries its load."""
+    program = re.search(r"```python\n(.*?)```", (ROOT / "docs/own_problem.md").read_text(), re.DOTALL).group(1)
+    assert len(program.strip().splitlines()) <= 40
+    names: dict = {}
+    exec(compile(program.replace("hook.msh", str(tmp_path / "hook.msh")), "own_problem.md", "exec"), names)
+    force = names["solution"].contacts[0].force
+    assert force[1] == pytest.approx(-names["LOAD"], rel=1e-8)
+
+
+def test_load_factor_scales_a_closed_contact():
+    """Two flat blocks that stay in full contact are linear: half the load, half the pressure and displacement."""
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
+    bodies = (
+        Body(upper, supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -100.0)),)),
+        Body(lower, supports=(Fixed("left", "x"), Fixed("bottom", "y"))),
+    )
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    half, full = list(sweep(problem, [Step(0.5), Step(1.0)]))
+    assert np.allclose(2.0 * half.contacts[0].pressure, full.contacts[0].pressure, rtol=1e-9)
+    assert np.allclose(2.0 * half.displacement(0), full.displacement(0), atol=1e-12)
+
+
+def test_load_or_displacement():
+    """Prescribing the motion that a load made gives that load back, in a later step of the same sweep too."""
+    problem = cylinder(0.0)
+    by_load = solve(problem)
+    sunk = float(by_load.motions[0][0])
+    _, by_motion = sweep(problem, [Step(), Step(freedoms=((0, Freedom("y", displacement=sunk)),))])
+    assert by_motion.contacts[0].force[1] == pytest.approx(-5e3, rel=1e-8)
+    assert np.allclose(by_motion.contacts[0].pressure, by_load.contacts[0].pressure, atol=1e-6)
+
+
+def test_normal_then_tangential():
+    """First pressed, then pushed with half of what slides: the tangential load arrives, some nodes stick and some
+    slide; repeating the same step changes nothing (friction has no drift)."""
+    problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
+    push = Step(freedoms=((0, Freedom("x", load=0.5 * FRICTION * 5e3)),))
+    pressed, pushed, again = sweep(problem, [Step(), push, push])
+    assert pushed.contacts[0].force[0] == pytest.approx(-0.5 * FRICTION * 5e3, rel=1e-9)
+    assert pushed.contacts[0].force[1] == pytest.approx(5e3, rel=1e-9)
+    contact = pushed.contacts[0]
+    shear = np.abs(contact.traction[:, 0])
+    touching = contact.pressure > 0.0
+    sticks = shear < FRICTION * contact.pressure * (1.0 - 1e-9)
+    assert (touching & sticks).any()
+    assert (touching & ~sticks).any()
+    assert np.allclose(again.contacts[0].traction, contact.traction, atol=1e-6 * contact.pressure.max())
+    assert pushed.motions[0][1] > pressed.motions[0][1]
+
+
+def test_sliding_there_and_back():
+    """The lower block moved to the right and back under the pressed cylinder: friction μP to the right, then to the
+    left. A solver that forgets the last step, or loses μ, cannot do this."""
+    problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
+    places = [(Placement.at_rest(2), Placement(np.eye(2), np.array([x, 0.0]))) for x in (0.0, 0.5, 0.2)]
+    forces = [s.contacts[0].force[0] for s in sweep(problem, [Step(placements=p) for p in places])]
+    assert forces[1] == pytest.approx(FRICTION * 5e3, rel=1e-6)
+    assert forces[2] == pytest.approx(-FRICTION * 5e3, rel=1e-6)
+
+
+def test_frame_does_not_matter():
+    """Both bodies turned and moved together: the same pressure, the traction turned."""
+    problem = cylinder(FRICTION)
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    place = Placement(turn, np.array([5.0, -3.0]))
+    here, there = solve(problem), solve(problem, Step(placements=(place, place)))
+    assert np.allclose(here.contacts[0].pressure, there.contacts[0].pressure, atol=1e-7)
+    assert np.allclose(here.contacts[0].traction @ turn.T, there.contacts[0].traction, atol=1e-7)
+
+
+def test_two_contacts_share_the_load():
+    """A stack of three blocks: the weight of the load passes both interfaces, one with friction and one without."""
+    blocks = [rectangle(2.0, 1.0, n, 2, origin=(0.0, y)) for n, y in ((4, 2.0), (5, 1.0), (3, 0.0))]
+    bodies = (
+        Body(blocks[0], supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -60.0)),)),
+        Body(blocks[1], supports=(Fixed("left", "x"),)),
+        Body(blocks[2], supports=(Fixed("left", "x"), Fixed("bottom", "y"))),
+    )
+    contacts = (Contact((0, "bottom"), (1, "top"), 0.2, reach=0.1), Contact((1, "bottom"), (2, "top"), 0.0, reach=0.1))
+    solution = solve(Problem(bodies, contacts))
+    for contact in solution.contacts:
+        assert np.allclose(contact.pressure, 60.0, rtol=1e-9)
+
+
+def test_separation():
+    """Only part of a tilted load's interface touches: no tension anywhere, the rest of the load where it touches.
+
+    A block 2 wide and 4 high pushed at its top to the side lifts off on one edge."""
+    lower, upper = rectangle(2.0, 1.0, 8, 4), rectangle(2.0, 4.0, 6, 12, origin=(0.0, 1.0))
+    bodies = (
+        Body(upper, loads=(Traction("top", (12.0, -60.0)),)),
+        Body(lower, supports=(Fixed("bottom"),)),
+    )
+    solution = solve(Problem(bodies, (Contact((0, "bottom"), (1, "top"), 0.5, reach=0.1),)))
+    contact = solution.contacts[0]
+    assert contact.pressure.min() == 0.0
+    assert contact.force == pytest.approx([24.0, -120.0], rel=1e-8)
+    assert _centre(solution, 1) == pytest.approx(1.0 + 24.0 * 4.0 / 120.0, abs=1e-9)
+
+
+def _centre(solution: Solution, body: int) -> float:
+    """x of the resultant contact force on a flat body, from its nodal forces (half a hat function at an edge acts
+    inside the edge node, so the nodal pressures alone would not do)."""
+    prepared = solution.prepared[body]
+    force = (prepared.forces.T @ solution.nodal_forces[body]).reshape(-1, 2)[:, 1]
+    return float(force @ prepared.assembled.body.mesh.points[:, 0] / force.sum())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda p: Problem(p.bodies, (Contact((0, "arc"), (2, "top")),)), "below 2"),
+        (lambda p: Problem(p.bodies, (Contact((0, "ark"), (1, "top")),)), "ark"),
+        (lambda p: solve(p, Step(freedoms=((0, Freedom("x", load=1.0)),))), "declare"),
+        (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
+    ],
+)
+def test_bad_input(make, message):
+    """Each mistake is a ValueError that names what was found."""
+    with pytest.raises(ValueError, match=message):
+        make(cylinder())
+
+
+def test_rigid_punch_centre():
+    """A moment about the coupling's centre tilts a punch: the pressure's centre moves by moment over force."""
+    punch = rectangle(2.0, 1.0, 6, 3, origin=(-1.0, 0.0))
+    ground = rectangle(6.0, 3.0, 24, 6, origin=(-3.0, -3.0))
+    rigid = Rigid("top", (Freedom("y", load=-1000.0), Freedom("rz", load=-150.0)), centre=(0.0, 1.0, 0.0))
+    problem = Problem(
+        (Body(punch, rigid=rigid), Body(ground, supports=(Fixed("bottom"),))),
+        (Contact((0, "bottom"), (1, "top"), reach=0.2),),
+    )
+    solution = solve(problem)
+    assert _centre(solution, 1) == pytest.approx(0.15, rel=1e-8)
+    assert solution.contacts[0].force[1] == pytest.approx(-1000.0, rel=1e-9)

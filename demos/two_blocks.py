@@ -89,10 +89,12 @@ class Patch:
         return (Traction("top", tuple(top)), *ends), ends
 
     def errors(self, solution: Solution, rotation: Floats | None = None) -> Floats:
-        """|traction − exact| / pressure at the nodes of the interface, (n,)."""
+        """|traction − exact| / pressure at the points of the interface, (q,)."""
         R = np.eye(self.d) if rotation is None else rotation
         sign = -1.0 if self.first == 0 else 1.0  # the outward normal of the upper block's face points down
-        exact = sign * (np.asarray(self._vector(-1, PRESSURE)) - np.asarray(self._vector(0, SHEAR if self.friction else 0.0)))
+        exact = sign * (
+            np.asarray(self._vector(-1, PRESSURE)) - np.asarray(self._vector(0, SHEAR if self.friction else 0.0))
+        )
         found = solution.contacts[0].traction
         return np.asarray(np.linalg.norm(found - exact @ R.T, axis=1) / PRESSURE)
 
@@ -121,7 +123,9 @@ def main(out: Path = Path("out/two_blocks"), quick: bool = False) -> None:
             csv.writer(file).writerows(table)
         print("\n".join(f"{a:<15}{b:<7}{c:<13}{d:<10}{e:>18}" for a, b, c, d, e in table))
         draw(out / "two_blocks.png", solution, worst)
-    assert max(worst.values()) < BOUND, f"patch test: wanted an error below {BOUND} of p, found {max(worst.values()):.1e}"
+    assert max(worst.values()) < BOUND, (
+        f"patch test: wanted an error below {BOUND} of p, found {max(worst.values()):.1e}"
+    )
 
 
 def draw(path: Path, solution: Solution, worst: dict[Patch, float]) -> None:
@@ -148,7 +152,7 @@ def _blocks(axis: Axes, solution: Solution, scale: float = 300.0) -> None:
         if index == 1:
             top = place[np.unique(mesh.facets["top"])]
     result = solution.contacts[0]
-    order = np.argsort(result.points[:, 0])
+    order = np.argsort(result.points[:, 0])[::3]
     height = np.interp(result.points[order, 0], *np.sort(top, axis=0).T)
     on_lower = result.traction[order] / PRESSURE * 0.35
     axis.quiver(
@@ -156,14 +160,18 @@ def _blocks(axis: Axes, solution: Solution, scale: float = 300.0) -> None:
         width=0.004, color="tab:red", zorder=3,
     )  # fmt: skip
     axis.set(xlim=(-0.25, 2.45), ylim=(-0.1, 2.15), aspect="equal", xlabel="x [mm]", ylabel="y [mm]")
-    axis.set_title(f"p = {PRESSURE:g} MPa and τ = {SHEAR:g} MPa at every node (red; μ = {FRICTION}, deformed × {scale:g})", fontsize=10)
+    axis.set_title(
+        f"p = {PRESSURE:g} MPa and τ = {SHEAR:g} MPa all along (red; μ = {FRICTION}, deformed × {scale:g})", fontsize=10
+    )
 
 
 def _bars(axis: Axes, worst: dict[Patch, float]) -> None:
     groups = sorted({(p.d, p.shape, p.order) for p in worst})
     for offset, (first, friction) in enumerate([(0, 0.0), (1, 0.0), (0, FRICTION), (1, FRICTION)]):
         errors = [worst[Patch(shape, order, first, friction)] for _, shape, order in groups]
-        name = f"pressure on the {('coarser', 'finer')[first]} block, " + ("sheared, sticks" if friction else "no friction")
+        name = f"pressure on the {('coarser', 'finer')[first]} block, " + (
+            "sheared, sticks" if friction else "no friction"
+        )
         axis.bar(np.arange(len(groups)) + 0.2 * (offset - 1.5), np.maximum(errors, 1e-17), 0.18, label=name)
     axis.set_yscale("log")
     axis.set_ylim(1e-16, 1e-3)

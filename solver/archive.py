@@ -20,7 +20,7 @@ import numpy as np
 
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearPair
-from solver.gear_position import Memory, PositionResult
+from solver.gear_position import ContactPoints, Memory, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 
@@ -150,16 +150,18 @@ def _shape(arrays: dict[str, Any], name: str) -> GearShape:
 
 
 def _result_arrays(result: PositionResult) -> dict[str, Any]:
-    arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name != "stand"}
+    arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name not in ("stand", "contact")}
+    arrays |= {f"contact/{f.name}": getattr(result.contact, f.name) for f in fields(ContactPoints)}
     return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
 
 
 def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
     own = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
     stand = Stand(pair, float(own.pop("angle")), (float(own["extra"][0]), float(own.pop("extra")[1])))
+    contact = ContactPoints(**{f.name: own.pop(f"contact/{f.name}") for f in fields(ContactPoints)})
     own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
     scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
-    return PositionResult(stand=stand, **(own | scalars))
+    return PositionResult(stand=stand, contact=contact, **(own | scalars))
 
 
 def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:

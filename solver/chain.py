@@ -11,13 +11,17 @@ so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from th
 fewer columns, and what a pair of teeth needs of all the rest is one small matrix B G_st Bᵀ.
 
 The ring is closed by default. A few teeth with free outer cuts are a wedge that is held at a narrow bore and leans
-over. Error of the deflection of touching teeth under a tangential load, against 30 (spur) and 19 (helical) teeth:
+over. Error of the deflection of two or three touching teeth under a tangential load, against the closed ring:
 
-    teeth more on each side          1       2       3       4
-    spur 50 × 3 mm, bore 70 mm     590 %   210 %   100 %    60 %
-    the same, bore 120 mm           16 %   3.8 %   1.1 %   0.3 %
-    helical 17 × 2.1 mm, bore 20    24 %   7.6 %   2.7 %
-    helical 60 × 2.1 mm, bore 60   620 %   250 %   130 %
+    teeth more on each side                 1       2       3       4
+    spur, 50 teeth × 3 mm, bore 70 mm     600 %   220 %   110 %    63 %
+    the same, bore 120 mm                  16 %   3.8 %   1.1 %   0.3 %
+    helical, 17 × 2.1 mm, bore 20          24 %   7.6 %   2.8 %
+    helical, 60 × 2.1 mm, bore 60         860 %   370 %   200 %
+
+Measured for the 17-tooth sector with 39 × 28 elements (192,000 rows, 13,509 functionals, 2 × 1,710 cut dofs, two busy
+cores): condensed in 70 s with 6.2 GB at the peak, ring 17 s (8 s with tolerance 1e-10), rank 1,472 (960), a block of
+2,500 rows on four teeth 2.6 s; with 27 × 16 elements (84,000; 5,445; 2 × 990): 11 s and 1.8 GB, 3.6 s, 960, 1.6 s.
 """
 
 from __future__ import annotations

@@ -86,7 +86,6 @@ def run(
     settings: Overrides = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar; the log file is written.")] = False,
-    no_skip: Annotated[bool, typer.Option("--no-skip", help="Also compute what could be skipped; a test.")] = False,
 ) -> None:
     """Compute a scene.
 
@@ -97,7 +96,7 @@ def run(
         _require(not out.is_file(), f"--out: found the file {out}; allowed: a directory; remedy: give another name")
         from solver.run import run_scene
 
-        run_scene(loaded, out, resume=resume, quiet=quiet, no_skip=no_skip)
+        run_scene(loaded, out, resume=resume, quiet=quiet)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

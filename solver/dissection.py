@@ -1,9 +1,9 @@
 """Dense Schur complement of a large sparse symmetric matrix by nested dissection, MUMPS on the leaves.
 
 MUMPS alone orders a Schur complement by minimum degree (Debian builds it without METIS, and PETSc passes no ordering
-on to its Cholesky), and holds three copies of the result. Cutting the domain by hand a few times first, with the
-separators eliminated by dense LAPACK, needs 5 times fewer operations and 2.5 times less memory at 216,000 rows and
-13,500 retained ones.
+on to its Cholesky), and holds three copies of the result. Here the domain is first cut by hand a few times and the
+separators are eliminated by dense LAPACK. Measured on a box of 216,000 rows with 13,509 retained ones, two busy cores:
+MUMPS alone 240 s and 8.7 GB, this 107 s and 6.7 GB.
 
 Source: George 1973, doi 10.1137/0710032 (nested dissection); separators are level sets of a breadth-first search
 that starts from a whole end of the domain (George and Liu 1978, doi 10.1137/0715069, there from one vertex).

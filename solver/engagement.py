@@ -21,8 +21,8 @@ class Engagement:
     """One tooth's way through the mesh at one friction coefficient; entries (n,) ascend with `angle`.
 
     angle: the tooth's own pinion rotation [rad]. position, tooth: where in the pitch it was computed. force: normal
-    [N]. share: of the sum over all teeth [-]. max_pressure: fitted, away from tip edges; mean_pressure: of the fitted
-    peaks along the contact line; edge_pressure: largest at a tip edge, 0 without [MPa]. contact_length [mm].
+    [N]. share: of the sum over all teeth [-]. max_pressure: see `line_peak`; mean_pressure: of the fitted peaks along
+    the contact line [MPa]; both NaN where a tooth bears on tip edges only. contact_length [mm].
     """
 
     friction: float
@@ -33,7 +33,6 @@ class Engagement:
     share: Floats
     max_pressure: Floats
     mean_pressure: Floats
-    edge_pressure: Floats
     contact_length: Floats
 
 
@@ -59,13 +58,38 @@ def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...
             tooth.tooth,
             tooth.force * run.width,
             tooth.force / total,
-            tooth.max_pressure or np.nan,
+            line_peak(run, solved.cut, tooth.tooth),
             line_mean(solved.cut, tooth.tooth),
-            tooth.edge_pressure,
             tooth.contact_length * run.width,
         )
         for tooth in solved.teeth
     ]
+
+
+def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
+    """Largest fitted peak pressure [MPa] along a tooth's contact line between the tip-edge zones; NaN: not there.
+
+    The line is cut where it enters these zones, by linear interpolation between slices: which slices happen to lie
+    inside would make the maximum jump from position to position, for it is steepest there.
+    """
+    whole = cut.ξ[cut.tooth == tooth]
+    here = np.flatnonzero((cut.tooth == tooth) & np.isfinite(cut.peak))
+    here = here[np.argsort(cut.ξ[here])]
+    ξ, peak = cut.ξ[here], cut.peak[here]
+    low, high = run.inner_path
+    inside = peak[(ξ >= low) & (ξ <= high)]
+    if len(ξ) < 2 or np.ptp(ξ) == 0.0:
+        return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
+    half = 0.5 * np.max(np.diff(ξ))
+    ends = [_continued(limit, ξ, peak) for limit in (low, high) if whole.min() - half <= limit <= whole.max() + half]
+    found = np.concatenate([inside, ends])
+    return float(found.max()) if len(found) else float("nan")
+
+
+def _continued(x: float, at: Floats, values: Floats) -> float:
+    """A curve at x, linear between its points and beyond its ends."""
+    k = int(np.clip(np.searchsorted(at, x), 1, len(at) - 1))
+    return float(values[k - 1] + (values[k] - values[k - 1]) * (x - at[k - 1]) / (at[k] - at[k - 1]))
 
 
 def line_mean(cut: Slices, tooth: int) -> float:

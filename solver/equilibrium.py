@@ -92,11 +92,13 @@ def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Eq
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
-    """Equilibrium in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
-    one where friction alone carries a load. slip: as there. Raises NotConverged."""
+    """The state in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
+    one where friction alone carries a load. slip: as there. It is only nearly in equilibrium: at the edge, where a stuck
+    traction is singular, a point may open and close for ever. Raises NotConverged where it is singular."""
     law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
     every = np.ones(len(system.operator.weights), dtype=bool)
-    return _converged(law, _assumed_contact(system, every, slip), "contact without slip")
+    start = _assumed_contact(system, every, slip)
+    return _equilibrium(law, newton.solve(law, start, "contact without slip", ITERATIONS // 2, TOLERANCE))
 
 
 def frictional(
@@ -208,6 +210,10 @@ def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
     if not root.converged:
         left = root.residual / problem.scale(root.x)
         raise NotConverged(f"{stage}: residual {left:.1e} of the load after {root.iterations} iterations; a smaller step may help")
+    return _equilibrium(problem, root)
+
+
+def _equilibrium(problem: _Contact, root: newton.Root) -> Equilibrium:
     force, motion = problem.split(root.x)
     _, jump, law = problem.state(root.x)
     return Equilibrium(force, law.traction, motion, jump, root.iterations, root.residual)

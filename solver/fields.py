@@ -6,7 +6,8 @@
 
 Arrays of the flanks, one set for each friction coefficient, are named "pressure_MPa (mu=0.07)" and so on: pressure_MPa;
 traction_MPa: the contact traction on the pinion (pressure and friction) in space; slip_mm_per_rad: velocity of the
-pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. The wheel's flanks carry the
+pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. Pressures are averages about the
+nodes, which keep the force; the peaks are in summary.json. The wheel's flanks carry the
 pressure only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth (pair), roll_distance_mm.
 """
 
@@ -17,6 +18,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from meshes.data import Floats
 from solver.flank_field import flank_field, line_distance
@@ -29,6 +31,7 @@ from solver.gear_surfaces import (
     on_flank,
     place,
     placed_teeth,
+    sliding,
     space_vectors,
 )
 from solver.results import write_text
@@ -84,14 +87,25 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, t
 
 
 def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
-    traction, rate = space_vectors(run, result, result.traction), space_vectors(run, result, result.rate)
-    touching = (result.pressure > 0.0)[:, None]
+    pressure = nodal(run, result, tooth, result.pressure)
+    touching = pressure > 0.0
     return {
-        "pressure_MPa": nodal(run, result, tooth, result.pressure),
-        "traction_MPa": -nodal(run, result, tooth, traction),
-        "slip_mm_per_rad": nodal(run, result, tooth, np.where(touching, rate, 0.0)),
-        "sticks": nodal(run, result, tooth, result.sticks.astype(float)),
+        "pressure_MPa": pressure,
+        "traction_MPa": -nodal(run, result, tooth, space_vectors(run, result, result.traction)),
+        "slip_mm_per_rad": np.where(touching[:, None], sliding(run, result, tooth), 0.0),
+        "sticks": np.where(touching, _sticking(run, result, tooth), 0.0),
     }
+
+
+def _sticking(run: RunData, result: PositionResult, tooth: int) -> Floats:
+    """1 at the flank nodes whose nearest contact point sticks."""
+    points, nodes = result.contact, run.flank
+    mine = points.tooth == tooth
+    if not np.any(points.sticks[mine]):
+        return np.zeros(len(nodes.points))
+    s = line_distance(run.pair, result, tooth, 0, nodes.roll_length, nodes.z)
+    _, nearest = cKDTree(np.column_stack([points.across, points.z])[mine]).query(np.column_stack([s, nodes.z]))
+    return points.sticks[mine][nearest].astype(float)
 
 
 def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
@@ -101,7 +115,7 @@ def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
     pressure = np.zeros(n)
     if np.any(result.tooth == tooth):
         s = line_distance(run.pair, result, tooth, 1, nodes.roll_length, nodes.z)
-        field = flank_field(run, result, tooth, result.pressure)
+        field = flank_field(run, result, tooth)
         for z in np.unique(nodes.z):
             row = nodes.z == z
             pressure[row] = field.at(s[row][:, None], np.array([z]))[:, 0]

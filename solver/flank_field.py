@@ -1,6 +1,6 @@
-"""Nodal results of a flank as smooth fields over the exact flank: for maps, pictures, and the gear opposite.
+"""A position's pressures as smooth fields over the exact flank: for maps, pictures, and the gear opposite.
 
-The contact is a narrow ridge that crosses the rows of nodes at an angle. Interpolated as it lies, a ridge a few nodes
+The contact is a narrow ridge that crosses the rows of cells at an angle. Interpolated as it lies, a ridge a few points
 wide turns into a row of beads; interpolated along the contact line, at equal distance s from it, it stays a ridge.
 """
 
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats
+from meshes.flank import Flank
 from meshes.parameters import GearPair
 from solver.gear_position import PositionResult
 from solver.gear_surfaces import Polygons
@@ -19,11 +20,10 @@ from solver.run_data import RunData
 
 @dataclass(frozen=True)
 class FlankField:
-    """Values on one tooth pair's flanks at a position.
+    """Pressure on one tooth pair's flanks at a position.
 
-    heights (h,) [mm]: of the node rows, ascending. distances, values: per row, distance [mm of profile arc] of its
-    nodes from the contact line, positive towards the pinion's tip and ascending, and the values there; empty rows carry
-    nothing.
+    heights (h,) [mm]: of the node rows, ascending. distances, values: per row, distances [mm of profile arc] from the
+    contact line, positive towards the pinion's tip and ascending, and the values there; empty rows carry nothing.
     """
 
     heights: Floats
@@ -31,7 +31,7 @@ class FlankField:
     values: tuple[Floats, ...]
 
     def at(self, distance: Floats, z: Floats) -> Floats:
-        """Values (n, m) at distances (n, m) from the contact line, columns at heights z (m,); 0 off the nodes."""
+        """Values (n, m) at distances (n, m) from the contact line, columns at heights z (m,); 0 off the contact."""
         last = len(self.heights) - 1
         if last == 0:
             return np.column_stack([self._row(0, column) for column in distance.T])
@@ -49,15 +49,16 @@ class FlankField:
         return np.interp(distance, self.distances[k], self.values[k], left=0.0, right=0.0)
 
 
-def flank_field(run: RunData, result: PositionResult, tooth: int, values: Floats) -> FlankField:
-    """The field of a position's nodal values (n,) on tooth pair `tooth`."""
+def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
+    """The pressure of a position on tooth pair `tooth` [MPa], from its averages about the nodes."""
     mine = np.flatnonzero(result.tooth == tooth)
     nodes = result.node[mine]
-    z = np.round(run.flank.z, 9)
+    z, p = np.round(run.flank.z, 9), result.pressure[mine]
     s = line_distance(run.pair, result, tooth, 0, run.flank.roll_length[nodes], z[nodes])
     heights = np.unique(z)
-    rows = [mine_in_row[np.argsort(s[mine_in_row])] for h in heights for mine_in_row in [np.flatnonzero(z[nodes] == h)]]
-    return FlankField(heights, tuple(s[row] for row in rows), tuple(values[mine][row] for row in rows))
+    members = [np.flatnonzero(z[nodes] == height) for height in heights]
+    rows = [row[np.argsort(s[row])] for row in members]
+    return FlankField(heights, tuple(s[row] for row in rows), tuple(p[row] for row in rows))
 
 
 def line_distance(
@@ -80,8 +81,6 @@ class Patch:
 
     def polygons(self, run: RunData) -> Polygons:
         """Its surface in the gear's own frame, points in the order of (ρ, z) rows."""
-        from meshes.flank import Flank
-
         ρ, z = np.meshgrid(self.roll_length, self.z, indexing="ij")
         points = Flank(run.pair.gears[self.gear]).point(ρ, z).reshape(-1, 3)
         number = np.arange(ρ.size).reshape(ρ.shape)

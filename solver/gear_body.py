@@ -1,7 +1,8 @@
-"""A gear condensed once for all positions: one sector, meshed, factored, chained into the teeth that a pitch needs."""
+"""A gear condensed once for all positions: one sector, meshed, condensed, and closed to the ring that the gear is."""
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,8 @@ from solver.material import Material
 from solver.surface import Surface, surface_of
 from solver.traction import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
 
+COUPLING_TOLERANCE = 1e-10  # of the coupling between teeth, which is smooth; relative
+
 
 @dataclass(frozen=True)
 class GearBody:
@@ -25,7 +28,7 @@ class GearBody:
 
     flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
     pressure, else None. chain: compliance of all modelled teeth, tooth
-    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
+    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel). assemble_seconds, condense_seconds: what it took.
     """
 
     gear: GearParameters
@@ -34,6 +37,8 @@ class GearBody:
     traction: NitscheTraction | None
     chain: ChainedCompliance
     sign: int
+    assemble_seconds: float
+    condense_seconds: float
 
     @property
     def d(self) -> int:
@@ -71,10 +76,11 @@ def condensed_gear(
     carries_pressure: bool,
     safety: float = SAFETY,
 ) -> GearBody:
-    """Assembles, factors and chains one sector. teeth: the tooth pairs that touch; one more on each side is modelled.
+    """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch.
 
     The bore is held in the gear's frame.
     """
+    begin = time.perf_counter()
     body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
     assembled = assemble(body)
     flank = surface_of(mesh, "flank")
@@ -91,10 +97,13 @@ def condensed_gear(
     place[free] = np.arange(len(free))
     cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in (low, high)]
     cut = [dofs[dofs >= 0] for dofs in cut]
-    sectors = range(-(gear.z // 2), gear.z - gear.z // 2)
+    numbers = sorted(sign * tooth for tooth in teeth)
+    assembled_at = time.perf_counter()
     condensed = condense_sector(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1])
-    chain = ChainedCompliance(condensed, ChainSettings(pitch, len(sectors), sectors[0], d))
-    return GearBody(gear, mesh, flank, traction, chain, sign)
+    settings = ChainSettings(pitch, len(numbers), numbers[0], d, COUPLING_TOLERANCE)
+    chain = ChainedCompliance(condensed, settings)
+    end = time.perf_counter()
+    return GearBody(gear, mesh, flank, traction, chain, sign, assembled_at - begin, end - assembled_at)
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:

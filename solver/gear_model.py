@@ -22,11 +22,19 @@ WINDOW = 2.2  # half-width of the contact window in largest Hertz half-widths, p
 
 @dataclass(frozen=True)
 class Preparation:
-    """A gear model and what it took: seconds of meshing and of assembling, factoring and condensing."""
+    """A gear model and what it took: wall seconds of meshing and of all of condensing; of its parts, summed over gears."""
 
     model: GearModel
     mesh_seconds: float
-    condense_seconds: float
+    seconds: float
+
+    @property
+    def assemble_seconds(self) -> float:
+        return sum(body.assemble_seconds for body in self.model.bodies)
+
+    @property
+    def condense_seconds(self) -> float:
+        return sum(body.condense_seconds for body in self.model.bodies)
 
 
 def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:

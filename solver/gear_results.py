@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats
-from solver.gear_body import GearBody
 from solver.gear_position import PositionResult
 from solver.material import Material
 
@@ -47,9 +46,9 @@ class ToothSummary:
     contact_length: float
 
 
-def slices(result: PositionResult, pinion: GearBody, materials: tuple[Material, Material]) -> Slices:
-    """Cuts a position's contact into slices of constant z."""
-    edges = layer_edges(pinion)
+def slices(result: PositionResult, heights: Floats, materials: tuple[Material, Material]) -> Slices:
+    """Cuts a position's contact into slices of constant z; heights: z of the pinion flank's nodes (n,) [mm]."""
+    edges = layer_edges(heights)
     c = result.contact
     layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, len(edges) - 2)
     modulus = 1.0 / sum(1.0 / material.plane_modulus for material in materials)
@@ -59,11 +58,11 @@ def slices(result: PositionResult, pinion: GearBody, materials: tuple[Material, 
     return Slices(keys[:, 0], *(np.array(column) for column in columns))
 
 
-def layer_edges(pinion: GearBody) -> Floats:
-    """Heights (l + 1,) of the element layers' ends [mm]; in 2D one layer of unit width (loads are per mm there)."""
-    if pinion.d == 2:
-        return np.array([-0.5, 0.5])
-    return np.unique(np.round(pinion.z, 9))[:: pinion.mesh.order]
+def layer_edges(heights: Floats) -> Floats:
+    """Ends (l + 1,) of the element layers from the heights of second-order nodes [mm]; in 2D one layer of unit width
+    (loads are per mm there)."""
+    rows = np.unique(np.round(heights, 9))
+    return np.array([-0.5, 0.5]) if len(rows) == 1 else rows[::2]
 
 
 def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: float) -> tuple[float | bool, ...]:

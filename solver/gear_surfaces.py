@@ -10,10 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats, Ints
+from meshes.flank import Flank
 from solver.archive import GearShape
 from solver.frames import tangent_frames
 from solver.gear_position import PositionResult
-from solver.run_data import RunData
+from solver.kinematics import spin
+from solver.run_data import RunData, is_plane
 
 CUTS = ("cut_low", "cut_high")
 FINE = {
@@ -57,11 +59,6 @@ def compact(points: Floats, faces: tuple[Ints, ...]) -> Polygons:
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
     return Polygons(points[used], tuple(number[face] for face in faces))
-
-
-def is_plane(shape: GearShape) -> bool:
-    """True if the shape comes from a 2D mesh."""
-    return "face_low" not in shape.facets
 
 
 def flank_surface(shape: GearShape, face_width: float) -> Polygons:
@@ -159,18 +156,28 @@ def nodal(run: RunData, result: PositionResult, tooth: int, values: Floats) -> F
 
 
 def space_vectors(run: RunData, result: PositionResult, local: Floats) -> Floats:
-    """Vectors (n, d) in the local frames of a position's nodes (normal, transverse, third) as (n, 3) in space.
+    """Vectors (n, k) in the local frames of a position's nodes (normal, transverse, third) as (n, 3) in space.
 
     The frames are rebuilt from the exact flank's normals, which differ from the mesh's by less than a picture shows.
     """
-    flank, gear = run.flank, run.pair.pinion
-    twist = gear.base_half_angle - flank.roll_length / gear.base_radius + gear.twist * flank.z
-    cos_b, sin_b = np.cos(gear.base_helix_angle), np.sin(gear.base_helix_angle)
-    own = np.column_stack([-np.sin(twist) * cos_b, np.cos(twist) * cos_b, np.full(len(twist), -gear.hand * sin_b)])
     vectors = np.zeros((len(local), 3))
+    own, d, k = flank_normals(run), 2 if run.plane else 3, local.shape[1]
     for tooth in np.unique(result.tooth):
         here = result.tooth == tooth
         normals = own[result.node[here]] @ result.stand.rotation(0, 3, int(tooth)).T
-        d = local.shape[1]
-        vectors[here, :d] = np.einsum("jia,ji->ja", tangent_frames(normals[:, :d]), local[here])
+        vectors[here, :d] = np.einsum("jia,ji->ja", tangent_frames(normals[:, :d])[:, :k], local[here])
     return vectors
+
+
+def flank_normals(run: RunData) -> Floats:
+    """Outward unit normals (n, 3) of the exact involute helicoid at the pinion's flank nodes, in its own frame."""
+    return np.asarray(Flank(run.pair.pinion).helicoid_normal(run.flank.roll_length, run.flank.z))
+
+
+def sliding(run: RunData, result: PositionResult, tooth: int) -> Floats:
+    """Velocity (n, 3) of the pinion's flank nodes over the wheel, in space, per rad/s of pinion speed [mm/rad]: the
+    tangential part of e_z × (x − c_1) + (z_1/z_2) e_z × (x − c_2)."""
+    R = result.stand.rotation(0, 3, tooth)
+    x, normals = run.flank.points @ R.T, flank_normals(run) @ R.T
+    v = spin(x, np.zeros(3)) + spin(x, result.stand.centre(1, 3)) / run.pair.ratio
+    return v - np.einsum("ja,ja->j", v, normals)[:, None] * normals

@@ -86,7 +86,7 @@ def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top
     patch = flank_patch(run, gear)
     surface = patch.polygons(run)
     for tooth in contact_teeth(result):
-        field = flank_field(run, result, tooth, result.pressure)
+        field = flank_field(run, result, tooth)
         mesh = poly_data(place(result, gear, tooth, surface))
         mesh["pressure"] = patch.values(run, result, tooth, field).ravel()
         scene.add_mesh(

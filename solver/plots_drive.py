@@ -13,7 +13,7 @@ from solver.estimates import hertz_estimate
 from solver.hertz import LoadFactors
 from solver.overview import paper_estimate
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, friction_colours, note, sheet, signed
+from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet, signed
 from solver.results import friction_rows, loss_percent
 from solver.run_data import RunData
 
@@ -27,7 +27,8 @@ def load_sharing(run: RunData) -> Figure:
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     counts = [len(each[0].teeth) for each in run.positions]
     see = f"A tooth carries at most {100 * most[low]:.0f} % of the load; {min(counts)} to {max(counts)} teeth share it"
-    see += f"; friction μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if low != high else "."
+    changed = round(100 * most[high]) != round(100 * most[low])
+    see += f"; μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if changed else "."
     figure = sheet("Load sharing", see)
     axes = figure.subplots()
     for curve, colour in zip(curves, friction_colours(run.frictions)):
@@ -120,9 +121,15 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     figure = sheet("Line load and sliding along the path of contact", see, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(
-        ξ[~edge], load[~edge], ".", color="#556070", markersize=3, alpha=0.6, label="all slices of all positions"
+        ξ[~edge],
+        load[~edge],
+        ".",
+        color="#556070",
+        markersize=dot_size(len(ξ)),
+        alpha=0.6,
+        label="all slices of all positions",
     )
-    upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=4, label="bears on a tip edge")
+    upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=dot_size(len(ξ)) + 1, label="bears on a tip edge")
     upper.axhspan(low, high, color="#3b7a57", alpha=0.15)
     upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks")
     upper.set_ylabel("line load [N/mm]")
@@ -144,7 +151,7 @@ def _sliding(axes: Axes, run: RunData) -> None:
     axes.plot(ξ, 1.0 - v1 / v2, color=WHEEL, label="wheel")
     axes.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     axes.set_ylabel("specific sliding [–]")
-    axes.set_ylim(-4.0, 1.2)
+    axes.set_ylim(bottom=max(-4.0, float(min((1.0 - v2 / v1).min(), (1.0 - v1 / v2).min())) - 0.2))
     axes.legend(loc="lower right")
 
 
@@ -160,9 +167,23 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     see += f" (μ = {run.frictions[index]:g})."
     figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
-    along.plot(ξ[inside], peak[inside], ".", color=PINION, markersize=3, alpha=0.5, label="computed, every slice")
     along.plot(
-        ξ[inside], hertz[inside], ".", color="#c98a1b", markersize=2, alpha=0.5, label="Hertz, the slice's line load"
+        ξ[inside],
+        peak[inside],
+        ".",
+        color=PINION,
+        markersize=dot_size(len(ξ)),
+        alpha=0.5,
+        label="computed, every slice",
+    )
+    along.plot(
+        ξ[inside],
+        hertz[inside],
+        ".",
+        color="#c98a1b",
+        markersize=dot_size(len(ξ)) - 1,
+        alpha=0.5,
+        label="Hertz, the slice's line load",
     )
     estimate, line = hertz_estimate(run.scene), np.linspace(start, end, 200)
     along.plot(
@@ -171,7 +192,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
     along.set_ylim(bottom=0.0)
-    along.legend(loc="upper right", markerscale=3)
+    along.legend(loc="best", markerscale=2)
     _estimates(bars, run, index, ξ, peak)
     return figure
 

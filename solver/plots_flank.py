@@ -95,7 +95,7 @@ def _envelope_map(axes: Axes, run: RunData, index: int, top: float):  # type: ig
 def _position_map(axes: Axes, run: RunData, solved: SolvedPosition, top: float) -> None:
     """The pressures of all teeth at a position on one flank."""
     result, patch = solved.result, flank_patch(run, 0)
-    fields = [flank_field(run, result, int(tooth), result.pressure) for tooth in np.unique(result.tooth)]
+    fields = [flank_field(run, result, int(tooth)) for tooth in np.unique(result.tooth)]
     teeth = [patch.values(run, result, int(tooth), field) for tooth, field in zip(np.unique(result.tooth), fields)]
     ξ = patch.roll_length - run.pair.pitch_point_roll_lengths[0]
     axes.pcolormesh(

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements
-from solver.plots_style import FAINT, TEETH, friction_colours, sheet, signed
+from solver.plots_style import FAINT, TEETH, friction_colours, note, sheet, signed
 from solver.run_data import RunData
 
 STRESS = "maximum contact stress [MPa]"
@@ -31,6 +31,8 @@ def engagement_stress(run: RunData) -> Figure:
     figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross), (10.4, 5.6))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
+    low, high = (signed(ξ) for ξ in run.inner_path)
+    note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.01, 1.0)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
     main.legend(title="friction coefficient", loc="upper right")
@@ -79,6 +81,7 @@ def friction_trend(run: RunData) -> Figure:
         grid[0, column].set_ylim(0.0, 1.3 * max(np.max(t.largest) for t in found))
         grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
         grid[1, column].set_xlabel("friction coefficient μ")
+        grid[1, column].set_xlim(0.0, 1.05 * μ[-1])
     grid[0, 0].set_ylabel("contact stress [MPa]")
     grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
     grid[0, 1].legend(loc="upper right")
@@ -170,7 +173,7 @@ def _see_engagement(curves: Sequence[Engagement], cross: float) -> str:
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
-    before, after = (signed(100 * np.nanmean(change[side])) for side in (angle < 0.0, angle > 0.0))
+    before, after = (signed(100 * float(np.nanmean(change[side]))) for side in (angle < 0.0, angle > 0.0))
     where = f"the curves cross at {signed(cross)}°" if np.isfinite(cross) else "the curves do not cross"
     means = f"μ = {highest.friction:g} changes it by {before} % on average before the pitch point, {after} % after it"
     return f"{peak}; {means}; {where}."
@@ -183,7 +186,7 @@ def _see_teeth(curves: Sequence[Engagement]) -> str:
     parts = []
     for tooth in present(curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
-        low, high = (signed(100 * bound) for bound in (np.nanmin(change), np.nanmax(change)))
+        low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
         parts.append(f"tooth {2 - tooth} {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
 

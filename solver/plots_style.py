@@ -69,6 +69,11 @@ def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
     return [tuple(matplotlib.colormaps["viridis_r"](0.08 + 0.87 * rank)) for rank in ranks]
 
 
+def dot_size(count: int) -> float:
+    """Markers for a cloud of `count` points."""
+    return 3.0 if count > 400 else 7.0
+
+
 def signed(value: float, digits: int = 1) -> str:
     """A number with its sign, a true minus."""
     return f"{value:+.{digits}f}".replace("-", "−")

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.engagement import Engagement, crossing, engagements
+from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.gear_results import ToothSummary, balance_error
 from solver.run_data import RunData, SolvedPosition
 
@@ -58,7 +58,11 @@ class RunFacts:
 
 @dataclass(frozen=True)
 class ToothRow:
-    """One tooth pair at a position; edge_pressure_MPa: at a tip edge, 0 where none bears."""
+    """One tooth pair at a position.
+
+    max_pressure_MPa: fitted, between the tip-edge zones (see `engagement.line_peak`), NaN where nothing lies there.
+    edge_pressure_MPa: of the largest point at a tip edge, singular and a matter of the mesh; 0 where none bears.
+    """
 
     tooth: int
     force_N: float
@@ -71,7 +75,7 @@ class ToothRow:
 class PositionRow:
     """One position at one friction coefficient.
 
-    max_pressure_MPa: fitted, away from tip edges. tip_edge: whether a tooth bears on a tip edge, where pressure is
+    max_pressure_MPa: the largest of the teeth's. tip_edge: whether a tooth bears on a tip edge, where pressure is
     singular. loss_percent: friction power of the input power.
     """
 
@@ -105,25 +109,26 @@ class FrictionRow:
 
 def position_rows(run: RunData) -> list[PositionRow]:
     """All positions of the pitch, all friction coefficients."""
-    return [position_row(solved, run.width) for each in run.positions for solved in each]
+    return [position_row(run, solved) for each in run.positions for solved in each]
 
 
-def position_row(solved: SolvedPosition, width: float) -> PositionRow:
-    """One position; width: see RunData.width."""
-    result = solved.result
+def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
+    """One position."""
+    result, width = solved.result, run.width
+    teeth = tuple(_tooth_row(run, solved, tooth) for tooth in solved.teeth)
     return PositionRow(
         pinion_angle_deg=math.degrees(result.stand.angle),
         friction=result.friction,
         torque_pinion_Nm=1e-3 * width * result.torques[0],
         torque_gear_Nm=1e-3 * width * result.torques[1],
         transmission_error_um=1e3 * result.transmission_error,
-        max_pressure_MPa=max(tooth.max_pressure for tooth in solved.teeth),
+        max_pressure_MPa=float(np.nanmax([tooth.max_pressure_MPa for tooth in teeth])),
         tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
         loss_percent=loss_percent(solved),
         newton_iterations=result.iterations,
         balance_error=balance_error(result),
         seconds=result.seconds,
-        teeth=tuple(_tooth_row(tooth, width) for tooth in solved.teeth),
+        teeth=teeth,
     )
 
 
@@ -132,9 +137,9 @@ def loss_percent(solved: SolvedPosition) -> float:
     return 100.0 * solved.result.friction_loss / solved.result.torques[0]
 
 
-def _tooth_row(tooth: ToothSummary, width: float) -> ToothRow:
-    length = tooth.contact_length * width
-    return ToothRow(tooth.tooth, tooth.force * width, tooth.max_pressure, length, tooth.edge_pressure)
+def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
+    length, peak = tooth.contact_length * run.width, line_peak(run, solved.cut, tooth.tooth)
+    return ToothRow(tooth.tooth, tooth.force * run.width, peak, length, tooth.edge_pressure)
 
 
 def friction_rows(run: RunData) -> list[FrictionRow]:

@@ -7,17 +7,23 @@ import resource
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from mpi4py import MPI
 
+from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive, gear_shape
+from solver.fields import write_fields
+from solver.gear_body import GearBody
 from solver.gear_model import Preparation, prepare_model
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from solver.progress import Progress
+from solver.results import MeshFacts, RunFacts, Timings, write_tables, write_text
+from solver.run_data import RunData, run_data
 from solver.scene import Scene
 from solver.skips import skipped
 
@@ -28,18 +34,7 @@ class BalanceError(RuntimeError):
     """A converged position that fails its balance certificate."""
 
 
-@dataclass(frozen=True)
-class Timings:
-    """Wall seconds of the parts of a run."""
-
-    mesh: float = 0.0
-    condense: float = 0.0
-    positions: float = 0.0
-    output: float = 0.0
-    total: float = 0.0
-
-
-def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False, no_skip: bool = False) -> None:
+def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
     Raises NotConverged, BalanceError, MeshError, ArchiveError, OSError; nothing unconverged is ever written.
@@ -47,23 +42,63 @@ def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False
     comm = MPI.COMM_WORLD
     begin = time.perf_counter()
     compat.silence_logs()
-    log = _log(out, comm.rank == 0)
-    archive = Archive(out, scene.resolved_toml())
-    if comm.rank == 0:
-        (out / "scene.toml").write_text(scene.resolved_toml(), encoding="utf-8")
-    for sentence in skipped(scene):
-        log.info("skipped: %s", sentence)
-    preparation = prepare_model(scene, comm)
-    if comm.rank == 0:
-        archive.write_gears(tuple(gear_shape(b.mesh, b.flank.nodes) for b in preparation.model.bodies))
-    log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.condense_seconds)
-    swept = time.perf_counter()
-    _solve_positions(scene, preparation, archive, comm, resume, quiet, log)
-    solved = time.perf_counter()
-    if comm.rank == 0:
-        timings = Timings(preparation.mesh_seconds, preparation.condense_seconds, solved - swept, 0.0, solved - begin)
-        _write_output(scene, preparation, archive, out, timings, comm.size, log)
-    comm.Barrier()
+    with _logged(out, comm.rank == 0) as log:
+        archive = Archive(out, scene.resolved_toml())
+        if comm.rank == 0:
+            write_text(out / "scene.toml", scene.resolved_toml())
+        for sentence in skipped(scene):
+            log.info("skipped: %s", sentence)
+        preparation = prepare_model(scene, comm)
+        log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+        if comm.rank == 0:
+            pinion, wheel = preparation.model.bodies
+            archive.write_gears((gear_shape(pinion.mesh, pinion.flank.nodes), gear_shape(wheel.mesh, wheel.flank.nodes)))
+        swept = time.perf_counter()
+        _solve_positions(scene, preparation, archive, comm, resume, quiet, log)
+        solved = time.perf_counter()
+        memory = comm.allreduce(peak_memory_MB())
+        if comm.rank == 0:
+            parts = (preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds, solved - swept)
+            data = run_data(scene, archive.read_gears(), archive.read_positions(preparation.model.pair))
+            _write_output(data, out, log)
+            output, total = time.perf_counter() - solved, time.perf_counter() - begin
+            facts = _facts(scene, preparation, data, comm.size, Timings(*parts, output, total), memory)
+            write_tables(out, data, facts)
+            log.info("done in %.1f s, %.0f MB", total, memory)
+        comm.Barrier()
+
+
+def _write_output(data: RunData, out: Path, log: logging.Logger) -> None:
+    """Fields and pictures, as the scene asks."""
+    if data.scene.output.fields:
+        log.info("fields: %s", write_fields(data, out / "fields"))
+    if data.scene.output.pictures or data.scene.output.animation:
+        from solver.plots import draw_all  # pyvista and matplotlib take a second: only where a scene wants pictures
+
+        for path in draw_all(data, out / "pictures"):
+            log.info("picture: %s", path)
+
+
+def _facts(scene: Scene, preparation: Preparation, data: RunData, ranks: int, timings: Timings, memory: float) -> RunFacts:
+    bodies = preparation.model.bodies
+    mesh = MeshFacts(min(float(scaled_jacobians(b.mesh).min()) for b in bodies), _cells_across(data, bodies[0]))
+    return RunFacts(
+        versions=compat.versions(),
+        ranks=ranks,
+        dofs=sum(b.mesh.points.shape[0] * b.d for b in bodies),
+        cells=sum(len(b.mesh.cells) for b in bodies),
+        mesh=mesh,
+        skipped=skipped(scene),
+        timings_s=timings,
+        peak_memory_MB=memory,
+    )
+
+
+def _cells_across(data: RunData, pinion: GearBody) -> float:
+    """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
+    widths = np.concatenate([2.0 * solved.cut.half_width for each in data.positions for solved in each])
+    arc = np.unique(np.round(pinion.roll_length**2 / (2.0 * pinion.gear.base_radius), 7))
+    return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
 
 
 def pitch_of(scene: Scene) -> Pitch:

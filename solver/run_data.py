@@ -65,7 +65,7 @@ class RunData:
     @cached_property
     def plane(self) -> bool:
         """True where the scene was solved in 2D."""
-        return self.positions[0][0].result.points.shape[1] == 2
+        return is_plane(self.shapes[0])
 
     @property
     def width(self) -> float:
@@ -88,6 +88,14 @@ class RunData:
         return 2.0 * np.pi / self.pair.pinion.z
 
     @cached_property
+    def inner_path(self) -> tuple[float, float]:
+        """Roll distances [mm] between which no slice of any position bears on a tip edge."""
+        start, end = self.pair.path_of_contact
+        edges = np.concatenate([solved.cut.ξ[solved.cut.edge] for each in self.positions for solved in each])
+        before, after = edges[edges < 0.0], edges[edges > 0.0]
+        return float(before.max(initial=start)), float(after.min(initial=end))
+
+    @cached_property
     def flank(self) -> FlankNodes:
         """The pinion's flank nodes, in the order of PositionResult.node."""
         return flank_nodes(self.pair.pinion, self.shapes[0])
@@ -98,6 +106,11 @@ def flank_nodes(gear: GearParameters, shape: GearShape) -> FlankNodes:
     return FlankNodes(gear, shape.points[shape.flank_nodes])
 
 
+def is_plane(shape: GearShape) -> bool:
+    """True if the shape comes from a 2D mesh."""
+    return "face_low" not in shape.facets
+
+
 def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[SweptPosition]) -> RunData:
     """Puts a run together. Raises ArchiveError where no position of the pitch is there yet."""
     counted = [position for position in swept if not position.warm_up]
@@ -106,7 +119,7 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
     flank, materials = flank_nodes(scene.gear_pair().pinion, shapes[0]), scene.materials()
 
     def solved(result: PositionResult) -> SolvedPosition:
-        cut = slices(result, flank, materials)  # type: ignore[arg-type]  # reads only gear, z and roll_length
+        cut = slices(result, flank.z, materials)
         return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)))
 
     return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in counted))

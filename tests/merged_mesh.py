@@ -69,6 +69,24 @@ class Merged:
         function.x.array[:] = np.where(self.in_upper, upper, lower)
         return function
 
+    def per_node(self, upper: np.ndarray) -> Any:
+        """A continuous scalar on the upper block from its nodal values (N_upper,), zero on the lower one."""
+        make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
+        function = fem.Function(make(self.mesh, ("Discontinuous Lagrange", 1)))
+        nodes, dofs = self._cells_of(function.function_space)
+        function.x.array[dofs[self.in_upper]] = upper[nodes[self.in_upper]]
+        return function
+
+    def _cells_of(self, space: Any) -> tuple[np.ndarray, np.ndarray]:
+        """(n_cells, k) node of the own body (the lower one's come after the upper one's) and block of `space`."""
+        n_upper, n_lower = len(self.upper.points), len(self.lower.points)
+        cell_nodes = compat.cell_nodes(self.mesh)
+        back = np.full(n_upper + n_lower, -1)
+        used = np.unique(np.concatenate([np.arange(n_upper), self.twin]))
+        back[np.searchsorted(used, self.twin)] = n_upper + np.arange(n_lower)
+        dofs = np.asarray(getattr(space.dofmap.list, "array", space.dofmap.list)).reshape(cell_nodes.shape)
+        return np.where(self.in_upper[:, None], cell_nodes, back[cell_nodes]), dofs
+
     @cached_property
     def interface(self) -> Any:
         """The measure dS over the interface."""
@@ -78,16 +96,11 @@ class Merged:
     @cached_property
     def nodes_of_dofs(self) -> sp.csr_matrix:
         """(n_dofs, (N_upper + N_lower)·d): nodal displacements, upper body first, to degrees of freedom."""
-        n_upper, n_lower, d = len(self.upper.points), len(self.lower.points), self.d
-        cell_nodes, in_upper = compat.cell_nodes(self.mesh), self.in_upper
-        back = np.full(n_upper + n_lower, -1)
-        merged_number = np.unique(np.concatenate([np.arange(n_upper), self.twin]), return_inverse=True)[1][n_upper:]
-        back[merged_number] = n_upper + np.arange(n_lower)
-        nodes = np.where(in_upper[:, None], cell_nodes, back[cell_nodes])
-        dofs = np.asarray(getattr(self.space.dofmap.list, "array", self.space.dofmap.list)).reshape(nodes.shape)
+        nodes, dofs = self._cells_of(self.space)
+        d, count = self.d, len(self.upper.points) + len(self.lower.points)
         rows = (d * dofs.ravel()[:, None] + np.arange(d)).ravel()
         columns = (d * nodes.ravel()[:, None] + np.arange(d)).ravel()
-        return sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (d * dofs.size, d * (n_upper + n_lower)))
+        return sp.csr_matrix((np.ones(len(rows)), (rows, columns)), (d * dofs.size, d * count))
 
     def matrix(self, form: Any) -> sp.csr_matrix:
         """A bilinear form in nodal displacements of both bodies."""

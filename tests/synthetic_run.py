@@ -10,16 +10,18 @@ so torques, energy and the friction trend are known in closed form, and every fi
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from functools import lru_cache
 
 import numpy as np
 
 from meshes.data import Floats, MeshData
 from meshes.flank import contact_lines
+from meshes.parameters import GearPair
 from meshes.sector import sector_mesh
 from solver.archive import GearShape, gear_shape
 from solver.estimates import hertz_estimate
-from solver.gear_position import PositionResult
+from solver.gear_position import ContactPoints, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.hertz import line_half_width, line_peak_pressure, line_pressure
 from solver.kinematics import Stand
@@ -30,6 +32,8 @@ from solver.skips import is_plane
 from solver.surface import Surface, surface_of
 
 PEAK_TO_PEAK = 1.6e-3  # [mm] of the made-up transmission error
+LAST_ROW = 0.3  # [mm of ξ] beside a tip edge that count as bearing on it
+WINDOW = 0.6  # [mm of arc] on either side of a contact line
 NO_STATE = SweepState((0.0, 0.0), ())
 
 
@@ -85,43 +89,82 @@ def even_line_load(scene: Scene, angle: float, friction: float) -> float:
 
 def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: float) -> PositionResult:
     """One position."""
-    pair, estimate = scene.gear_pair(), hertz_estimate(scene)
-    z = flank.points[:, 2] if flank.points.shape[1] == 3 else np.zeros(len(flank.points))
-    r = np.hypot(flank.points[:, 0], flank.points[:, 1])
-    ρ = np.sqrt(np.maximum(r**2 - pair.pinion.base_radius**2, 0.0))
-    q = even_line_load(scene, angle, friction)
+    pair, estimate, d = scene.gear_pair(), hertz_estimate(scene), flank.points.shape[1]
+    line = Ridge(pair, even_line_load(scene, angle, friction), estimate.modulus)
     error = 0.02 + 0.5 * PEAK_TO_PEAK * np.cos(angle * pair.pinion.z)
     stand = Stand(pair, angle, (error / pair.pinion.base_radius, 0.0))
-    parts = [_tooth(stand, flank, line.tooth, z, ρ, q, estimate.modulus) for line in contact_lines(pair, angle)]
-    tooth, node, ξ, pressure = (np.concatenate(column) for column in zip(*parts))
-    d, weights = flank.points.shape[1], flank.weights()[node]
-    traction, rate = np.zeros((len(node), d)), np.zeros((len(node), d))
-    traction[:, 0], traction[:, 1] = pressure, friction * pressure * np.sign(ξ)
-    rate[:, 1] = (1.0 + 1.0 / pair.ratio) * ξ
+    teeth = [each.tooth for each in contact_lines(pair, angle)]
+    parts = [contact_points(stand, flank, tooth, line, friction) for tooth in teeth]
+    points = ContactPoints(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(ContactPoints)))
+    tooth, node, traction = (np.concatenate(c) for c in zip(*(nodal(stand, flank, t, line, friction) for t in teeth)))
     torque = estimate.pinion_torque / (pair.face_width if d == 2 else 1.0)
-    loss = float(np.sum(weights[:, None] * traction[:, 1:] * rate[:, 1:]))
-    placed = np.concatenate([
-        flank.points[node[tooth == i]] @ stand.rotation(0, d, i).T + stand.centre(0, d) for i in np.unique(tooth)
-    ])  # fmt: skip
-    at_edge = (r[node] > r.max() - 1e-6) & (pressure > 0.0)
+    loss = float(np.sum(points.weights[:, None] * points.traction[:, 1:] * points.rate[:, 1:]))
     return PositionResult(
-        stand, friction, (torque, pair.ratio * (torque - loss)), tooth, node, ξ, weights, traction, rate, placed,
-        np.zeros(len(node), dtype=bool), at_edge, 5, 1e-9, 0.1,
+        stand, friction, (torque, pair.ratio * (torque - loss)), points, tooth, node, flank.weights()[node], traction,
+        5, 1e-9, 0.1,
     )  # fmt: skip
 
 
-def _tooth(
-    stand: Stand, flank: Surface, tooth: int, z: Floats, ρ: Floats, q: float, modulus: float
-) -> tuple[Floats, ...]:
-    """Nodes near a tooth's contact line: tooth, node, ξ of the slice, Hertz pressure."""
-    pair = stand.pair
-    ξ = stand.roll_distance(tooth, z)
+@dataclass(frozen=True)
+class Ridge:
+    """Hertz pressure along contact lines under the line load q [N/mm], modulus E* [MPa]."""
+
+    pair: GearPair
+    q: float
+    modulus: float
+
+    def at(self, s: Floats, ξ: Floats) -> Floats:
+        """Pressure [MPa] at distance s from the line where its roll distance is ξ."""
+        start, end = self.pair.path_of_contact
+        radius = self.pair.relative_curvature_radius(np.clip(ξ, start, end))
+        b, p0 = line_half_width(self.q, radius, self.modulus), line_peak_pressure(self.q, radius, self.modulus)
+        return np.where((ξ >= start) & (ξ <= end), line_pressure(s / b, 1.0, 1.0) * p0, 0.0)
+
+    def half_width(self, ξ: Floats) -> Floats:
+        """b [mm]."""
+        return line_half_width(self.q, self.pair.relative_curvature_radius(ξ), self.modulus)
+
+
+def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> ContactPoints:
+    """Three heights a layer of cells, forty points across; exact quadrature of the ellipse's square root."""
+    pair, d = stand.pair, flank.points.shape[1]
+    heights, widths = layer_points(flank)
+    ξ = stand.roll_distance(tooth, heights)
+    keep = (ξ >= pair.path_of_contact[0]) & (ξ <= pair.path_of_contact[1])
+    z, ξ, widths = heights[keep], ξ[keep], widths[keep]
+    turn = (np.arange(40) + 0.5) * np.pi / 40
+    b = line.half_width(ξ)
+    s = (b[:, None] * -np.cos(turn)).ravel()
+    weights = (b[:, None] * np.sin(turn) * np.pi / 40 * widths[:, None]).ravel() / np.cos(pair.pinion.base_helix_angle)
+    z, ξ = np.repeat(z, 40), np.repeat(ξ, 40)
+    traction, rate = np.zeros((len(z), d)), np.zeros((len(z), d))
+    traction[:, 0] = line.at(s, ξ)
+    traction[:, 1] = friction * traction[:, 0] * np.sign(ξ)
+    rate[:, 1] = (1.0 + 1.0 / pair.ratio) * ξ
     start, end = pair.path_of_contact
-    ρ_line = pair.pitch_point_roll_lengths[0] + ξ
-    across = (ρ**2 - ρ_line**2) / (2.0 * pair.pinion.base_radius)  # profile arc, at right angles to the generators
-    radius = pair.relative_curvature_radius(np.clip(ξ, start, end))
-    b, p0 = line_half_width(q, radius, modulus), line_peak_pressure(q, radius, modulus)
-    on_path = (ξ >= start) & (ξ <= end)
-    near = np.flatnonzero(on_path & (np.abs(across) < 2.0 * b))
-    pressure = line_pressure(across[near], b[near], 1.0) * p0[near]
-    return np.full(len(near), tooth), near, ξ[near], pressure
+    edge = (ξ < start + LAST_ROW) | (ξ > end - LAST_ROW)
+    return ContactPoints(np.full(len(z), tooth), z, ξ, s, weights, traction, rate, np.zeros(len(z), dtype=bool), edge)
+
+
+def layer_points(flank: Surface) -> tuple[Floats, Floats]:
+    """Three Gauss points in every layer of cells along z, and their weights [mm; a sum of 1 in 2D]."""
+    if flank.points.shape[1] == 2:
+        return np.zeros(1), np.ones(1)
+    edges = np.unique(np.round(flank.points[:, 2], 9))[:: flank.order]
+    x, w = np.polynomial.legendre.leggauss(3)
+    half, middle = 0.5 * np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+    return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
+
+
+def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Floats, Floats, Floats]:
+    """(tooth, node, traction) at the nodes near a tooth's contact line."""
+    pair, d = stand.pair, flank.points.shape[1]
+    z = flank.points[:, 2] if d == 3 else np.zeros(len(flank.points))
+    ρ = np.sqrt(np.maximum(np.sum(flank.points[:, :2] ** 2, axis=1) - pair.pinion.base_radius**2, 0.0))
+    ξ = stand.roll_distance(tooth, z)
+    s = (ρ**2 - (pair.pitch_point_roll_lengths[0] + ξ) ** 2) / (2.0 * pair.pinion.base_radius)
+    near = np.flatnonzero(np.abs(s) < WINDOW)
+    traction = np.zeros((len(near), d))
+    traction[:, 0] = line.at(s[near], ξ[near])
+    traction[:, 1] = friction * traction[:, 0] * np.sign(ξ[near])
+    return np.full(len(near), tooth), near, traction

@@ -118,7 +118,10 @@ def test_rigid_coupling():
         (lambda m: Body(m, loads=(Traction("roof", (0.0, 1.0)),)), "roof"),
         (lambda m: Body(m, rigid=Rigid("lid")), "lid"),
         (lambda m: assemble(Body(m, rigid=Rigid("top", (Freedom("z", load=1.0),)))), "'z'"),
-        (lambda m: assemble(Body(m, supports=(Fixed("bottom"),), rigid=Rigid("top", (Freedom("y", load=1.0),)))), "top"),
+        (
+            lambda m: assemble(Body(m, supports=(Fixed("bottom"),), rigid=Rigid("top", (Freedom("y", load=1.0),)))),
+            "top",
+        ),
         (lambda m: Freedom("x"), "exactly one"),
         (lambda m: Freedom("x", 1.0, 1.0), "exactly one"),
         (lambda m: Material(-1.0), "youngs_modulus"),

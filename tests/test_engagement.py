@@ -48,17 +48,30 @@ def test_shares_sum_to_one_at_every_position(run: RunData) -> None:
 
 
 def test_maximum_pressure_is_hertz_at_the_smallest_radius(run: RunData) -> None:
-    """Problem: Hertz pressure with even load. Exact: the largest pressure on a line is at its root end, where the
-    relative radius is smallest; the slices (0.5 mm apart) come close to it. Lines on a tip edge are left out."""
+    """Problem: Hertz pressure with even load. Exact: the largest pressure on a line is p0 at its root end, or where it
+    enters the tip-edge zone; slices (1 mm of z) interpolate it within 3 %."""
     curve, pair = engagement(run, 0), run.pair
     modulus = 1.0 / sum(1.0 / material.plane_modulus for material in run.scene.materials())
-    inside = np.flatnonzero((curve.angle > 0.0) & (curve.edge_pressure == 0.0))
-    for k in inside:
+    low, _ = run.inner_path
+    assert pair.path_of_contact[0] < low < -4.0
+    known = np.isfinite(curve.max_pressure) & (curve.contact_length > 4.0)
+    assert known.sum() > 0.8 * len(known)
+    for k in np.flatnonzero(known):
         (line,) = [line for line in contact_lines(pair, float(curve.angle[k])) if line.tooth == 0]
         q = even_line_load(run.scene, float(run.angles[curve.position[k]]), 0.0)
-        radius = float(pair.relative_curvature_radius(min(line.roll_distance)))
+        radius = float(pair.relative_curvature_radius(max(low, min(line.roll_distance))))
         exact = float(line_peak_pressure(q, radius, modulus))
-        assert curve.max_pressure[k] == pytest.approx(exact, rel=0.03)
+        tolerance = 0.03 if min(line.roll_distance) < low else 0.06  # half a slice short of a line's own end
+        assert curve.max_pressure[k] == pytest.approx(exact, rel=tolerance)
+
+
+def test_maximum_does_not_jump_from_position_to_position(run: RunData) -> None:
+    """Problem: while the line's root end lies in the tip-edge zone, even load changes the maximum as √q only, by less
+    than 3 % a position; which slices lie inside must not show."""
+    curve = engagement(run, 0)
+    entering = (curve.angle < -0.15) & np.isfinite(curve.max_pressure)
+    assert entering.sum() > 6
+    assert np.abs(np.diff(np.log(curve.max_pressure[entering]))).max() < 0.03
 
 
 def test_sign_changes() -> None:
@@ -72,7 +85,7 @@ def test_sign_changes() -> None:
 
 def _curve(friction: float, angle: np.ndarray, pressure: np.ndarray) -> Engagement:
     zero = np.zeros(len(angle))
-    return Engagement(friction, angle, zero.astype(int), zero.astype(int), zero, zero, pressure, pressure, zero, zero)
+    return Engagement(friction, angle, zero.astype(int), zero.astype(int), zero, zero, pressure, pressure, zero)
 
 
 def test_crossing_finds_where_friction_turns_from_harm_to_relief() -> None:

@@ -11,8 +11,8 @@ from synthetic_run import synthetic_run
 
 from meshes.flank import contact_normal
 from solver.fields import write_fields
-from solver.flank_field import flank_field, flank_patch
-from solver.gear_surfaces import Polygons, joined, sector_surface, space_vectors
+from solver.flank_field import flank_field, flank_patch, line_distance
+from solver.gear_surfaces import Polygons, joined, sector_surface, sliding, space_vectors
 from solver.run_data import RunData
 
 
@@ -32,51 +32,74 @@ def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) ->
         for solved in run.positions[k]:
             pressure = flanks[f"pressure_MPa (mu={solved.result.friction:g})"]
             assert pressure[flanks["gear"] == 0].max() == pytest.approx(solved.result.pressure.max(), rel=1e-6)
-            assert pressure[flanks["gear"] == 1].max() == pytest.approx(solved.result.pressure.max(), rel=0.15)
+            assert pressure[flanks["gear"] == 1].max() == pytest.approx(solved.result.contact.pressure.max(), rel=0.1)
         assert gears.n_cells > 1000
     assert not list(tmp_path.glob("writing_*"))
 
 
 def test_nodes_stand_where_the_solver_had_them(run: RunData, tmp_path: Path) -> None:
-    """Exact: the placed pinion flank nodes under pressure are the solver's points in space (single precision)."""
+    """Exact: a pinion flank node under pressure lies within the contact's half-width (0.2 mm at most) of the plane of
+    action, in which all contact lines stand in space: distance (x − r_b1 n)·n with n along the line of action."""
     reader = pyvista.get_reader(str(write_fields(run, tmp_path)))
-    flanks, result = reader.read()[0], run.positions[0][0].result
+    flanks = reader.read()[0]
     loaded = (flanks["pressure_MPa (mu=0)"] > 0.0) & (flanks["gear"] == 0)
-    own = result.points[result.pressure > 0.0]
-    assert loaded.sum() == len(own)
-    np.testing.assert_allclose(np.sort(flanks.points[loaded], axis=0), np.sort(own, axis=0), atol=1e-5)
+    assert loaded.sum() > 100
+    pair = run.pair
+    angle, base = pair.operating_pressure_angle, pair.pinion.base_radius
+    off_plane = flanks.points[loaded] @ [np.cos(angle), -np.sin(angle), 0.0] - base
+    assert np.abs(off_plane).max() < 0.25
+    turned = flanks.points[loaded] @ [np.cos(angle), np.sin(angle), 0.0] - base
+    assert np.abs(turned).max() > 1.0
 
 
 def test_traction_balances_the_torque(run: RunData) -> None:
     """Problem: frictionless tractions on the pinion in space. Exact: all point along the one normal of the plane of
-    action (to the small free rotation), and their moment about the pinion's axis is −T_1 = −250 N·m (nodal quadrature
-    on the quick mesh: 2 %)."""
+    action but for the rolling angle b/ρ, and their moment about the pinion's axis is −T_1 = −250 N·m (nodal quadrature
+    on the quick mesh: 4 %)."""
     result = run.positions[0][0].result
     vectors = space_vectors(run, result, result.traction)
     loaded = result.pressure > 0.0
     unit = vectors[loaded] / np.linalg.norm(vectors[loaded], axis=1, keepdims=True)
-    # away from the nominal line the flank's normal turns with the rolling angle: b/ρ, at most 0.2 near the root
     assert np.all(unit @ contact_normal(run.pair) > 0.97)
-    on_pinion = -vectors * result.weights[:, None]
-    moment = np.cross(result.points, on_pinion)[:, 2].sum()
-    assert moment == pytest.approx(-250e3, rel=0.02)
+    points = np.concatenate([
+        run.flank.points[result.node[result.tooth == i]] @ result.stand.rotation(0, 3, i).T
+        for i in np.unique(result.tooth)
+    ])  # fmt: skip
+    moment = np.cross(points, -vectors * result.weights[:, None])[:, 2].sum()
+    assert moment == pytest.approx(-250e3, rel=0.04)
+
+
+def test_sliding_vanishes_at_the_pitch_line(run: RunData) -> None:
+    """Exact: at the contact line the sliding velocity is (1 + 1/u) ξ along the profile, 0 at the pitch point, and after
+    it the pinion's flank moves inwards over the wheel's; nodes up to 0.05 mm beside the line differ by as much."""
+    result = run.positions[0][0].result
+    v = sliding(run, result, 0)
+    s = line_distance(run.pair, result, 0, 0, run.flank.roll_length, run.flank.z)
+    ξ = run.pair.roll_distance(result.stand.angle, 0, run.flank.z)
+    on_line = np.abs(s) < 0.05
+    outwards = np.einsum("ja,ja->j", v, run.flank.points @ result.stand.rotation(0, 3, 0).T)
+    assert on_line.sum() > 20
+    exact = (1.0 + 1.0 / run.pair.ratio) * ξ[on_line]
+    np.testing.assert_allclose(np.linalg.norm(v[on_line], axis=1), np.abs(exact), atol=0.08)
+    far = np.abs(exact) > 0.2
+    assert np.all(np.sign(outwards[on_line][far]) == -np.sign(exact[far]))
 
 
 def test_field_reproduces_nodes_and_ridge(run: RunData) -> None:
-    """Problem: a Hertz ridge, four node intervals wide, across rows of nodes. Exact: the field's maximum over each
-    column is the ridge's height: within what a piecewise linear profile loses (an eighth of an interval off the top: 8 %), on
-    the pinion and mirrored on the wheel alike; 0 away from the line."""
-    result = run.positions[0][0].result
-    field = flank_field(run, result, 0, result.pressure)
-    cut = run.positions[0][0].cut
-    here = (cut.tooth == 0) & np.isfinite(cut.peak)
+    """Problem: a Hertz ridge that crosses the rows of nodes at an angle, four node intervals wide. Exact: the field's
+    maximum over each column is the ridge's height p0(ξ), on the pinion and mirrored on the wheel, within what a curve
+    through five points of an ellipse loses (an eighth of the width off its top: 7 %); the field is 0 away from the
+    line: the ridge covers less than an eighth of the flank."""
+    solved = run.positions[0][0]
+    field, cut = flank_field(run, solved.result, 0), solved.cut
+    here = (cut.tooth == 0) & np.isfinite(cut.hertz)
+    order = np.argsort(cut.z[here])
     for gear in (0, 1):
-        patch = flank_patch(run, gear, (900, 60))
-        values = patch.values(run, result, 0, field)
+        patch = flank_patch(run, gear, (2400, 60))
+        values = patch.values(run, solved.result, 0, field)
         inner = (patch.z > cut.z[here].min() + 1.0) & (patch.z < cut.z[here].max() - 1.0)
-        order = np.argsort(cut.z[here])
-        ridge = np.interp(patch.z, cut.z[here][order], cut.peak[here][order])
-        np.testing.assert_allclose(values.max(axis=0)[inner], ridge[inner], rtol=0.12)
+        ridge = np.interp(patch.z, cut.z[here][order], cut.hertz[here][order])
+        np.testing.assert_allclose(values.max(axis=0)[inner], ridge[inner], rtol=0.08)
         assert np.mean(values > 0.0) < 0.12
 
 

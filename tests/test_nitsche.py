@@ -1,8 +1,8 @@
 """The contact kernels against UFL forms on one merged mesh.
 
-Two blocks of triangles (and tetrahedra) of order 1 meet in a plane with matching facets, so that ψ_j = N_j, and become
-one dolfinx mesh. There UFL and FFCx integrate the jump across the inner facets, the traction and the bulk energy, with
-nothing of the solver's own in between.
+Two blocks of triangles (and tetrahedra) of order 1 meet in a plane with matching facets and become one dolfinx mesh.
+There UFL and FFCx integrate jump, traction, contact law and bulk energy over cells and inner facets, and differentiate
+the law, with nothing of the solver's own in between.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 import ufl
+from dolfinx import fem
 from merged_mesh import Merged
 
 from meshes.blocks import box, rectangle
@@ -21,7 +22,6 @@ from solver.body import Body, Fixed, Freedom, Rigid
 from solver.friction import coulomb
 from solver.full import FullContact
 from solver.material import Material
-from solver.nitsche import tangent_frames
 from solver.problem import Contact, Nitsche, Position, Problem, Step, prepare
 from solver.surface import surface_of
 from solver.traction import nitsche_traction
@@ -51,15 +51,6 @@ def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) ->
     return Position(problem, prepare(problem), Step())
 
 
-def _jump(merged: Merged) -> tuple[sp.csr_matrix, np.ndarray]:
-    """∫ψ_j [u] for all nodes of both bodies, and m_j on the upper one, both by UFL."""
-    u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
-    (u1, u2), (v1, _) = merged.sides(u), merged.sides(v)
-    jump = merged.matrix(ufl.inner(u1 - u2, v1) * merged.interface)
-    mass = merged.matrix(ufl.inner(u1, v1) * merged.interface)
-    return jump, np.asarray(mass.sum(axis=1)).ravel()
-
-
 def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     """Degrees of freedom of the nodes of both contact surfaces among those of both bodies."""
     first, second = surface_of(merged.upper, "bottom").nodes, surface_of(merged.lower, "top").nodes
@@ -67,14 +58,17 @@ def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     return tuple((merged.d * n[:, None] + np.arange(merged.d)).ravel() for n in every)
 
 
-def test_weighted_jump(merged):
-    """jump1, jump2 and m_j of the operator are ∫ψ_j N_k over segments; UFL integrates them over inner facets."""
-    op, d = _position(merged).operators[0], merged.d
-    jump, m = _jump(merged)
-    dofs1, dofs2 = _surface_dofs(merged)
-    assert np.allclose(op.weights, m[dofs1[::d]], rtol=1e-12)
-    for found, exact in ((op.jump1, jump[dofs1][:, dofs1]), (-op.jump2, jump[dofs1][:, dofs2])):
-        assert np.abs(sp.kron(found, sp.identity(d)) - sp.diags(1.0 / m[dofs1]) @ exact).max() < 1e-13
+def test_projection(merged):
+    """M = ∫N_k N_l and MΠ = ∫N_1 N_2 of the operator over segments; UFL integrates them over inner facets."""
+    op, (dofs1, dofs2) = _position(merged).operators[0], _surface_dofs(merged)
+    u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
+    (u1, u2), (v1, _) = merged.sides(u), merged.sides(v)
+    own = merged.matrix(ufl.inner(u1, v1) * merged.interface)[dofs1][:, dofs1]
+    other = merged.matrix(ufl.inner(u2, v1) * merged.interface)[dofs1][:, dofs2]
+    mass = op.shape.T @ sp.diags(op.weights) @ op.shape
+    eye = sp.identity(merged.d)
+    assert np.abs(sp.kron(mass, eye) - own).max() < 1e-13
+    assert np.abs(own @ sp.kron(op.jump2, eye) - other).max() < 1e-13
     assert np.abs(op.gap).max() < 1e-14
 
 
@@ -82,67 +76,109 @@ def _traction(merged: Merged) -> sp.csr_matrix:
     """S by UFL: the stress of order 1 is constant in a cell, so ∫ψ_j σn/|F| = σn/d there; the mean over the facets."""
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
     area = ufl.FacetArea(merged.mesh)
-    (v1, _), n = merged.sides(v), ufl.as_vector([0.0] * (merged.d - 1) + [-1.0])
-    σ1, _ = merged.sides(merged.stress(u))
-    form = merged.d / ufl.avg(area) * ufl.inner(ufl.dot(σ1, n), v1) * merged.interface
+    (v1, _), (σ1, _) = merged.sides(v), merged.sides(merged.stress(u))
+    form = merged.d / ufl.avg(area) * ufl.inner(ufl.dot(σ1, _normal(merged)), v1) * merged.interface
     surface = surface_of(merged.upper, "bottom")
     facets_at = np.repeat(np.bincount(surface.facets.ravel()), merged.d)
     return (sp.diags(1.0 / facets_at) @ merged.matrix(form)[_surface_dofs(merged)[0]]).tocsr()
 
 
+def _normal(merged: Merged):
+    return ufl.as_vector([0.0] * (merged.d - 1) + [-1.0])
+
+
 def test_recovered_traction(merged):
     """S of solver/traction.py against UFL's σ(u)n."""
-    surface = surface_of(merged.upper, "bottom")
-    found = nitsche_traction(merged.upper, STEEL, surface).traction
+    found = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom")).traction
     exact = _traction(merged)
     assert np.abs(exact[:, found.shape[1] :]).max() < 1e-9
     assert np.abs(found - exact[:, : found.shape[1]]).max() < 1e-12 * np.abs(exact).max()
 
 
-def _ufl_residual(merged: Merged, position: Position, θ: float, friction: float):
-    """Residual and tangent over the nodes of both bodies, put together from UFL's matrices and the formulas of the
-    brief: a(u,v) − θ Σ m F̄·ΓF̄ + Σ m (λ n + τ)·([v] − θ F̄(v))."""
-    jump, m_all = _jump(merged)
-    dofs1, _ = _surface_dofs(merged)
-    d, m = merged.d, m_all[dofs1][:: merged.d]
+def _stabilisers(merged: Merged, values: np.ndarray) -> list:
+    """γ and γ_t on the interface, from the values (n, 2) at the surface's nodes."""
+    result = []
+    for column in values.T:
+        nodal = np.zeros(len(merged.upper.points))
+        nodal[surface_of(merged.upper, "bottom").nodes] = column
+        result.append(merged.sides(merged.per_node(nodal))[0])
+    return result
+
+
+def _flux(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
+    """F = Γ⁻¹S at the surface's nodes in the displacements of all nodes; elsewhere zero."""
+    d, (dofs, _) = merged.d, _surface_dofs(merged)
+    Γ = np.repeat(values[:, 1:], d, axis=1)
+    Γ[:, -1] = values[:, 0]  # the interface is flat: its normal is the last axis
+    S = _traction(merged)
+    place = sp.csr_matrix((np.ones(len(dofs)), (dofs, np.arange(len(dofs)))), (S.shape[1], len(dofs)))
+    return (place @ sp.diags(1.0 / Γ.ravel()) @ S).tocsr()
+
+
+def _constant_term(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
-    K = merged.matrix(ufl.inner(merged.stress(u), ufl.sym(ufl.grad(v))) * ufl.Measure("dx", domain=merged.mesh))
-    γ = position.operators[0].stabiliser
-    Γ = np.repeat(γ[:, 1:], d, axis=1)
-    Γ[:, -1] = γ[:, 0]  # the interface is flat: its normal is the last axis
-    average = sp.diags(1.0 / m_all[dofs1])
-    mass1 = jump[dofs1][:, dofs1]
-    F = average @ mass1 @ sp.diags(1.0 / Γ.ravel()) @ _traction(merged)
-    B = average @ jump[dofs1]
-    K = K - θ * F.T @ sp.diags(np.repeat(m, d) * Γ.ravel()) @ F
-    frames = tangent_frames(np.tile([0.0] * (d - 1) + [-1.0], (len(m), 1)))
-    local = sp.block_diag(list(frames), format="csr")
-    trial_of, push = local @ (B - F), local @ (B - θ * F)
-    slope = np.hstack([γ[:, :1]] + [γ[:, 1:]] * (d - 1))
+    (u1, _), (v1, _), n = merged.sides(u), merged.sides(v), _normal(merged)
+    γ, γ_t = _stabilisers(merged, values)
+    un, vn = ufl.dot(u1, n), ufl.dot(v1, n)
+    form = (γ * un * vn + γ_t * (ufl.inner(u1, v1) - un * vn)) * merged.interface
+    F = _flux(merged, values)
+    return (F.T @ merged.matrix(form) @ F).tocsr()
 
-    def both(x):
-        law = coulomb((trial_of @ x).reshape(-1, d) * slope, friction)
-        D = sp.block_diag(list(m[:, None, None] * law.derivative * slope[:, None, :]), format="csr")
-        return K @ x + push.T @ (m[:, None] * law.traction).ravel(), K + push.T @ D @ trial_of
 
-    return both
+def test_constant_term(merged):
+    """∫ γF_n² + γ_t|F_t|² against UFL's integral of the recovered flux."""
+    nitsche = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom"))
+    n = merged.d * len(merged.upper.points)
+    exact = _constant_term(merged, nitsche.stabiliser)[:n, :n]
+    assert np.abs(nitsche.constant_term() - exact).max() < 1e-11 * np.abs(exact).max()
+
+
+class _UflContact:
+    """∫ (λn + τ)·[v] and its derivative, differentiated by UFL, at a jump of nodal fields (extended trace above)."""
+
+    def __init__(self, merged: Merged, values: np.ndarray, friction: float) -> None:
+        self.merged, self.state = merged, fem.Function(merged.space)
+        n, degree = _normal(merged), 5 if merged.d == 2 else 4  # the search's own rule: 3 points, 6 points
+        γ, γ_t = _stabilisers(merged, values)
+        (w1, w2), (v1, v2) = merged.sides(self.state), merged.sides(ufl.TestFunction(merged.space))
+        jump = w1 - w2
+        p, q = γ * ufl.dot(jump, n), γ_t * (jump - ufl.dot(jump, n) * n)
+        bound, size = friction * p, ufl.sqrt(ufl.dot(q, q))
+        share = ufl.conditional(ufl.le(size, bound), 1.0, bound / size)
+        touches = ufl.conditional(ufl.gt(p, 0.0), 1.0, 0.0)
+        measure = merged.interface(metadata={"quadrature_degree": degree})
+        form = ufl.inner(touches * (p * n + share * q), v1 - v2) * measure
+        self.force = compat.compile_form(form)
+        self.slope = compat.compile_form(ufl.derivative(form, self.state, ufl.TrialFunction(merged.space)))
+
+    def __call__(self, w: np.ndarray) -> tuple[np.ndarray, sp.csr_matrix]:
+        R = self.merged.nodes_of_dofs
+        self.state.x.array[:] = R @ w
+        return R.T @ compat.assemble_array(self.force), (R.T @ compat.assemble_csr(self.slope) @ R).tocsr()
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
 def test_residual_and_tangent(merged, θ):
-    """The full residual and tangent of the solver at random states, among them open, stuck and sliding nodes, against
-    the ones put together from UFL's matrices."""
+    """The full residual and tangent of the solver at random states, with open, stuck and sliding points, against
+    a(u,v) − θ∫F(u)·ΓF(v) + ∫(λn + τ)·([v] − θF(v)) with UFL's integrals and UFL's derivative."""
     position = _position(merged, theta=θ)
     system = FullContact(position, lambda t: coulomb(t, FRICTION), None)
-    by_ufl, T = _ufl_residual(merged, position, θ, FRICTION), _unknowns(position, system.size)
+    values = position.prepared[0].tractions["bottom"].stabiliser
+    u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
+    energy = ufl.inner(merged.stress(u), ufl.sym(ufl.grad(v))) * ufl.Measure("dx", domain=merged.mesh)
+    K = merged.matrix(energy) - θ * _constant_term(merged, values)
+    F, T, contact = _flux(merged, values), _unknowns(position, system.size), _UflContact(merged, values, FRICTION)
     seen = []
-    for seed in range(6):
+    for seed in range(4):
         x = 1e-3 * np.random.default_rng(seed).normal(size=system.size)
-        residual, tangent = by_ufl(T @ x)
-        wanted = T.T @ residual
-        wanted[-1] += 1000.0  # the load on the free motion
-        assert np.abs(system.residual(x) - wanted).max() < 1e-11 * np.abs(residual).max()
-        assert np.abs(system.tangent(x) - T.T @ tangent @ T).max() < 1e-11 * np.abs(tangent).max()
+        everywhere = T @ x
+        force, slope = contact(everywhere - F @ everywhere)
+        residual = T.T @ (K @ everywhere + force - θ * F.T @ force)
+        residual[-1] += 1000.0  # the load on the free motion
+        eye = sp.identity(len(everywhere))
+        tangent = T.T @ (K + (eye - θ * F).T @ slope @ (eye - F)) @ T
+        assert np.abs(system.residual(x) - residual).max() < 1e-11 * np.abs(residual).max()
+        assert np.abs(system.tangent(x) - tangent).max() < 1e-11 * np.abs(tangent).max()
         seen.append(system.state(x).traction)
     λ, τ = np.vstack(seen)[:, 0], np.linalg.norm(np.vstack(seen)[:, 1:], axis=1)
     slides = τ > 0.999 * FRICTION * λ

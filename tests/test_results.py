@@ -61,10 +61,10 @@ def test_units_and_balance(run: RunData) -> None:
 
 
 def test_lengths_sum_to_the_contact_line(run: RunData) -> None:
-    """Exact: the teeth's contact lengths sum to the length of all contact lines, to a slice a line end."""
+    """Exact: the teeth's contact lengths sum to the length of all contact lines, to a layer (1.06 mm) a line end."""
     for row in position_rows(run):
         exact = run.pair.contact_line_length(np.radians(row.pinion_angle_deg))
-        assert sum(t.contact_length_mm for t in row.teeth) == pytest.approx(exact, abs=0.6 * len(row.teeth))
+        assert sum(t.contact_length_mm for t in row.teeth) == pytest.approx(exact, abs=1.2 * len(row.teeth))
 
 
 def test_friction_rows(run: RunData) -> None:
@@ -113,7 +113,7 @@ def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
     """Exact: what `read_run` reads equals what was archived, number by number, and warm-up positions are left out."""
     store(run, tmp_path)
     again = read_run(tmp_path)
-    assert position_rows(again) == position_rows(run)
+    assert repr(position_rows(again)) == repr(position_rows(run))  # repr is exact, and NaN equals NaN in it
     np.testing.assert_array_equal(again.flank.points, run.flank.points)
 
 

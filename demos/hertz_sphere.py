@@ -130,26 +130,34 @@ def draw(path: Path, solution: Solution, profile: Profile, cells: int) -> None:
     figure.suptitle(
         f"Ball on block, {LOAD:g} N: peak pressure {profile.peak:.0f} MPa (Hertz {HERTZ.peak_pressure:.0f})"
     )
-    _map(axes[0], solution.contacts[0])
+    _map(axes[0], solution.contacts[0], 0.5 * HERTZ.radius / cells)
     _radius(axes[1], profile, cells)
     _section(axes[2], solution)
     figure.savefig(path, dpi=150)
     plt.close(figure)
 
 
-def _map(axis: Axes, contact: ContactResult) -> None:
-    quarter = contact.points[:, :2]
+def _map(axis: Axes, contact: ContactResult, size: float) -> None:
+    quarter, values = _averaged(contact, size)
     signs = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)])
     points = np.concatenate([quarter * s for s in signs])
-    points, index = np.unique(np.round(points, 12), axis=0, return_index=True)
-    pressure = np.tile(contact.pressure, 4)[index]
+    pressure = np.tile(values, 4)
     shown = axis.tricontourf(*points.T, pressure, levels=np.linspace(0.0, 1.02 * HERTZ.peak_pressure, 22), cmap="turbo")
     turn = np.linspace(0, 2 * np.pi, 200)
     axis.plot(HERTZ.radius * np.cos(turn), HERTZ.radius * np.sin(turn), "w--", lw=1.2)
     limit = 1.25 * HERTZ.radius
     axis.set(xlim=(-limit, limit), ylim=(-limit, limit), aspect="equal", xlabel="x [mm]", ylabel="y [mm]")
-    axis.set_title("Pressure on the block (dashed: Hertz' radius)", fontsize=10)
+    axis.set_title("Pressure on the block (mean over half cells; dashed: Hertz' radius)", fontsize=10)
     axis.figure.colorbar(shown, ax=axis, label="contact pressure [MPa]", shrink=0.85)
+
+
+def _averaged(contact: ContactResult, size: float) -> tuple[Floats, Floats]:
+    """Mean positions (n, 2) and pressures (n,) of the contact points in squares of this size."""
+    _, which = np.unique(np.floor(contact.points[:, :2] / size), axis=0, return_inverse=True)
+    which = which.reshape(-1)
+    weight = np.bincount(which, contact.weights)
+    x, y, p = (np.bincount(which, contact.weights * v) / weight for v in (*contact.points[:, :2].T, contact.pressure))
+    return np.column_stack([x, y]), p
 
 
 def _radius(axis: Axes, profile: Profile, cells: int) -> None:

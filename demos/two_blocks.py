@@ -152,13 +152,13 @@ def _blocks(axis: Axes, solution: Solution, scale: float = 300.0) -> None:
         if index == 1:
             top = place[np.unique(mesh.facets["top"])]
     result = solution.contacts[0]
-    order = np.argsort(result.points[:, 0])[::3]
-    height = np.interp(result.points[order, 0], *np.sort(top, axis=0).T)
-    on_lower = result.traction[order] / PRESSURE * 0.35
-    axis.quiver(
-        result.points[order, 0], height - on_lower[:, 1], *on_lower.T, angles="xy", scale_units="xy", scale=1,
-        width=0.004, color="tab:red", zorder=3,
-    )  # fmt: skip
+    x = np.linspace(0.1, 1.9, 13)
+    order = np.argsort(result.points[:, 0])
+    on_lower = np.stack([np.interp(x, *np.c_[result.points[:, 0], t][order].T) for t in result.traction.T], axis=1)
+    arrows = 0.35 / PRESSURE * on_lower
+    height = np.interp(x, *np.sort(top, axis=0).T)
+    style = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.004, "color": "tab:red", "zorder": 3}
+    axis.quiver(x, height - arrows[:, 1], *arrows.T, **style)
     axis.set(xlim=(-0.25, 2.45), ylim=(-0.1, 2.15), aspect="equal", xlabel="x [mm]", ylabel="y [mm]")
     axis.set_title(
         f"p = {PRESSURE:g} MPa and τ = {SHEAR:g} MPa all along (red; μ = {FRICTION}, deformed × {scale:g})", fontsize=10
@@ -180,7 +180,7 @@ def _bars(axis: Axes, worst: dict[Patch, float]) -> None:
     axis.set_xticks(np.arange(len(groups)), [f"{NAMES[shape]}\norder {order}" for _, shape, order in groups])
     axis.set_ylabel("largest error of the traction / p")
     axis.set_title("Every cell shape and order, either block carrying the pressure", fontsize=10)
-    axis.legend(fontsize=8, loc="upper center", ncols=2)
+    axis.legend(fontsize=7, loc="upper center", ncols=2)
 
 
 if __name__ == "__main__":

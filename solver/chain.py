@@ -142,17 +142,17 @@ class ChainedCompliance:
     def block(self, rows: Ints) -> Floats:
         """See `Compliance.block`; memory is that of the result and of one temporary tooth block."""
         groups = self._groups(rows)
-        count, d = len(rows), self.dimension
-        components = np.arange(d)
-        result = np.empty((count, d, count, d))
+        size = len(rows) * self.dimension
+        result = np.empty((size, size))
         bases = {tooth: self._turned_basis(tooth, nodes) for tooth, (_, nodes) in groups.items()}
         for tooth, (places, nodes) in groups.items():
+            own = _span(places, self.dimension)
             for other, (columns, _) in groups.items():
-                part = bases[tooth] @ self._coupling(tooth, other) @ bases[other].T
+                part = (bases[tooth] @ self._coupling(tooth, other)) @ bases[other].T
                 if other == tooth:
                     part += self._turned_sector(tooth, nodes)
-                result[np.ix_(places, components, columns, components)] = part.reshape(len(places), d, len(columns), d)
-        return result.reshape(count * d, count * d)
+                _assign(result, own, _span(columns, self.dimension), part)
+        return result
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
         """See `Compliance.apply`."""
@@ -164,7 +164,8 @@ class ChainedCompliance:
             local = self._basis[dofs] @ modes
             if tooth in loaded:
                 sources, values, _ = loaded[tooth]
-                local += self._sector[np.ix_(dofs, sources)] @ values
+                rows_of_sources = self._sector[sources]  # C is symmetric, and rows are what lies together in memory
+                local += values @ (rows_of_sources if len(dofs) == len(self._sector) else rows_of_sources[:, dofs])
             result[places] = local.reshape(-1, self.dimension) @ self._turn(tooth).T
         return result
 
@@ -212,6 +213,21 @@ class ChainedCompliance:
             return local
         turn = self._turn(tooth)
         return _turn_rows(turn, _turn_rows(turn, local).T)
+
+
+def _span(places: Ints, d: int) -> slice | Ints:
+    """Degrees of freedom of rows at `places`, as a slice where they follow one another."""
+    if len(places) and places[-1] - places[0] + 1 == len(places):
+        return slice(d * int(places[0]), d * (int(places[-1]) + 1))
+    return _dofs(places, d)
+
+
+def _assign(matrix: Floats, rows: slice | Ints, columns: slice | Ints, block: Floats) -> None:
+    """matrix[rows, columns] = block, for any two index sets."""
+    if isinstance(rows, slice) or isinstance(columns, slice):
+        matrix[rows, columns] = block
+    else:
+        matrix[np.ix_(rows, columns)] = block
 
 
 def _joined(stiffness: Floats, reduced: Floats, settings: ChainSettings) -> Interfaces:

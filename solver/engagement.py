@@ -69,8 +69,8 @@ def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...
 def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
     """Largest fitted peak pressure [MPa] along a tooth's contact line between the tip-edge zones; NaN: not there.
 
-    The line is cut where it enters these zones, by linear interpolation between slices: which slices happen to lie
-    inside would make the maximum jump from position to position, for it is steepest there.
+    The line is cut where it enters these zones, by linear interpolation of p0√R between slices: which slices
+    happen to lie inside would make the maximum jump from position to position, for the pressure is steepest there.
     """
     whole = cut.ξ[cut.tooth == tooth]
     here = np.flatnonzero((cut.tooth == tooth) & np.isfinite(cut.peak))
@@ -81,7 +81,9 @@ def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
     half = 0.5 * np.max(np.diff(ξ))
-    ends = [_continued(limit, ξ, peak) for limit in (low, high) if whole.min() - half <= limit <= whole.max() + half]
+    limits = [limit for limit in (low, high) if whole.min() - half <= limit <= whole.max() + half]
+    scale = np.sqrt(run.pair.relative_curvature_radius(np.clip(ξ, *run.pair.path_of_contact)))
+    ends = [_continued(x, ξ, peak * scale) / np.sqrt(run.pair.relative_curvature_radius(x)) for x in limits]
     found = np.concatenate([inside, ends])
     return float(found.max()) if len(found) else float("nan")
 

@@ -26,6 +26,7 @@ from solver.nitsche import ContactOperator, LawOf
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 40
+PATIENCE = 10  # iterations that a start from a neighbouring solution is given
 
 
 
@@ -102,17 +103,23 @@ def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
 
 
 def frictional(
-    system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
-) -> Equilibrium:
+    system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium,
+    neighbour: Equilibrium | None = None,
+) -> Equilibrium:  # fmt: skip
     """Equilibrium with Coulomb friction.
 
     friction: a number or (q,). slip: (n, d−1) what slipped since the last state apart from the present displacement
-    [mm]; heading: (q, d−1) the known direction of slip, or zero; start: the equilibrium without friction, or `stuck`. Raises NotConverged.
+    [mm]; heading: (q, d−1) the known direction of slip, or zero; start: the equilibrium without friction, or `stuck`.
+    neighbour: the equilibrium at another friction coefficient near by, tried first. Raises NotConverged.
     """
+    law = _Contact(system, lambda t: coulomb(t, friction), slip)
+    if neighbour is not None and neighbour.force.shape[1] == system.k:
+        root = newton.solve(law, law.join(neighbour.force, neighbour.motion), "Coulomb friction", PATIENCE, TOLERANCE)
+        if root.converged:
+            return _equilibrium(law, root)
     force = np.zeros((len(system.operator.nodes), system.k))
     force[:, : start.force.shape[1]] = start.force
     guess = _Contact(system, lambda t: starting_guess(t, friction, heading), slip)
-    law = _Contact(system, lambda t: coulomb(t, friction), slip)
     first = newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE)
     return _converged(law, first.x, "Coulomb friction")
 

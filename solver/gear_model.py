@@ -17,7 +17,7 @@ from solver.resolution import sector_resolutions
 from solver.scene import Scene
 from solver.skips import is_plane, touching_teeth
 
-WINDOW = 2.2  # half-width of the contact window in largest Hertz half-widths, plus one element
+WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
 
 
 @dataclass(frozen=True)

@@ -167,9 +167,11 @@ def turned(stand: Stand, gear: int, δ: float) -> Stand:
 
 
 def solve_position(
-    model: GearModel, shared: SharedPosition, friction: float, before: Memory | None, span: float
-) -> tuple[PositionResult, Equilibrium]:
-    """Equilibrium with friction, from the memory of the position before. span: Δφ [rad] assumed where there is none.
+    model: GearModel, shared: SharedPosition, friction: float, before: Memory | None, span: float,
+    neighbour: Equilibrium | None = None,
+) -> tuple[PositionResult, Equilibrium]:  # fmt: skip
+    """Equilibrium with friction, from the memory of the position before. span: Δφ [rad] assumed where there is none;
+    neighbour: the solution at a friction coefficient near by, to start from.
 
     Raises NotConverged.
     """
@@ -181,7 +183,7 @@ def solve_position(
         span = span if before is None else contact.stand.angle - before.stand.angle
         rate = relative_velocity(contact)
         slip = slipped(model, contact, memory, rate, ξ_before, span)
-        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth)
+        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth, neighbour)
     return position_result(model, contact, found, friction, smooth.iterations), found
 
 

@@ -94,10 +94,10 @@ def _position(
     begin = time.perf_counter()
     shared = shared_position(model, angle, state.extra, normal_only=not any(frictions))
     common = time.perf_counter() - begin
-    results, memories = [], []
+    results, memories, found = [], [], None
     for μ, memory in zip(frictions, state.memories):
         begin = time.perf_counter()
-        result, found = solve_position(model, shared, μ, memory, span)
+        result, found = solve_position(model, shared, μ, memory, span, found)
         memories.append(remembered(model, shared, found) if μ > 0.0 else None)
         seconds = common / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))

@@ -38,17 +38,20 @@ def contact_teeth(result: PositionResult) -> list[int]:
     return sorted(set(result.tooth[result.pressure > 0.0].tolist()))
 
 
-def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[int, int]) -> Image:
+def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[int, int], close: float = 0.0) -> Image:
     """Both gears at a position; the wheel as glass, so that the contact lines on the pinion's flanks are seen.
 
-    top: the pressure at the upper end of the colours [MPa]; size: width and height in pixels.
+    top: the pressure at the upper end of the colours [MPa]; size: width and height in pixels; close: 0 shows the whole
+    pinion, 1 the mesh.
     """
     pinion, pitch = run.pair.pinion, 0.5 * run.pair.working_pitch_diameters[0]
     scene = _plotter(size)
     _add_gear(scene, run, result, 0, all_teeth(run, 0), opacity=1.0)
     _add_flanks(scene, run, result, 0, top)
     _add_gear(scene, run, result, 1, all_teeth(run, 1), opacity=0.22)
-    return _picture(scene, Camera((0.66 * pitch, 0.0, 0.0), (0.35, 1.0, 0.6), 0.6 * pinion.tip_diameter))
+    target = ((0.66 + 0.36 * close) * pitch, 0.0, 0.0)
+    reach = (0.6 - 0.28 * close) * pinion.tip_diameter
+    return _picture(scene, Camera(target, (0.35, 1.0, 0.6), reach))
 
 
 def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, size: tuple[int, int]) -> Image:

@@ -14,7 +14,7 @@ from meshes.data import Floats
 from meshes.flank import contact_lines
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import Slices
-from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, sheet, signed
+from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, note, sheet, signed
 from solver.run_data import RunData, SolvedPosition
 
 FACE = "face width z [mm]"
@@ -114,6 +114,8 @@ def _nominal_lines(axes: Axes, run: RunData, angle: float, only: int | None = No
 def _flank_axes(axes: Axes, run: RunData) -> None:
     half, (start, end) = 0.5 * run.pair.face_width, run.pair.path_of_contact
     axes.axhline(0.0, color="#2e7d6b", linewidth=1.0)
+    for limit in run.inner_path:
+        axes.axhline(limit, color=INK, linewidth=0.9, linestyle=":")
     axes.set(xlabel=FACE, xlim=(-half, half), ylim=(start - 0.35, end + 0.15))
     axes.grid(False)
 
@@ -137,7 +139,7 @@ def _see_map(run: RunData, index: int) -> str:
     top = int(np.nanargmax(peak))
     side = "below the pitch line, towards the root" if ξ[top] < 0 else "above the pitch line, towards the tip"
     see = f"The largest pressure, {peak[top]:.0f} MPa, comes at ξ = {signed(ξ[top], 2)} mm, {side}"
-    return see + "; dashed: contact lines of rigid flanks, green: pitch line."
+    return see + "; dashed: contact lines of rigid flanks; beyond the dotted lines: tip-edge zones."
 
 
 def line_pressure_over_z(run: RunData) -> Figure:
@@ -155,13 +157,13 @@ def line_pressure_over_z(run: RunData) -> Figure:
             if point.tooth == tooth:
                 ax.axvline(point.z, color=FAINT, linestyle=":", linewidth=1.0)
                 ax.text(point.z, 0.97, point.name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
-        ax.set(
-            xlabel=FACE, title=f"tooth {2 - tooth}: " + ("through the pitch line" if tooth == 0 else "near the root")
-        )
-        ax.title.set_fontsize(10)
+        where = "through the pitch line" if tooth == 0 else "near the root"
+        ax.set_title(f"tooth {2 - tooth}: {where}", fontsize=10)
+        ax.set(xlabel=FACE, xlim=(-0.5 * run.pair.face_width, 0.5 * run.pair.face_width))
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
-    axes[1].legend(title="friction coefficient")
+    axes[1].legend(title="friction coefficient", loc="center left")
+    note(axes[1], "where the line bears on a tip edge\nnothing is drawn", 0.02, 0.98)
     return figure
 
 
@@ -179,14 +181,19 @@ def points_over_friction(run: RunData) -> Figure:
     figure = sheet(
         f"Pressure at the points A to D over the friction coefficient, φ = {np.degrees(run.angles[k]):.2f}°",
         see,
-        (10.4, 4.8),
+        (10.6, 6.0),
     )
-    axes, side = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.35, 1.0))
+    above, below, side = (figure.add_subplot(grid[place]) for place in ((0, 0), (1, 0), (slice(None), 1)))
     for point, colour, marker in zip(points, ("#3b7a57", "#2d6fb0", "#8a5a9e", "#c98a1b"), "osD^"):
-        axes.plot(μ, values[point.name], color=colour, marker=marker, label=point.name)
-    axes.set(xlabel="friction coefficient μ", ylabel="pressure [MPa]")
-    axes.set_ylim(0.0, 1.15 * max(v.max() for v in values.values()))
-    axes.legend(title="point", ncols=4, loc="upper right")
+        own = values[point.name]
+        above.plot(μ, own, color=colour, marker=marker, label=point.name)
+        below.plot(μ, 100.0 * (own / own[0] - 1.0), color=colour, marker=marker)
+    above.set_ylabel("pressure [MPa]")
+    above.set_ylim(0.0, 1.4 * max(v.max() for v in values.values()))
+    above.legend(ncols=4, loc="upper right")
+    below.axhline(0.0, color=FAINT, linewidth=1.0)
+    below.set(xlabel="friction coefficient μ", ylabel=f"change against μ = {μ[0]:g} [%]")
     side.axis("off")
     rows = [
         [p.name, f"{2 - p.tooth}", signed(p.z, 2), signed(p.ξ, 2), f"{spread[p.name]:.1f}", f"{part[p.name]:.1f} %"]

@@ -18,6 +18,7 @@ from solver.plots3d import gear_picture, pair_picture
 from solver.plots_flank import pressure_top
 from solver.plots_stress import OWN_ANGLE, STRESS
 from solver.plots_style import FAINT, PINION, PRESSURE_MAP, sheet
+from solver.results import position_row
 from solver.run_data import RunData
 
 FRAME_MS = 110
@@ -28,7 +29,7 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     k = loudest(run, index)
     result, top = run.positions[k][index].result, pressure_top(run, index)
     teeth = run.positions[k][index].teeth
-    peak = max(tooth.max_pressure for tooth in teeth)
+    peak = position_row(run, run.positions[k][index]).max_pressure_MPa
     load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
     see = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
     see += f", μ = {run.frictions[index]:g}."
@@ -57,7 +58,7 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
 
 def loudest(run: RunData, index: int) -> int:
     """The position at which most teeth carry load, and of these the one of the largest pressure."""
-    keys = [(len(each[index].teeth), max(t.max_pressure for t in each[index].teeth)) for each in run.positions]
+    keys = [(len(each[index].teeth), position_row(run, each[index]).max_pressure_MPa) for each in run.positions]
     return max(range(len(keys)), key=keys.__getitem__)
 
 
@@ -77,20 +78,30 @@ def animation(run: RunData, path: Path, index: int = 0, step: Callable[[], None]
     for k in range(len(run.positions)):
         frames.append(_frame(run, index, k, curve, top))
         step()
-    palette = frames[0].quantize(128, dither=Image.Dither.NONE)
-    reduced = [frame.quantize(128, palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    palette = _with_pressure_colours(frames[0]).quantize(255, dither=Image.Dither.NONE)
+    reduced = [frame.quantize(255, palette=palette, dither=Image.Dither.NONE) for frame in frames]
     path.parent.mkdir(parents=True, exist_ok=True)
     reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=FRAME_MS, loop=0, optimize=True)
     return path
 
 
+def _with_pressure_colours(frame: Image.Image) -> Image.Image:
+    """The frame over a band of the pressure map, so that a palette made from it has the colours of thin lines too."""
+    width, height = frame.size
+    band = (255 * PRESSURE_MAP(np.linspace(0.0, 1.0, width))[:, :3]).astype(np.uint8)
+    both = Image.new("RGB", (width, height + height // 4))
+    both.paste(frame, (0, 0))
+    both.paste(Image.fromarray(np.tile(band, (height // 4, 1, 1))), (0, height))
+    return both
+
+
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
     """A frame: the pair, and where its teeth stand on the curve of contact stress."""
     result = run.positions[k][index].result
-    see = f"φ = {np.degrees(run.angles[k]):5.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact"
+    see = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
     figure = sheet(run.scene.title, see, (9.0, 4.6))
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
-    left.imshow(pair_picture(run, result, top, (620, 520)))
+    left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
     left.axis("off")
     right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
     here = curve.position == k

@@ -35,7 +35,9 @@ def engagement_stress(run: RunData) -> Figure:
     note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.01, 1.0)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
-    main.legend(title="friction coefficient", loc="upper right")
+    values = np.concatenate([c.max_pressure for c in curves])
+    main.set_ylim(0.55 * np.nanmin(values), 1.06 * np.nanmax(values))
+    main.legend(loc="lower center", bbox_to_anchor=(0.5, 0.09), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
         detail.set_title(
@@ -78,7 +80,7 @@ def friction_trend(run: RunData) -> Figure:
             grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
     for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
         grid[0, column].set_title(title, fontsize=10)
-        grid[0, column].set_ylim(0.0, 1.3 * max(np.max(t.largest) for t in found))
+        grid[0, column].set_ylim(0.0, 1.5 * max(np.max(t.largest) for t in found))
         grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
         grid[1, column].set_xlabel("friction coefficient μ")
         grid[1, column].set_xlim(0.0, 1.05 * μ[-1])
@@ -157,7 +159,6 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
-    axes.set_ylim(bottom=0.0)
     for tooth in NAMES:
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
         if right - left > 0.3 * pitch:

@@ -5,13 +5,15 @@
     OUT/results/state.npz            the state to go on from, and how many positions are complete
 
 A file is written under another name and then renamed, so a run killed at any moment leaves complete files only; the
-state is written last, so what it counts is there.
+state is written last and removed first, so what it counts is there and belongs to one run.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
+import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,14 @@ from meshes.parameters import GearPair
 from solver.gear_position import ContactPoints, Memory, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
+from solver.scene import Scene
+from solver.schema import Output
+
+EARLIER = (
+    "results/*.npz", "results/*.tmp", "summary.json", "positions.csv", "teeth.csv", "fields/contact*",
+    "pictures/*.png", "pictures/animation.gif",
+)  # fmt: skip
+"""What an earlier run has left in its folder."""
 
 
 class ArchiveError(RuntimeError):
@@ -50,9 +60,18 @@ def gear_shape(mesh: MeshData, flank_nodes: Ints) -> GearShape:
 class Archive:
     """The folder of a run. Only rank 0 writes."""
 
-    def __init__(self, folder: Path, scene_text: str) -> None:
-        self.folder = folder / "results"
-        self.fingerprint = hashlib.sha256(scene_text.encode()).hexdigest()
+    def __init__(self, folder: Path, scene: Scene) -> None:
+        self.out, self.folder = folder, folder / "results"
+        self.fingerprint = fingerprint(scene)
+
+    def clear(self) -> None:
+        """Removes what an earlier run has left, its state first; other files stay. Raises OSError."""
+        if not self.folder.is_dir():
+            return  # nothing that looks like ours is
+        (self.folder / "state.npz").unlink(missing_ok=True)
+        for pattern in EARLIER:
+            for path in self.out.glob(pattern):
+                path.unlink()
 
     def write_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Keeps both gears' surfaces."""
@@ -62,6 +81,16 @@ class Archive:
             arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
             arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
         write_arrays(self.folder / "gears.npz", arrays)
+
+    def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
+        """Raises ArchiveError if the kept results stand on other meshes."""
+        for kept, own in zip(self.read_gears(), shapes):
+            same = kept.points.shape == own.points.shape and np.allclose(kept.points, own.points, atol=1e-9)
+            if not (same and np.array_equal(kept.flank_nodes, own.flank_nodes)):
+                raise ArchiveError(
+                    f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "
+                    "version of Evolvent or gmsh; run without --resume"
+                )
 
     def read_gears(self) -> tuple[GearShape, GearShape]:
         """(pinion, wheel). Raises ArchiveError."""
@@ -100,7 +129,7 @@ class Archive:
         if str(arrays["fingerprint"]) != self.fingerprint:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this scene, found those of another one (or of another level); "
-                "choose an empty folder with --out, or run the same scene"
+                "name another folder with --out, run the same scene, or leave --resume out to start again"
             )
         return arrays
 
@@ -124,14 +153,28 @@ class Archive:
         return SweptPosition(float(arrays["angle"]), bool(arrays["warm_up"]), results, SweepState((0.0, 0.0), ()))
 
 
+def fingerprint(scene: Scene) -> str:
+    """A hash of all that results depend on: of the scene without its title and the section [output]."""
+    essence = scene.model_copy(update={"title": "", "output": Output()})
+    return hashlib.sha256(essence.resolved_toml().encode()).hexdigest()
+
+
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
     """Writes a NumPy archive atomically and durably. Raises OSError (disk full, not writable)."""
     temporary = path.with_suffix(".tmp")
-    with open(temporary, "wb") as stream:
-        np.savez(stream, **{name.replace("/", "|"): value for name, value in arrays.items()})
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(temporary, path)
+    try:
+        with open(temporary, "wb") as stream:
+            np.savez(stream, **{name.replace("/", "|"): value for name, value in arrays.items()})
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(temporary, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise OSError(
+            f"{path}: wanted to write a results file, found {error.strerror or error}; make room or mend the access, "
+            "then go on with --resume: what was computed before is kept"
+        ) from error
 
 
 def read_arrays(path: Path) -> dict[str, Any]:
@@ -139,8 +182,10 @@ def read_arrays(path: Path) -> dict[str, Any]:
     try:
         with np.load(path, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError) as error:
-        raise ArchiveError(f"{path}: wanted a results file, found none that can be read ({error}); run the scene again") from error
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise ArchiveError(
+            f"{path}: wanted a results file, found none that can be read ({error}); run the scene again"
+        ) from error
 
 
 def _shape(arrays: dict[str, Any], name: str) -> GearShape:

@@ -118,12 +118,9 @@ def condense_sector(
     augmented = _augmented(_restricted(stiffness, order), permuted)
     schur = schur_complement(augmented, len(cut) + permuted.shape[0], settings)
     faces, surface = slice(0, len(cut)), slice(len(cut), None)
-    # copies, so that the one large array can go
-    return SectorCondensation(
-        stiffness=schur[faces, faces].copy(),
-        transfer=schur[surface, faces].copy(),
-        compliance=np.negative(schur[surface, surface]),
-    )
+    compliance = schur[surface, surface]  # stays where it is: a copy would be the largest array of a run, twice
+    np.negative(compliance, out=compliance)
+    return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), compliance)
 
 
 class SectorRecovery:

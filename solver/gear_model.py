@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import MeshData
-from meshes.sector import sector_mesh
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
 from solver.gear_position import GearLoad, GearModel
-from solver.resolution import sector_resolutions
+from solver.parallel import shared, together
 from solver.scene import Scene
+from solver.sectors import gear_mesh
 from solver.skips import is_plane, touching_teeth
 
 WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
@@ -40,30 +39,21 @@ class Preparation:
 def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     """Meshes and condenses both gears of a scene. Raises MeshError, NotPositiveDefinite, OutOfMemory."""
     begin = time.perf_counter()
-    meshes = sector_meshes(scene)
+    # the wheel's sector is the larger one: condensed first, while memory is free
+    own = [index for index in (1, 0) if index % comm.size == comm.rank]
+    meshes = together(comm, lambda: {index: gear_mesh(scene, index) for index in own})
     meshed = time.perf_counter()
-    teeth = contact_teeth(scene)
-    pair = scene.gear_pair()
-    built: list[GearBody | None] = [None, None]
-    for index in (0, 1):
-        if index % comm.size == comm.rank:
-            built[index] = condensed_gear(
-                pair.gears[index], meshes[index], scene.materials()[index], teeth, 1 - 2 * index, index == 0
-            )
-    pinion, wheel = (comm.bcast(built[index], root=index % comm.size) for index in (0, 1))
+    teeth, pair = contact_teeth(scene), scene.gear_pair()
+
+    def condensed(index: int) -> GearBody:
+        gear, material = pair.gears[index], scene.materials()[index]
+        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, carries_pressure=index == 0)
+
+    built = together(comm, lambda: {index: condensed(index) for index in own})
+    pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(pair, (pinion, wheel), tuple(teeth), load, _window(scene))
     return Preparation(model, meshed - begin, time.perf_counter() - meshed)
-
-
-def sector_meshes(scene: Scene) -> tuple[MeshData, MeshData]:
-    """The pinion's and the wheel's sector, or their plane sections where the scene is plane."""
-    shape = scene.mesh.shape
-    if is_plane(scene):
-        shape = "quadrilateral" if shape == "hexahedron" else "triangle"
-    gears = scene.gear_pair().gears
-    pinion, wheel = (sector_mesh(g, r, shape) for g, r in zip(gears, sector_resolutions(scene)))
-    return pinion, wheel
 
 
 def contact_teeth(scene: Scene) -> list[int]:

@@ -7,24 +7,28 @@ import resource
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
+from meshes.data import MeshData
 from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive, gear_shape
 from solver.fields import write_fields
-from solver.gear_body import GearBody
 from solver.gear_model import Preparation, prepare_model
+from solver.gear_position import GearModel
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch, uniform_pitch
+from solver.parallel import on_first, together
 from solver.progress import Progress
 from solver.results import MeshFacts, RunFacts, Timings, write_tables, write_text
 from solver.run_data import RunData, run_data
 from solver.scene import Scene
+from solver.sectors import sector_meshes
 from solver.skips import skipped
 
 BALANCE_LIMIT = 1e-2  # a position whose energy does not balance better is an error, not a result
@@ -34,41 +38,95 @@ class BalanceError(RuntimeError):
     """A converged position that fails its balance certificate."""
 
 
+@dataclass(frozen=True)
+class Start:
+    """Where a run begins: after `complete` positions, in this state."""
+
+    complete: int
+    state: SweepState
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What sweeping took: the meshes it stood on, and wall seconds."""
+
+    meshes: tuple[MeshData, MeshData]
+    timings: Timings
+
+
 def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
-    Raises NotConverged, BalanceError, MeshError, ArchiveError, OSError; nothing unconverged is ever written.
+    resume: go on after the positions that `out` holds; else what an earlier run left there is removed once the gears
+    are ready. Raises NotConverged, BalanceError, MeshError, ArchiveError, OSError, on all ranks; nothing unconverged is
+    ever written.
     """
-    comm = MPI.COMM_WORLD
-    begin = time.perf_counter()
+    comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
-    with _logged(out, comm.rank == 0) as log:
-        archive = Archive(out, scene.resolved_toml())
-        if comm.rank == 0:
-            write_text(out / "scene.toml", scene.resolved_toml())
+    archive = Archive(out, scene)
+    start = on_first(comm, lambda: _start(scene, archive, resume))  # before the first file is touched
+    with _logged(out, comm, start) as log:
         for sentence in skipped(scene):
             log.info("skipped: %s", sentence)
-        preparation = prepare_model(scene, comm)
-        log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
-        if comm.rank == 0:
-            pinion, wheel = preparation.model.bodies
-            archive.write_gears((gear_shape(pinion.mesh, pinion.flank.nodes), gear_shape(wheel.mesh, wheel.flank.nodes)))
-        swept = time.perf_counter()
-        _solve_positions(scene, preparation, archive, comm, resume, quiet, log)
-        solved = time.perf_counter()
+        sweep = _swept(scene, archive, start, comm, quiet, log)
         memory = comm.allreduce(peak_memory_MB())
-        if comm.rank == 0:
-            parts = (preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds, solved - swept)
-            data = run_data(scene, archive.read_gears(), archive.read_positions(preparation.model.pair))
-            _write_output(data, out, log)
-            output, total = time.perf_counter() - solved, time.perf_counter() - begin
-            facts = _facts(scene, preparation, data, comm.size, Timings(*parts, output, total), memory)
-            write_tables(out, data, facts)
-            log.info("done in %.1f s, %.0f MB", total, memory)
-        comm.Barrier()
+        on_first(comm, lambda: _write_output(scene, archive, sweep, comm.size, begin, memory, log))
 
 
-def _write_output(data: RunData, out: Path, log: logging.Logger) -> None:
+def _start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
+    """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
+    kept = archive.read_state(scene.gear_pair()) if resume else None
+    return None if kept is None else Start(*kept)
+
+
+def _swept(
+    scene: Scene, archive: Archive, start: Start | None, comm: MPI.Comm, quiet: bool, log: logging.Logger
+) -> Sweep:
+    """All positions in the archive. Where they are there already the gears are not even condensed."""
+    if start is not None:
+        log.info("resumed after %d of %d positions", start.complete, len(pitch_of(scene).angles))
+        if start.complete == len(pitch_of(scene).angles):
+            return Sweep(on_first(comm, lambda: sector_meshes(scene)), Timings())
+    preparation = prepare_model(scene, comm)
+    log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+    on_first(comm, lambda: _open_archive(scene, archive, preparation, start))
+    swept = time.perf_counter()
+    begin = start or Start(0, initial_state(scene.contact.friction))
+    _solve_positions(scene, preparation.model, archive, begin, comm, quiet, log)
+    pinion, wheel = (body.mesh for body in preparation.model.bodies)
+    return Sweep((pinion, wheel), _timings(preparation, time.perf_counter() - swept))
+
+
+def _timings(preparation: Preparation, positions: float) -> Timings:
+    return Timings(preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds, positions)
+
+
+def _open_archive(scene: Scene, archive: Archive, preparation: Preparation, start: Start | None) -> None:
+    """Makes the folder ready for this scene's positions."""
+    pinion, wheel = (gear_shape(body.mesh, body.flank.nodes) for body in preparation.model.bodies)
+    if start is None:
+        archive.clear()
+        archive.write_gears((pinion, wheel))
+    else:
+        archive.check_gears((pinion, wheel))
+    write_text(archive.out / "scene.toml", scene.resolved_toml())
+
+
+def _write_output(
+    scene: Scene, archive: Archive, sweep: Sweep, ranks: int, begin: float, memory: float, log: logging.Logger
+) -> None:
+    """Fields and pictures, as the scene asks; then the tables, whose being there says that the run is complete."""
+    started = time.perf_counter()
+    data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    write_text(archive.out / "scene.toml", scene.resolved_toml())  # a resumed run may ask for other output
+    _draw(data, archive.out, log)
+    now = time.perf_counter()
+    timings = replace(sweep.timings, output=now - started, total=now - begin)
+    write_tables(archive.out, data, _facts(data, sweep.meshes, ranks, timings, memory))
+    log.info("done in %.1f s, %.0f MB", timings.total, memory)
+
+
+def _draw(data: RunData, out: Path, log: logging.Logger) -> None:
     """Fields and pictures, as the scene asks."""
     if data.scene.output.fields:
         log.info("fields: %s", write_fields(data, out / "fields"))
@@ -79,25 +137,23 @@ def _write_output(data: RunData, out: Path, log: logging.Logger) -> None:
             log.info("picture: %s", path)
 
 
-def _facts(scene: Scene, preparation: Preparation, data: RunData, ranks: int, timings: Timings, memory: float) -> RunFacts:
-    bodies = preparation.model.bodies
-    mesh = MeshFacts(min(float(scaled_jacobians(b.mesh).min()) for b in bodies), _cells_across(data, bodies[0]))
+def _facts(data: RunData, meshes: tuple[MeshData, MeshData], ranks: int, timings: Timings, memory: float) -> RunFacts:
     return RunFacts(
         versions=compat.versions(),
         ranks=ranks,
-        dofs=sum(b.mesh.points.shape[0] * b.d for b in bodies),
-        cells=sum(len(b.mesh.cells) for b in bodies),
-        mesh=mesh,
-        skipped=skipped(scene),
+        dofs=sum(mesh.points.shape[0] * mesh.dimension for mesh in meshes),
+        cells=sum(len(mesh.cells) for mesh in meshes),
+        mesh=MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), _cells_across(data)),
+        skipped=skipped(data.scene),
         timings_s=timings,
         peak_memory_MB=memory,
     )
 
 
-def _cells_across(data: RunData, pinion: GearBody) -> float:
+def _cells_across(data: RunData) -> float:
     """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
     widths = np.concatenate([2.0 * solved.cut.half_width for each in data.positions for solved in each])
-    arc = np.unique(np.round(pinion.roll_length**2 / (2.0 * pinion.gear.base_radius), 7))
+    arc = np.unique(np.round(data.flank.roll_length**2 / (2.0 * data.pair.pinion.base_radius), 7))
     return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
 
 
@@ -108,33 +164,33 @@ def pitch_of(scene: Scene) -> Pitch:
 
 
 def _solve_positions(
-    scene: Scene, preparation: Preparation, archive: Archive, comm: MPI.Comm, resume: bool, quiet: bool, log: logging.Logger
+    scene: Scene, model: GearModel, archive: Archive, start: Start, comm: MPI.Comm, quiet: bool, log: logging.Logger
 ) -> None:
-    model, pitch, frictions = preparation.model, pitch_of(scene), scene.contact.friction
-    begin, state = 0, initial_state(frictions)
-    if resume and (kept := archive.read_state(model.pair)) is not None:
-        begin, state = kept
-        log.info("resumed after %d of %d positions", begin, len(pitch.angles))
-    mine = [i for i in range(len(frictions)) if i % comm.size == comm.rank]
-    own = replace(state, memories=tuple(state.memories[i] for i in mine))
-    with Progress(len(pitch.angles), begin, hidden=quiet or comm.rank > 0) as progress:
-        for k, part in enumerate(sweep_pitch(model, pitch, [frictions[i] for i in mine], own, begin), start=begin):
-            position = _gathered(part, comm, len(frictions))
+    pitch, state = pitch_of(scene), start.state
+    with Progress(len(pitch.angles), start.complete, hidden=quiet or comm.rank > 0) as progress:
+        for k in range(start.complete, len(pitch.angles)):
+            position = _position(model, pitch, scene.contact.friction, state, k, comm)
             _certify(position)
-            if comm.rank == 0:
-                archive.write_position(k, position)
-                log.info(_line(position))
+            on_first(comm, partial(archive.write_position, k, position))
+            log.info(_line(position))
             progress.advance()
+            state = position.state
 
 
-def _gathered(part: SweptPosition, comm: MPI.Comm, count: int) -> SweptPosition:
-    """All friction coefficients' results and memories; coefficient i was computed by rank i modulo the ranks."""
-    if comm.size == 1:
-        return part
-    parts = comm.allgather((part.results, part.state.memories))
-    results = tuple(parts[i % comm.size][0][i // comm.size] for i in range(count))
-    memories = tuple(parts[i % comm.size][1][i // comm.size] for i in range(count))
-    return replace(part, results=results, state=SweepState(part.state.extra, memories))
+def _position(
+    model: GearModel, pitch: Pitch, frictions: tuple[float, ...], state: SweepState, k: int, comm: MPI.Comm
+) -> SweptPosition:
+    """Position k of the pitch at all friction coefficients, of which i is computed by rank i modulo the ranks."""
+    own = range(comm.rank, len(frictions), comm.size)
+
+    def part() -> SweptPosition | None:
+        mine = replace(state, memories=tuple(state.memories[i] for i in own))
+        return next(sweep_pitch(model, pitch, [frictions[i] for i in own], mine, k)) if own else None
+
+    parts: list[SweptPosition] = comm.allgather(together(comm, part))
+    results = tuple(parts[i % comm.size].results[i // comm.size] for i in range(len(frictions)))
+    memories = tuple(parts[i % comm.size].state.memories[i // comm.size] for i in range(len(frictions)))
+    return replace(parts[0], results=results, state=SweepState(parts[0].state.extra, memories))
 
 
 def _certify(position: SweptPosition) -> None:
@@ -154,28 +210,40 @@ def _line(position: SweptPosition) -> str:
     worst = max(balance_error(r) for r in position.results)
     seconds = sum(r.seconds for r in position.results)
     kind = "warm-up " if position.warm_up else "position"
-    return (
-        f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"
-    )
+    return f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"
 
 
 @contextmanager
-def _logged(out: Path, first: bool) -> Iterator[logging.Logger]:
-    """The run's log: OUT/run.log on rank 0, nothing elsewhere. Makes the folder. Raises OSError."""
+def _logged(out: Path, comm: MPI.Comm, start: Start | None) -> Iterator[logging.Logger]:
+    """The run's log: OUT/run.log on rank 0, nothing elsewhere; a resumed run adds to it. Makes the folder.
+
+    Raises OSError.
+    """
     log = logging.getLogger("evolvent")
     log.setLevel(logging.INFO)
     log.propagate = False
-    handler: logging.Handler = logging.NullHandler()
-    if first:
-        out.mkdir(parents=True, exist_ok=True)
-        handler = logging.FileHandler(out / "run.log", mode="a", encoding="utf-8")
-        handler.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+    handler = together(comm, lambda: logging.NullHandler() if comm.rank > 0 else _log_file(out, "a" if start else "w"))
     log.addHandler(handler)
     try:
         yield log
+    except Exception as error:
+        log.error("failed: %s", error)
+        raise
     finally:
         log.removeHandler(handler)
         handler.close()
+
+
+def _log_file(out: Path, mode: str) -> logging.Handler:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        handler = logging.FileHandler(out / "run.log", mode=mode, encoding="utf-8")
+    except OSError as error:
+        raise OSError(
+            f"{out}: wanted a folder to write to, found {error.strerror}; name another one with --out"
+        ) from error
+    handler.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+    return handler
 
 
 def peak_memory_MB() -> float:

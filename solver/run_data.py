@@ -128,5 +128,5 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
 def read_run(folder: Path) -> RunData:
     """The run that `folder` holds: OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
     scene = load_scene(folder / "scene.toml")
-    archive = Archive(folder, scene.resolved_toml())
+    archive = Archive(folder, scene)
     return run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))

@@ -26,11 +26,15 @@ def sector_meshes(scene: Scene, plane: bool | None = None) -> tuple[MeshData, Me
 
     plane: mesh the mid-face sections only; by default where `is_plane` says so. Raises MeshError.
     """
+    return gear_mesh(scene, 0, plane), gear_mesh(scene, 1, plane)
+
+
+def gear_mesh(scene: Scene, index: int, plane: bool | None = None) -> MeshData:
+    """One of the `sector_meshes`: the pinion's (index 0) or the wheel's (1)."""
     flat = is_plane(scene) if plane is None else plane
     shape = PLANE_SHAPE[scene.mesh.shape] if flat else scene.mesh.shape
-    gears = zip(scene.gear_pair().gears, sector_resolutions(scene), strict=True)
-    pinion, wheel = (sector_mesh(gear, resolution, shape) for gear, resolution in gears)
-    return (pinion, wheel) if scene.mesh.order == 2 else (linear(pinion), linear(wheel))
+    mesh = sector_mesh(scene.gear_pair().gears[index], sector_resolutions(scene)[index], shape)
+    return mesh if scene.mesh.order == 2 else linear(mesh)
 
 
 def linear(mesh: MeshData) -> MeshData:

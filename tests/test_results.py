@@ -119,10 +119,9 @@ def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
 
 def store(run: RunData, folder: Path) -> None:
     """Archives a run as a real one would be, with a warm-up position in front."""
-    text = run.scene.resolved_toml()
-    archive = Archive(folder, text)
+    archive = Archive(folder, run.scene)
     archive.write_gears(run.shapes)
-    (folder / "scene.toml").write_text(text, encoding="utf-8")
+    (folder / "scene.toml").write_text(run.scene.resolved_toml(), encoding="utf-8")
     results = [tuple(solved.result for solved in each) for each in run.positions]
     state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))
     archive.write_position(0, SweptPosition(-0.1, True, results[0], state))

@@ -1,0 +1,54 @@
+"""The helical pair of Yang et al. 2022 by the Python API: friction turns the contact stress about the pitch point.
+
+    python demos/yang2022.py [--quick] [--out DIR]
+
+The scene is demos/yang2022.toml; --quick takes a coarse mesh, two friction coefficients and four positions, to see
+that everything works. The demo asserts what the paper finds: at constant pinion torque the largest contact stress of
+a tooth grows with friction before the pitch point and falls after it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from solver.run import run_scene
+from solver.run_data import RunData, read_run
+from solver.scene import load_scene
+
+SMALL = (
+    'mesh.level="quick"', "mesh.elements_per_contact_width=1.0", "contact.friction=[0.07, 0.30]", "sweep.positions=4",
+    "sweep.warm_up_positions=1", "output.animation=false",
+)  # fmt: skip
+
+
+def main(out: Path, quick: bool = False) -> None:
+    """Computes the pair into `out` and checks the trend."""
+    scene = load_scene(Path(__file__).with_name("yang2022.toml"), SMALL if quick else ())
+    run_scene(scene, out, quiet=quick)
+    if MPI.COMM_WORLD.rank == 0:
+        before, after = friction_effect(read_run(out))
+        print(f"mean change of a slice's line load, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after")
+        assert before > after, "friction must load the approach more than the recess"
+
+
+def friction_effect(run: RunData) -> tuple[float, float]:
+    """Relative change of the mean line load from the lowest to the highest μ, before and after the pitch point."""
+    loads = []
+    for index in (0, -1):
+        cuts = [each[index].cut for each in run.positions]
+        ξ, load, width = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "line_load", "width"))
+        loads.append([np.sum((load * width)[side]) for side in (ξ < 0.0, ξ > 0.0)])
+    change = np.array(loads[1]) / np.array(loads[0]) - 1.0
+    return float(change[0]), float(change[1])
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--out", type=Path, default=Path("out/yang2022"))
+    arguments = parser.parse_args()
+    main(arguments.out, arguments.quick)

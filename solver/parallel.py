@@ -1,0 +1,163 @@
+"""What ranks do together: fail alike, wait without taking a core from those that work, share a large object.
+
+Gears are condensed on one rank and used by all. `shared` hands an object over with its arrays in memory that all ranks
+of a node map: one copy a node, whatever the number of ranks, and none of MPI's and pickle's limits of 2 GB. The memory
+is a nameless file, not an MPI window: it is given back with the last array (freeing a window is collective), and a
+node without room for it is an error on all ranks (Open MPI's windows hang where /dev/shm is as small as in Docker).
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import pickle
+import tempfile
+import time
+import traceback
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+from mpi4py import MPI
+
+T = TypeVar("T")
+
+SMALL = 1 << 12  # [bytes] arrays below stay in the pickle
+CHUNK = 1 << 28  # [bytes] sent at once between nodes; MPI counts in 32-bit integers
+ALIGNMENT = 64  # [bytes] of each array: a cache line
+PATIENCE = 0.002  # [s] between two looks whether the others have come
+MEMORY_FOLDERS = ("/dev/shm", tempfile.gettempdir())  # memory where it is large enough, else a file in the page cache
+
+
+def wait_for_all(comm: MPI.Comm) -> None:
+    """A barrier that sleeps: MPI's own keeps a core busy, which a working rank may need."""
+    request = comm.Ibarrier()
+    while not request.Test():
+        time.sleep(PATIENCE)
+
+
+def together(comm: MPI.Comm, work: Callable[[], T]) -> T:
+    """The result of this rank's own `work`. All ranks must call it.
+
+    Raises on every rank the exception of the lowest rank on which `work` failed, with a note of where.
+    """
+    if comm.size == 1:
+        return work()
+    failure: Exception | None = None
+    try:
+        result = work()
+    except Exception as error:
+        trace = "".join(traceback.format_tb(error.__traceback__)).rstrip()
+        error.add_note(f"on rank {comm.rank} of {comm.size}:\n{trace}")
+        failure = _portable(error)
+    wait_for_all(comm)
+    for other in comm.allgather(failure):
+        if other is not None:
+            raise other
+    return result
+
+
+def on_first(comm: MPI.Comm, work: Callable[[], T]) -> T:
+    """The result of `work`, done on rank 0 alone, on all ranks. Raises its exception on all of them."""
+    result = together(comm, lambda: work() if comm.rank == 0 else None)
+    everywhere: T = comm.bcast(result, root=0)
+    return everywhere
+
+
+def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
+    """`value` of rank `root` on all ranks; with several ranks its arrays are read-only and exist once a node.
+
+    All ranks must call it. The memory is given back when the last array is gone. Raises OSError where a node has no
+    room for it.
+    """
+    if comm.size == 1:
+        assert value is not None
+        return value
+    parts = _parts(value) if comm.rank == root else []
+    sizes: list[int] = comm.bcast([part.nbytes for part in parts], root=root)
+    *starts, total = np.cumsum([0] + [-(-size // ALIGNMENT) * ALIGNMENT for size in sizes]).tolist()
+    key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others
+    node = comm.Split_type(MPI.COMM_TYPE_SHARED, key)
+    leaders = comm.Split(0 if node.rank == 0 else MPI.UNDEFINED, key)
+    memory = _node_memory(comm, node, total)
+    for start, part in zip(starts, parts):
+        memory[start : start + part.nbytes] = part
+    if node.rank == 0:
+        _send(leaders, memory)
+        leaders.Free()
+    node.Barrier()
+    node.Free()
+    kept = memory.toreadonly()
+    head, *arrays = (kept[start : start + size] for start, size in zip(starts, sizes))
+    restored: T = pickle.loads(head, buffers=arrays)
+    return restored
+
+
+def _parts(value: object) -> list[memoryview]:
+    """The pickle of a value, and the large arrays that it leaves out."""
+    arrays: list[memoryview] = []
+
+    def stays_inside(buffer: pickle.PickleBuffer) -> bool:
+        view = buffer.raw()
+        if view.nbytes >= SMALL:
+            arrays.append(view)
+        return view.nbytes < SMALL
+
+    head = pickle.dumps(value, protocol=5, buffer_callback=stays_inside)
+    return [memoryview(head), *arrays]
+
+
+def _node_memory(comm: MPI.Comm, node: MPI.Comm, size: int) -> memoryview:
+    """`size` bytes that all ranks of each node see. Raises OSError on all ranks."""
+    path = together(comm, lambda: _memory_file(size) if node.rank == 0 else "")
+    path = node.bcast(path, root=0)
+    try:
+        return together(comm, lambda: memoryview(_mapped(path, size)))
+    finally:
+        if node.rank == 0:
+            os.unlink(path)
+
+
+def _memory_file(size: int) -> str:
+    """The path of a new file of `size` bytes, in memory if there is room. Raises OSError."""
+    for folder in MEMORY_FOLDERS:
+        try:
+            descriptor, path = tempfile.mkstemp(prefix="evolvent-", dir=folder)
+        except OSError:
+            continue
+        try:
+            os.posix_fallocate(descriptor, 0, size)  # full now is an error, full later would be a bus error
+            return path
+        except OSError:
+            os.unlink(path)
+        finally:
+            os.close(descriptor)
+    raise OSError(
+        f"{' or '.join(MEMORY_FOLDERS)}: wanted {size / 1e6:.0f} MB for what the ranks of a node share, found less; "
+        "make room (docker run --shm-size=8g), set TMPDIR to a larger disk, or use one rank"
+    )
+
+
+def _mapped(path: str, size: int) -> mmap.mmap:
+    with open(path, "r+b") as file:
+        return mmap.mmap(file.fileno(), size)
+
+
+def _send(leaders: MPI.Comm, memory: memoryview) -> None:
+    """Rank 0's memory to the other nodes'."""
+    if leaders.size == 1:
+        return
+    for start in range(0, memory.nbytes, CHUNK):
+        leaders.Bcast([memory[start : start + CHUNK], MPI.BYTE], root=0)
+
+
+def _portable(error: Exception) -> Exception:
+    """The exception, or one with its message where it can't be sent to other ranks."""
+    try:
+        pickle.loads(pickle.dumps(error))
+        return error
+    except Exception:
+        sent = RuntimeError(f"{type(error).__name__}: {error}")
+        for note in error.__notes__:
+            sent.add_note(note)
+        return sent

@@ -1,0 +1,101 @@
+"""He's spur pair (plane strain) and a short, light and coarse version of Yang's helical pair, ready to be solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from meshes.data import Floats
+from solver.gear_model import prepare_model
+from solver.gear_position import GearModel, PositionResult, shared_position
+from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
+from solver.scene import Scene, load_scene
+
+ROOT = Path(__file__).resolve().parents[1]
+QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false")
+HELICAL = (
+    "mesh.level=quick",
+    "mesh.elements_per_contact_width=0.8",
+    "pinion.face_width_mm=6",
+    "wheel.face_width_mm=6",
+    "load.torque_Nm=90",
+    "contact.friction=[0.0, 0.3]",
+    "sweep.positions=2",
+    "sweep.warm_up_positions=1",
+)
+
+
+def spur_scene(*settings: str) -> Scene:
+    """He's pair."""
+    return load_scene(ROOT / "demos/he2022.toml", [*QUIET, *settings])
+
+
+def helical_scene(*settings: str) -> Scene:
+    """Yang's pair, 6 mm wide, with 90 N·m and less than one element across the contact: for algebra, not for stress."""
+    return load_scene(ROOT / "demos/yang2022.toml", [*QUIET, *HELICAL, *settings])
+
+
+def model_of(scene: Scene) -> GearModel:
+    """Condensed on this rank alone."""
+    return prepare_model(scene, MPI.COMM_SELF).model
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A sweep at one friction coefficient: pinion rotations (k,) [°] and results (k)."""
+
+    degrees: Floats
+    results: list[PositionResult]
+
+    def of(self, name: str) -> Floats:
+        """An attribute of all results."""
+        return np.array([getattr(result, name) for result in self.results])
+
+    @property
+    def torque_ratio(self) -> Floats:
+        """T_2 z_1 / T_1 z_2 (k,)."""
+        torques = self.of("torques")
+        return torques[:, 1] / (torques[:, 0] * self.results[0].stand.pair.ratio)
+
+    @property
+    def tip_edge(self) -> np.ndarray:
+        """(k,) bool: a tooth bears on a tip edge."""
+        return np.array([bool(result.contact.edge.any()) for result in self.results])
+
+    def forces(self, tooth: int) -> Floats:
+        """Normal force (k,) of a tooth pair [N; per mm in 2D]."""
+        return np.array([force(result, tooth) for result in self.results])
+
+
+def swept(model: GearModel, degrees: Floats, frictions: list[float]) -> list[Curves]:
+    """Solves these pinion rotations [°] one after the other; one Curves per friction coefficient."""
+    pitch = Pitch(tuple(np.radians(degrees)), 0)
+    positions: list[SweptPosition] = list(sweep_pitch(model, pitch, frictions, initial_state(frictions)))
+    return [Curves(degrees, [p.results[i] for p in positions]) for i in range(len(frictions))]
+
+
+def force(result: PositionResult, tooth: int) -> float:
+    """Normal force of a tooth pair [N; per mm in 2D]."""
+    c = result.contact
+    return float(np.sum((c.pressure * c.weights)[c.tooth == tooth]))
+
+
+def friction_force(result: PositionResult, tooth: int) -> float:
+    """Tangential force of a tooth pair along the profile [N; per mm in 2D]."""
+    c = result.contact
+    return float(np.sum((c.traction[:, 1] * c.weights)[c.tooth == tooth]))
+
+
+def touches(model: GearModel, degrees: float, tooth: int) -> bool:
+    """Whether a tooth pair carries load without friction at a pinion rotation [°]."""
+    shared = shared_position(model, float(np.radians(degrees)), (0.0, 0.0), normal_only=True)
+    pressed = shared.smooth.traction[:, 0] > 0.0
+    return bool(np.any(pressed & (shared.contact.point_tooth == tooth)))
+
+
+def with_load(model: GearModel, torque: float, on: int) -> GearModel:
+    """The same gears under another load."""
+    return replace(model, load=replace(model.load, torque=torque, on=on))

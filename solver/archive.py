@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import os
 import zipfile
 from dataclasses import dataclass, fields
@@ -161,10 +162,11 @@ def fingerprint(scene: Scene) -> str:
 
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
     """Writes a NumPy archive atomically and durably. Raises OSError (disk full, not writable)."""
-    temporary = path.with_suffix(".tmp")
+    temporary, content = path.with_suffix(".tmp"), io.BytesIO()
+    np.savez(content, **{name.replace("/", "|"): value for name, value in arrays.items()})
     try:
         with open(temporary, "wb") as stream:
-            np.savez(stream, **{name.replace("/", "|"): value for name, value in arrays.items()})
+            stream.write(content.getbuffer())
             stream.flush()
             os.fsync(stream.fileno())
         os.replace(temporary, path)

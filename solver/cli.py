@@ -1,6 +1,6 @@
 """The command line `evolvent`, also `python -m solver`: parses, calls the API, turns failures into exit statuses.
 
-0 done, 2 bad input, 3 not converged, 1 anything else. Under mpirun only rank 0 prints; a rank that fails says so and
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun only rank 0 prints; a rank that fails says so and
 ends the run on all ranks.
 """
 
@@ -54,7 +54,7 @@ Examples:
   mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022
   evolvent plot out/yang2022
 
-Exit status: 0 done, 2 bad input, 3 not converged, 1 anything else.""",
+Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else.""",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -228,7 +228,8 @@ def _status(error: Exception) -> Exit:
 
 
 def _details(error: Exception) -> str:
-    return "".join(traceback.format_tb(error.__traceback__)).rstrip()
+    """The traceback, and the one of the rank on which the error arose, which is its note."""
+    return "\n".join(["".join(traceback.format_tb(error.__traceback__)).rstrip(), *getattr(error, "__notes__", ())])
 
 
 def _leave(message: str, status: Exit) -> typer.Exit:

@@ -211,13 +211,20 @@ def slipped(
 ) -> Floats:
     """(n, d−1) slip since `before` [mm] but for the present displacement: nominal slip, change of the free rotations,
     and the elastic part remembered at the material points that now face each other."""
-    tangential = rate[:, 1:]
-    size = np.linalg.norm(tangential, axis=1, keepdims=True)
-    growing = tangential * np.sign(contact.ξ)[:, None] / np.where(size > 0.0, size, 1.0)
-    slip = nominal_slip(tangential, contact.ξ, ξ_before, growing, model.pair.ratio, span)
+    slip = nominal_slip(rate[:, 1:], contact.ξ, ξ_before, growing_slip(contact), model.pair.ratio, span)
     for gear in (0, 1):
         slip = slip + contact.spins[gear][:, 1:] * (contact.stand.extra[gear] - before.stand.extra[gear])
     return slip - remembered_jump(contact, before)[:, 1:]
+
+
+def growing_slip(contact: GearContact) -> Floats:
+    """(n, d−1) unit tangent along which slip grows with ξ: contact travels along the transverse normal n_t, and the
+    pinion turns over the wheel about the pitch point, so this is e_z × n_t, at the pitch point too."""
+    n = contact.operator.frames[:, 0]
+    along = np.zeros_like(n)
+    along[:, 0], along[:, 1] = -n[:, 1], n[:, 0]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    return np.einsum("jia,ja->ji", contact.operator.frames, along)[:, 1:]
 
 
 def remembered_jump(contact: GearContact, before: Memory) -> Floats:

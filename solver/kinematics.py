@@ -13,6 +13,8 @@ import numpy as np
 from meshes.data import Floats
 from meshes.parameters import GearPair
 
+ROUNDING = 1e-9  # of a step: a position so near the pitch crossing stands at it
+
 
 @dataclass(frozen=True)
 class Stand:
@@ -72,11 +74,13 @@ def nominal_slip(rate: Floats, ξ_now: Floats, ξ_before: Floats, along: Floats,
     rate: (n, d) relative velocity of 1 over 2 per radian of φ at the present position; ξ: roll distances of the node's
     contact line (its slice of the pair) now and before; along: (n, d) unit tangent in which the velocity grows with ξ
     by (1 + 1/u); ratio u; span Δφ. Where ξ changes sign in the step, slip counts from the pitch crossing: before it,
-    the flanks slipped the other way. Deciding that by slice, not by point, keeps a patch of one sign together.
+    the flanks slipped the other way. Deciding that by slice, not by point, keeps a patch of one sign together. At the
+    crossing itself, to rounding, friction still has the old direction.
     """
     step = ξ_now - ξ_before
     earlier = rate - (1.0 + 1.0 / ratio) * step[:, None] * along
-    crossed = ξ_now * ξ_before < 0.0
+    zero = ROUNDING * np.abs(step)
+    crossed = (np.abs(ξ_now) > zero) & (np.sign(ξ_now) * ξ_before < zero)
     part = np.where(crossed, ξ_now / np.where(step == 0.0, 1.0, step), 1.0)
     mean = np.where(crossed[:, None], 0.5 * rate, 0.5 * (rate + earlier))
     return mean * (span * part)[:, None]

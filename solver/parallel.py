@@ -59,6 +59,8 @@ def together(comm: MPI.Comm, work: Callable[[], T]) -> T:
 
 def on_first(comm: MPI.Comm, work: Callable[[], T]) -> T:
     """The result of `work`, done on rank 0 alone, on all ranks. Raises its exception on all of them."""
+    if comm.size == 1:
+        return work()
     result = together(comm, lambda: work() if comm.rank == 0 else None)
     everywhere: T = comm.bcast(result, root=0)
     return everywhere

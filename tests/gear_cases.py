@@ -1,4 +1,4 @@
-"""He's spur pair (plane strain) and a short, light and coarse version of Yang's helical pair, ready to be solved."""
+"""He's spur pair (plane strain) and a narrow, coarse helical pair, ready to be solved."""
 
 from __future__ import annotations
 
@@ -12,20 +12,34 @@ from meshes.data import Floats
 from solver.gear_model import prepare_model
 from solver.gear_position import GearModel, PositionResult, shared_position
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
-from solver.scene import Scene, load_scene
+from solver.scene import Scene, load_scene, scene_from_text
 
 ROOT = Path(__file__).resolve().parents[1]
 QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false")
-HELICAL = (
-    "mesh.level=quick",
-    "mesh.elements_per_contact_width=0.8",
-    "pinion.face_width_mm=6",
-    "wheel.face_width_mm=6",
-    "load.torque_Nm=90",
-    "contact.friction=[0.0, 0.3]",
-    "sweep.positions=2",
-    "sweep.warm_up_positions=1",
-)
+HELICAL = """
+[pair]
+normal_module_mm = 3.0
+normal_pressure_angle_deg = 20.0
+helix_angle_deg = 20.0
+[pinion]
+teeth = 20
+face_width_mm = 8
+bore_diameter_mm = 36
+[wheel]
+teeth = 24
+face_width_mm = 8
+bore_diameter_mm = 44
+[mesh]
+level = "quick"
+elements_per_contact_width = 0.5
+[load]
+torque_Nm = 120
+[contact]
+friction = [0.0, 0.3]
+[sweep]
+positions = 2
+warm_up_positions = 1
+"""
 
 
 def spur_scene(*settings: str) -> Scene:
@@ -34,8 +48,8 @@ def spur_scene(*settings: str) -> Scene:
 
 
 def helical_scene(*settings: str) -> Scene:
-    """Yang's pair, 6 mm wide, with 90 N·m and less than one element across the contact: for algebra, not for stress."""
-    return load_scene(ROOT / "demos/yang2022.toml", [*QUIET, *HELICAL, *settings])
+    """A narrow helical pair with half an element across the contact: for algebra, not for stress."""
+    return scene_from_text(HELICAL, [*QUIET, *settings])
 
 
 def model_of(scene: Scene) -> GearModel:

@@ -1,0 +1,103 @@
+"""`evolvent run` with something going wrong: broken_run.py HOW SCENE.toml --out DIR [...]; run by tests, not a test.
+
+HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive replaced); kill-half-N (half of it
+written); full-N (no space for the N-th); raise-R-N (rank R fails at its N-th position); unbalanced (a position fails its
+balance); count (prints how many gears this rank condensed and how many positions it searched).
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import sys
+from collections.abc import Callable
+from itertools import count
+from typing import Any
+
+from mpi4py import MPI
+
+from solver import archive, gear_model, gear_sweep, run
+from solver.cli import main
+
+
+def kill() -> None:
+    """As kill -9, the out-of-memory killer or a power cut."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def before_call(module: Any, name: str, action: Callable[[int], None]) -> None:
+    """Calls action(n) before the n-th call of a module's function, n = 1, 2, ..."""
+    original, numbers = getattr(module, name), count(1)
+
+    def patched(*arguments: Any, **options: Any) -> Any:
+        action(next(numbers))
+        return original(*arguments, **options)
+
+    setattr(module, name, patched)
+
+
+def kill_when(wanted: int) -> Callable[[int], None]:
+    return lambda number: kill() if number == wanted else None
+
+
+def kill_half_written(wanted: int) -> None:
+    """Cuts the N-th file to its half when it is to be made durable, then kills."""
+    fsync, numbers = os.fsync, count(1)
+
+    def patched(descriptor: int) -> None:
+        if next(numbers) == wanted:
+            os.ftruncate(descriptor, os.fstat(descriptor).st_size // 2)
+            kill()
+        fsync(descriptor)
+
+    archive.os.fsync = patched
+
+
+def disk_full(wanted: int) -> Callable[[int], None]:
+    def action(number: int) -> None:
+        if number == wanted:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    return action
+
+
+def failing_rank(rank: int, wanted: int) -> Callable[[int], None]:
+    def action(number: int) -> None:
+        if MPI.COMM_WORLD.rank == rank and number == wanted:
+            raise ArithmeticError(f"rank {rank} broke")
+
+    return action
+
+
+def break_it(how: str) -> None:
+    kind, *numbers = how.split("-")
+    if how == "kill-mesh":
+        before_call(gear_model, "gear_mesh", kill_when(2))
+    elif kind == "kill":
+        when, wanted = numbers[0], int(numbers[1])
+        if when == "before":
+            before_call(archive.os, "replace", kill_when(wanted))
+        elif when == "after":
+            before_call(archive, "write_arrays", kill_when(wanted + 1))
+        else:
+            kill_half_written(wanted)
+    elif kind == "full":
+        before_call(archive.os, "fsync", disk_full(int(numbers[0])))
+    elif kind == "raise":
+        before_call(gear_sweep, "shared_position", failing_rank(int(numbers[0]), int(numbers[1])))
+    elif how == "unbalanced":
+        run.BALANCE_LIMIT = 1e-9
+
+
+if __name__ == "__main__":
+    how = sys.argv[1]
+    condensed, searched = [], []
+    if how == "count":
+        before_call(gear_model, "condensed_gear", condensed.append)
+        before_call(gear_sweep, "shared_position", searched.append)
+    break_it(how)
+    status = main(["run", *sys.argv[2:]])
+    if how == "count":
+        print(f"rank {MPI.COMM_WORLD.rank}: condensed {len(condensed)}, searched {len(searched)}", flush=True)
+    sys.exit(status)

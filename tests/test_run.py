@@ -1,0 +1,183 @@
+"""A whole run: the same on any number of ranks, failing on all ranks alike, and what ranks share."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Run
+from gear_cases import HELICAL
+from mpi4py import MPI
+
+from solver import parallel
+from solver.run import BALANCE_LIMIT
+
+SPUR = "demos/he2022.toml"
+QUIET = (
+    "--quiet", "--set", "output.pictures=false", "--set", "output.animation=false", "--set", "output.fields=false",
+)  # fmt: skip
+SHORT = (
+    "--level", "quick", "--set", "contact.friction=[0.1, 0.2, 0.3]", "--set", "sweep.positions=4",
+    "--set", "sweep.warm_up_positions=1",
+)  # fmt: skip
+SHARE = """
+import numpy as np
+from mpi4py import MPI
+from solver import parallel
+
+class Nodes:
+    '''The world, with two ranks a node.'''
+    def __getattr__(self, name):
+        return getattr(MPI.COMM_WORLD, name)
+    def Split_type(self, kind, key):
+        return MPI.COMM_WORLD.Split(MPI.COMM_WORLD.rank // 2, key)
+
+parallel.CHUNK = 1_000_003
+rank, size = MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
+for comm in (MPI.COMM_WORLD, Nodes()):
+    for root in range(size):
+        a = np.random.default_rng(root).standard_normal((700, 901))
+        value = {"a": a, "fortran": np.asfortranarray(a[:300]), "view": a[::2, ::3]}
+        value |= {"flags": a > 0, "no": a[:0], "s": "x"}
+        got = parallel.shared(comm, value if rank == root else None, root)
+        assert got["s"] == "x" and got["fortran"].flags.f_contiguous
+        for name in ("a", "fortran", "view", "flags", "no"):
+            assert np.array_equal(got[name], value[name]) and got[name].dtype == value[name].dtype, name
+        maps = open("/proc/self/maps").read()
+        assert ("evolvent-" in maps) == (size > 1) and not (size > 1 and got["a"].flags.writeable)
+        del got
+        assert "evolvent-" not in open("/proc/self/maps").read()
+print("fine")
+"""
+FAIL_ALIKE = """
+import sys
+from mpi4py import MPI
+from solver import parallel
+
+class Stubborn(Exception):
+    def __init__(self, a, b):
+        super().__init__(f"{a}{b}")
+
+comm = MPI.COMM_WORLD
+def work():
+    if comm.rank == 1:
+        raise ValueError("one") if sys.argv[1] == "plain" else Stubborn("o", "ne")
+try:
+    parallel.together(comm, work)
+except (ValueError, RuntimeError) as error:
+    sys.stdout.write(f"rank {comm.rank}: {type(error).__name__} {error}; {error.__notes__[0].splitlines()[0]}\n")
+"""
+
+
+def positions(out: Path) -> list[dict[str, object]]:
+    return json.loads((out / "summary.json").read_text(encoding="utf-8"))["positions"]
+
+
+def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]]) -> None:
+    """All numbers agree within 1e-8, but for the clock and residuals that are rounding."""
+    assert len(found) == len(wanted)
+    for one, other in zip(found, wanted):
+        assert one.keys() == other.keys()
+        for name in other.keys() - {"seconds", "newton_iterations", "balance_error", "teeth"}:
+            assert one[name] == pytest.approx(other[name], rel=1e-8, abs=1e-8), name
+        for one_tooth, other_tooth in zip(one["teeth"], other["teeth"], strict=True):  # type: ignore[call-overload]
+            assert one_tooth == pytest.approx(other_tooth, rel=1e-8, abs=1e-8, nan_ok=True)
+
+
+@pytest.fixture(scope="module")
+def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, object]]:
+    out = tmp_path_factory.mktemp("one") / "out"
+    done = run_script("tests/broken_run.py", "ok", SPUR, "--out", str(out), *QUIET, *SHORT)
+    assert done.returncode == 0, done.stderr
+    return positions(out)
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path) -> None:
+    """He's pair with three friction coefficients on 1, 2 and 4 ranks: the same within 1e-8. Each gear is condensed
+    once, and the rank without a coefficient searches nothing."""
+    out = tmp_path / "out"
+    done = run_script("tests/broken_run.py", "count", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 0, done.stderr
+    assert_same(positions(out), on_one_rank)
+    for rank in range(ranks):
+        condensed, searched = int(rank < 2), 5 if rank < 3 else 0
+        assert f"rank {rank}: condensed {condensed}, searched {searched}" in done.stdout
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
+
+
+def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> None:
+    """A coarse helical pair, one gear and one friction coefficient a rank: as on one rank within 1e-8."""
+    scene = tmp_path / "helical.toml"
+    scene.write_text(HELICAL, encoding="utf-8")
+    found = []
+    for ranks in (1, 2):
+        out = tmp_path / str(ranks)
+        done = run_script("tests/broken_run.py", "ok", str(scene), "--out", str(out), *QUIET, ranks=ranks)
+        assert done.returncode == 0, done.stderr
+        found.append(positions(out))
+    assert_same(*found)
+
+
+@pytest.mark.parametrize(("rank", "number"), [(0, 1), (1, 3)])
+def test_failing_rank_ends_the_run(rank: int, number: int, run_script: Run, tmp_path: Path) -> None:
+    """An unexpected error on one of three ranks: its message and where it was raised, status 1, no hang; what was
+    complete before is kept."""
+    out = tmp_path / "out"
+    how = f"raise-{rank}-{number}"
+    done = run_script("tests/broken_run.py", how, SPUR, "--out", str(out), *QUIET, *SHORT, ranks=3, timeout=60)
+    assert done.returncode == 1
+    assert f"ArithmeticError: rank {rank} broke" in done.stderr
+    assert f"on rank {rank} of 3" in done.stderr
+    assert "broken_run.py" in done.stderr
+    assert len(list((out / "results").glob("position_*.npz"))) == number - 1
+    assert not (out / "summary.json").exists()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+    """A position that fails its balance certificate: status 3, the numbers, and it is not written."""
+    out = tmp_path / "out"
+    done = run_script("tests/broken_run.py", "unbalanced", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 3
+    assert "wanted a balance error of at most 1e-09, found" in done.stderr
+    assert not list((out / "results").glob("position_*.npz"))
+    assert not (out / "summary.json").exists()
+    assert "failed: pinion at" in (out / "run.log").read_text(encoding="utf-8")
+
+
+def test_positions_are_balanced(on_one_rank: list[dict[str, object]]) -> None:
+    """Every position is well within the limit."""
+    assert max(float(str(row["balance_error"])) for row in on_one_rank) < BALANCE_LIMIT
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3, 4])
+def test_shared(ranks: int, run_script: Run) -> None:
+    """Every kind of array arrives bit by bit from every root, on one node and on nodes of two ranks, in pieces; it is
+    read-only, in shared memory, and the memory is given back with the last array."""
+    done = run_script("-c", SHARE, ranks=ranks)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("fine") == ranks
+
+
+@pytest.mark.parametrize(("kind", "found"), [("plain", "ValueError one"), ("stubborn", "RuntimeError Stubborn: one")])
+def test_ranks_fail_together(kind: str, found: str, run_script: Run) -> None:
+    """One rank's exception is raised on all, with a note of where; also one that cannot be pickled."""
+    done = run_script("-c", FAIL_ALIKE, kind, ranks=3)
+    assert sorted(done.stdout.splitlines()) == [f"rank {rank}: {found}; on rank 1 of 3:" for rank in range(3)]
+
+
+def test_no_room_for_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A node without room is an error that says what to do, not a bus error later."""
+    monkeypatch.setattr(parallel, "MEMORY_FOLDERS", ("/nowhere", "/proc/self"))
+    with pytest.raises(OSError, match=r"wanted 5 MB for what the ranks of a node share.*--shm-size"):
+        parallel._memory_file(5_000_000)
+
+
+def test_one_rank_shares_nothing() -> None:
+    """On one rank `shared` and `together` cost nothing and copy nothing."""
+    value = np.arange(10)
+    assert parallel.shared(MPI.COMM_SELF, value, 0) is value
+    assert parallel.on_first(MPI.COMM_SELF, lambda: value) is value

@@ -1,7 +1,7 @@
 """The command line `evolvent`, also `python -m solver`: parses, calls the API, turns failures into exit statuses.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun only rank 0 prints; a rank that fails says so and
-ends the run on all ranks.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun only rank 0 prints; a rank that
+fails says so and ends the run on all ranks.
 """
 
 from __future__ import annotations

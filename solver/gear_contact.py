@@ -80,7 +80,7 @@ class GearContact:
         """Local jumps (n, d) per radian of pinion rotation and of wheel rotation (about +z each)."""
         result = []
         for gear, sign in ((0, 1.0), (1, -1.0)):
-            moved = spin(self.points[gear], self.stand.centre(gear, self.d))
+            moved = spin(self.points[gear], self.stand.centre(gear, self.d), self.stand.axis(gear))
             result.append(sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
         return result[0], result[1]
 

@@ -9,9 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from meshes.data import Floats
+from meshes.flank import misalignment_rotation
 from meshes.parameters import GearPair
+
+E_Z = np.array([0.0, 0.0, 1.0])
 
 ROUNDING = 1e-9  # of a step: a position so near the pitch crossing stands at it
 
@@ -45,7 +49,16 @@ class Stand:
     def rotation(self, gear: int, d: int, tooth: int = 0) -> Floats:
         """(d, d) from the own frame of a gear's tooth i to the common one: pinion +2πi/z_1, wheel −2πi/z_2."""
         sign = 1.0 if gear == 0 else -1.0
-        return turn(self.turns[gear] + sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
+        own = turn(self.turns[gear] + sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
+        return own if d == 2 else self.tilt(gear) @ own
+
+    def tilt(self, gear: int) -> Floats:
+        """(3, 3) from a gear's aligned frame to where misalignment puts it; the pinion stays."""
+        return Rotation.from_rotvec(gear * misalignment_rotation(self.pair)).as_matrix()
+
+    def axis(self, gear: int) -> Floats:
+        """(3,) unit vector of a gear's axis."""
+        return self.tilt(gear)[:, 2]
 
     def roll_distance(self, tooth: int, z: Floats) -> Floats:
         """ξ [mm] of tooth pair i's contact line at heights z."""
@@ -60,12 +73,12 @@ def turn(angle: float, d: int) -> Floats:
     return R
 
 
-def spin(points: Floats, centre: Floats) -> Floats:
-    """e_z × (x − c): displacement per radian, (n, d)."""
+def spin(points: Floats, centre: Floats, axis: Floats = E_Z) -> Floats:
+    """a × (x − c): displacement per radian about an axis (3,), (n, d); in 2D the axis is z."""
     arm = points - centre
-    result = np.zeros_like(arm)
-    result[:, 0], result[:, 1] = -arm[:, 1], arm[:, 0]
-    return result
+    if arm.shape[1] == 2:
+        return np.column_stack([-arm[:, 1], arm[:, 0]])
+    return np.cross(axis, arm)
 
 
 def nominal_slip(rate: Floats, ξ_now: Floats, ξ_before: Floats, along: Floats, ratio: float, span: float) -> Floats:

@@ -27,8 +27,8 @@ def arguments(out: Path, *more: str) -> tuple[str, ...]:
 
 
 def assert_same(found: Path, wanted: Path) -> None:
-    """All numbers of two runs agree within 1e-7 of the largest of their array. Two undisturbed runs differ by up to 1e-9,
-    what Newton's method leaves, for sums round differently where their arrays lie differently in memory."""
+    """All numbers of two runs agree within 1e-7 of the largest of their array. Two undisturbed runs differ by up to
+    1e-9, what Newton's method leaves, for sums round differently where their arrays lie differently in memory."""
     one, other = (
         {
             f"{path.name}/{key}": array

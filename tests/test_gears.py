@@ -5,6 +5,8 @@ Numbers marked "prototype" are an independent plane-strain program's for the sam
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from gear_cases import (
@@ -132,7 +134,7 @@ def test_friction_turns_round_after_the_pitch_point(step: float, spur: GearModel
 
 @pytest.mark.parametrize(("level", "median", "worst"), [("standard", 0.02, 0.05), ("fine", 0.01, 0.015)])
 def test_peak_pressure_against_hertz(level: str, median: float, worst: float, curves: list[Curves]) -> None:
-    """Hertz with each tooth's own line load and the exact curvatures, away from tip edges; errors fall with the level."""
+    """Hertz with each tooth's own line load and the exact curvatures, away from tip edges."""
     scene = spur_scene(f"mesh.level={level}")
     model = model_of(scene)
     curve = curves[0] if level == "standard" else swept(model, 0.36 * np.arange(20), [0.0])[0]
@@ -231,12 +233,15 @@ def test_start_of_the_search_does_not_matter(spur: GearModel) -> None:
     assert warm.transmission_error == pytest.approx(cold.transmission_error, rel=2e-5)
 
 
-def test_helical_pair() -> None:
+@pytest.fixture(scope="module")
+def helical() -> GearModel:
+    return model_of(helical_scene())
+
+
+def test_helical_pair(helical: GearModel) -> None:
     """A coarse helical pair: balanced (force 1e-9, energy 0.5 %), T_2/T_1 = z_2/z_1 without friction within 0.5 %, less
     with it, and positions one pitch apart agree."""
-    scene = helical_scene()
-    model = model_of(scene)
-    degrees = np.degrees(pitch_of(scene).angles)
+    model, degrees = helical, np.degrees(pitch_of(helical_scene()).angles)
     step = float(np.diff(degrees).mean())
     smooth, rough = swept(model, np.append(degrees, [degrees[-1] + step]), [0.0, 0.3])
     for curve in (smooth, rough):
@@ -250,3 +255,20 @@ def test_helical_pair() -> None:
     everywhere = sum(smooth.forces(tooth) for tooth in model.teeth)
     lever = model.pair.pinion.base_radius * np.cos(model.pair.pinion.base_helix_angle)
     np.testing.assert_allclose(everywhere * lever, model.load.torque, rtol=5e-3)
+
+
+def test_misaligned_axis_shifts_the_load(helical: GearModel) -> None:
+    """A wheel that leans away from the pinion's flank at +z bears more at −z, one that leans the other way more at +z;
+    for a small lean the shift of the load's centre is linear. T_2/T_1 = z_2/z_1 stays."""
+
+    def centre(misalignment_um: float) -> float:
+        model = replace(helical, pair=replace(helical.pair, misalignment_um=misalignment_um))
+        curve = swept(model, np.array([4.0]), [0.0])[0]
+        assert curve.torque_ratio[0] == pytest.approx(1.0, abs=5e-3)
+        c = curve.results[0].contact
+        return float(np.average(c.z, weights=c.pressure * c.weights))
+
+    aligned, away, towards = (centre(lean) for lean in (0.0, 2.0, -2.0))
+    assert away < aligned - 0.02
+    assert towards > aligned + 0.02
+    assert away + towards == pytest.approx(2.0 * aligned, abs=0.2 * (towards - away))

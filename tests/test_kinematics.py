@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from paper_pairs import he, yang
 
-from meshes.flank import Flank, contact_points
+from meshes.flank import Flank, contact_normal, contact_points, separation
 from meshes.parameters import GearPair
 from solver.kinematics import Stand, nominal_slip, spin, turn
 
@@ -32,6 +32,24 @@ def test_flanks_of_a_tooth_pair_meet_on_the_line_of_action(pair: GearPair, angle
         own = Flank(pair.gears[gear]).point(ρ, z)
         placed = own @ stand.rotation(gear, 3, tooth).T + stand.centre(gear, 3)
         np.testing.assert_allclose(placed, wanted, atol=1e-9)
+
+
+@pytest.mark.parametrize("misalignment", [-20.0, 20.0])
+def test_misalignment_opens_the_gap_that_the_geometry_says(misalignment: float) -> None:
+    """Exact to first order, so within 1 % of 20 µm: the normal distance of the placed flanks is `separation`, and the
+    wheel turns about its tilted axis."""
+    pair = yang(misalignment_um=misalignment)
+    stand, z = Stand(pair, 0.03), np.array([-8.0, -2.0, 5.0])
+    ξ = stand.roll_distance(0, z)
+    points = []
+    for gear, ρ in enumerate(pair.curvature_radii(ξ)):
+        points.append(Flank(pair.gears[gear]).point(ρ, z) @ stand.rotation(gear, 3).T + stand.centre(gear, 3))
+    gap = (points[1] - points[0]) @ contact_normal(pair)
+    np.testing.assert_allclose(gap, separation(pair, ξ, z), atol=2e-4)
+    assert np.abs(gap).max() > 5e-3
+    turned = Stand(pair, 0.03, (0.0, 1e-6)).rotation(1, 3) @ stand.rotation(1, 3).T - np.eye(3)
+    arm = points[1] - stand.centre(1, 3)
+    np.testing.assert_allclose(spin(points[1], stand.centre(1, 3), stand.axis(1)), 1e6 * arm @ turned.T, atol=1e-3)
 
 
 def test_extra_rotations_turn_about_the_own_axis() -> None:

@@ -51,7 +51,7 @@ for comm in (MPI.COMM_WORLD, Nodes()):
         assert "evolvent-" not in open("/proc/self/maps").read()
 print("fine")
 """
-FAIL_ALIKE = """
+FAIL_ALIKE = r"""
 import sys
 from mpi4py import MPI
 from solver import parallel

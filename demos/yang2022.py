@@ -31,7 +31,9 @@ def main(out: Path, quick: bool = False) -> None:
     run_scene(scene, out, quiet=quick)
     if MPI.COMM_WORLD.rank == 0:
         before, after = friction_effect(read_run(out))
-        print(f"mean change of a slice's line load, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after")
+        print(
+            f"mean line load, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after it"
+        )
         assert before > after, "friction must load the approach more than the recess"
 
 

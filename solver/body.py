@@ -192,7 +192,9 @@ def _coupled_motions(body: Body, rigid: Rigid, held: np.ndarray) -> RigidMotions
             raise ValueError(f"{body.name}: wanted a rigid motion of {', '.join(names)}, found {freedom.direction!r}")
     chosen = shapes[:, :, [names.index(f.direction) for f in rigid.freedoms]]
     if held.any() and np.abs(chosen[held]).max(initial=0.0) > 1e-12 * np.abs(shapes).max():
-        raise ValueError(f"{body.name}: wanted supports that allow the rigid motions of {rigid.group!r}; free them there")
+        raise ValueError(
+            f"{body.name}: wanted supports that allow the rigid motions of {rigid.group!r}; free them there"
+        )
     nan = float("nan")
     return RigidMotions(
         chosen,

@@ -29,12 +29,11 @@ ITERATIONS = 40
 PATIENCE = 10  # iterations that a start from a neighbouring solution is given
 
 
-
 @dataclass(frozen=True)
 class CondensedSystem:
     """What a position's equilibrium needs of the bodies.
 
-    operator: contact at q points, jumps at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r) local jumps of the free rigid
+    operator: contact at q points, jumps at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r), free rigid
     motions. jump: J_0 (n·k,) jumps of the external loads and prescribed motions [mm]. load: F (r,) [N, N·mm].
     lever: (r,) what one unit of each motion moves the contact [mm per unit], to compare forces with moments.
     """
@@ -63,7 +62,8 @@ class CondensedSystem:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A converged state: nodal forces f (n, k) [N] and tractions at the points (q, k) [MPa] in local frames, motions δ (r,), jumps (n, k)
+    """A converged state: nodal forces f (n, k) [N] and tractions at the points (q, k) [MPa] in local frames, motions δ
+    (r,), jumps (n, k)
     [mm]; Newton iterations and the residual [N] that was left."""
 
     force: Floats
@@ -94,7 +94,7 @@ def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Eq
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
     """The state in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
-    one where friction alone carries a load. slip: as there. It is only nearly in equilibrium: at the edge, where a stuck
+    one where friction alone carries a load. slip: as there. It is only nearly in equilibrium: at the edge, where stuck
     traction is singular, a point may open and close for ever. Raises NotConverged where it is singular."""
     law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
     every = np.ones(len(system.operator.weights), dtype=bool)
@@ -159,7 +159,9 @@ class _Contact:
         M = self.system.operator.tangent(self.state(x)[2])
         rows = _rows_of_nodes(M, k)
         if len(rows) == 0 and r:
-            raise NotConverged("no node in contact while a motion is free: bring the bodies together, or hold the motion")
+            raise NotConverged(
+                "no node in contact while a motion is free: bring the bodies together, or hold the motion"
+            )
         rest = np.setdiff1d(np.arange(self.n * k), rows)
         A, H = system.compliance, system.motion / system.lever
         M, H_a = M[rows][:, rows], H[rows]
@@ -179,7 +181,7 @@ def _regular_solve(matrix: Floats, right: Floats) -> Floats:
             return la.solve(matrix, right, overwrite_a=True, check_finite=False)
         except (la.LinAlgError, la.LinAlgWarning) as error:
             raise NotConverged(
-                "a free rigid motion meets no resistance: wanted a support, or friction that does not slide everywhere; "
+                "a free rigid motion meets no resistance: wanted a support, or friction that sticks somewhere; "
                 "support the body, prescribe the motion, or lower the load"
             ) from error
 
@@ -216,7 +218,9 @@ def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
     root = newton.solve(problem, start, stage, ITERATIONS, TOLERANCE)
     if not root.converged:
         left = root.residual / problem.scale(root.x)
-        raise NotConverged(f"{stage}: residual {left:.1e} of the load after {root.iterations} iterations; a smaller step may help")
+        raise NotConverged(
+            f"{stage}: residual {left:.1e} of the load after {root.iterations} iterations; a smaller step may help"
+        )
     return _equilibrium(problem, root)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints, MeshData
-from meshes.parameters import GearParameters, GearPair
+from meshes.parameters import GearParameters
 from solver.body import Body, Fixed, assemble
 from solver.chain import ChainedCompliance, ChainSettings
 from solver.condense import condense_sector
@@ -28,7 +28,8 @@ class GearBody:
 
     flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
     pressure, else None. chain: compliance of all modelled teeth, tooth
-    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel). assemble_seconds, condense_seconds: what it took.
+    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
+    assemble_seconds, condense_seconds: what it took.
     """
 
     gear: GearParameters
@@ -115,5 +116,7 @@ def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:
     turned = mesh.points[low] @ turn(pitch, 3).T
     distance, partner = cKDTree(mesh.points[high]).query(turned)
     if len(low) != len(high) or distance.max() > 1e-7:
-        raise ValueError(f"sector: wanted cut faces that match when turned by the pitch, found {distance.max():.1e} mm apart")
+        raise ValueError(
+            f"sector: wanted cut faces that match when turned by the pitch, found {distance.max():.1e} mm apart"
+        )
     return low, high[partner]

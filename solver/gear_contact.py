@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from meshes.data import Floats, Ints
-from meshes.parameters import GearPair
 from solver.equilibrium import CondensedSystem
 from solver.gear_body import GearBody
 from solver.kinematics import Stand, spin
@@ -107,7 +107,7 @@ class GearContact:
         nodes = [self._touched(t, gear) for t in self.teeth]
         ends = np.cumsum([0] + [len(own) for own in nodes])
         rows = np.concatenate([self.bodies[gear].rows(t.tooth, own) for t, own in zip(self.teeth, nodes)])
-        return rows, [slice(a, b) for a, b in zip(ends[:-1], ends[1:])]
+        return rows, [slice(a, b) for a, b in pairwise(ends)]
 
     @staticmethod
     def _touched(t: ToothContact, gear: int) -> Ints:

@@ -21,7 +21,7 @@ WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, p
 
 @dataclass(frozen=True)
 class Preparation:
-    """A gear model and what it took: wall seconds of meshing and of all of condensing; of its parts, summed over gears."""
+    """A gear model and what it took: wall seconds of meshing and of condensing; its parts are summed over gears."""
 
     model: GearModel
     mesh_seconds: float

@@ -145,7 +145,9 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
     for _ in range(ROUNDS):
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.teeth:
-            raise NotConverged(f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none")
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
+            )
         system = contact.system(model.load.on, model.load.torque, normal_only)
         smooth = frictionless(system if normal_only else normal_part(system), contact.distance <= 0.5 * half_width)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
@@ -155,7 +157,7 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
             return SharedPosition(contact, system, smooth)
         stand = turned(stand, model.load.on, float(smooth.motion[0]))
     raise NotConverged(
-        f"pinion at {np.degrees(angle):.3f}°: the free rotation still moves by {1e3 * shift:.2f} µm after {ROUNDS} searches"
+        f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
 
 
@@ -179,7 +181,9 @@ def solve_position(
     found = smooth
     if friction > 0.0:
         memory = before or remembered(model, shared, smooth)
-        ξ_before = contact.ξ - model.pair.pinion.base_radius * span if before is None else slice_roll(contact, before.stand)
+        ξ_before = (
+            contact.ξ - model.pair.pinion.base_radius * span if before is None else slice_roll(contact, before.stand)
+        )
         span = span if before is None else contact.stand.angle - before.stand.angle
         rate = relative_velocity(contact)
         slip = slipped(model, contact, memory, rate, ξ_before, span)
@@ -254,7 +258,9 @@ def remembered(model: GearModel, shared: SharedPosition, found: Equilibrium) -> 
         u = body.chain.apply(contact.rows(gear)[0], np.concatenate(pushed), everywhere)
         fields.append(u.reshape(len(model.teeth), n, d))
     place = np.searchsorted(model.teeth, contact.tooth)
-    fields[0][place, contact.node] += contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(0, d)
+    fields[0][place, contact.node] += contact.operator.flux(
+        _with_all_components(found.traction, d)
+    ) @ contact.stand.rotation(0, d)
     stand = turned(contact.stand, model.load.on, float(found.motion[0]))
     return Memory(stand, model.teeth, (fields[0], fields[1]))
 

@@ -1,4 +1,4 @@
-"""From nodal pressures to what a gear engineer reads: per tooth force, fitted peak pressure, contact length, balance."""
+"""From contact pressures to what a gear engineer reads: force, fitted peak and contact length of a tooth, balance."""
 
 from __future__ import annotations
 
@@ -79,8 +79,8 @@ def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: floa
 
 
 def fitted_peak(s: Floats, p: Floats, w: Floats, load: float) -> tuple[float, float]:
-    """Peak [MPa] and half-width [mm] of the half-ellipse with the line load F [N/mm] and the second moment of pressures p
-    at points s across the line, with quadrature weights w: b = 2√(M_2/F), p0 = 2F/πb.
+    """Peak [MPa] and half-width [mm] of the half-ellipse with the line load F [N/mm] and the second moment of pressures
+    p at points s across the line, with quadrature weights w: b = 2√(M_2/F), p0 = 2F/πb.
 
     Integrals of the contact pressure converge faster than its values, which scatter where the patch just enters a cell.
     Where fewer than five points are pressed: the largest pressure and NaN.

@@ -5,7 +5,8 @@ Node order is basix's everywhere in the solver; `gmsh_permutation` brings gmsh's
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
+from typing import Any
 
 import basix
 import numpy as np
@@ -15,8 +16,8 @@ from dolfinx.cpp.mesh import CellType
 from meshes.data import Floats, Ints
 
 
-@lru_cache(maxsize=None)
-def _element(shape: str, order: int):
+@cache
+def _element(shape: str, order: int) -> Any:
     return basix.create_element(
         basix.ElementFamily.P, getattr(basix.CellType, shape), order, basix.LagrangeVariant.equispaced
     )
@@ -32,20 +33,20 @@ def tabulate(shape: str, order: int, xi: Floats) -> tuple[Floats, Floats]:
     return table[0], np.ascontiguousarray(np.moveaxis(table[1:], 0, 1))
 
 
-@lru_cache(maxsize=None)
+@cache
 def node_points(shape: str, order: int) -> Floats:
     """Reference coordinates (k, t) of the nodes."""
     return np.asarray(_element(shape, order).points, dtype=float)
 
 
-@lru_cache(maxsize=None)
+@cache
 def quadrature(shape: str, degree: int) -> tuple[Floats, Floats]:
     """Points (q, t) and weights (q,) exact for polynomials of this degree on the reference cell."""
     points, weights = basix.make_quadrature(getattr(basix.CellType, shape), degree)
     return np.asarray(points, dtype=float), np.asarray(weights, dtype=float)
 
 
-@lru_cache(maxsize=None)
+@cache
 def gmsh_permutation(shape: str, order: int) -> Ints:
     """perm (k,) such that cells[:, perm] has basix's node order where cells has gmsh's."""
     count = len(node_points(shape, order))

@@ -1,7 +1,7 @@
 """The contact operator of one pair of surfaces at one position.
 
-The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes, e_1 = u_1 − F the extended trace
-of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar: its integrals run over
+The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes, e_1 = u_1 − F the extended
+trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar: integrated over
 segments, so that non-matching meshes pass the patch test). Contact is decided at the quadrature points x_q:
 
     p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) Σ_k N_k(x) (J_k + s_k)_t
@@ -37,7 +37,8 @@ class ContactOperator:
     """Jump at n nodes of surface 1 and contact at q points on it; in the common frame.
 
     nodes: (n,) indices into surface 1. frames: (n, d, d) rows n, t1[, t2]. jump1: (n, n1), jump2: (n, n2) the weights
-    of J = jump1·e_1 − jump2·u_2. mass: (n, n) ∫N_k N_l. shape: (q, n) shape functions at the points; hat: (q, n) piecewise linear ones.
+    of J = jump1·e_1 − jump2·u_2. mass: (n, n) ∫N_k N_l. shape: (q, n) shape functions at the points;
+    hat: (q, n) piecewise linear ones.
     points: (q, d) positions. weights: (q,) [mm²; mm in 2D]. gap: (q,) [mm]. stabiliser: (q, 2) γ, γ_t [MPa/mm].
     """
 
@@ -157,7 +158,13 @@ def contact_operator(
 
 
 def _projection(
-    pairing: Pairing, first: Surface, second: Surface, nodes: Ints, M: sp.csr_matrix, N1: sp.csr_matrix, N2: sp.csr_matrix
+    pairing: Pairing,
+    first: Surface,
+    second: Surface,
+    nodes: Ints,
+    M: sp.csr_matrix,
+    N1: sp.csr_matrix,
+    N2: sp.csr_matrix,
 ) -> sp.csr_matrix:
     """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is continued from its nearest nodes, so
     that Π is defined there too and keeps constants."""
@@ -203,6 +210,8 @@ def stacked(operators: list[ContactOperator]) -> ContactOperator:
         return sp.block_diag([getattr(op, name) for op in operators], format="csr")
 
     return ContactOperator(
-        rows("nodes"), rows("frames"), diagonal("jump1"), diagonal("jump2"), diagonal("mass"), diagonal("shape"), diagonal("hat"),
+        np.concatenate([op.nodes for op in operators]), rows("frames"),
+        diagonal("jump1"), diagonal("jump2"), diagonal("mass"),
+        diagonal("shape"), diagonal("hat"),
         rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
     )  # fmt: skip

@@ -1,8 +1,8 @@
 """The public API: bodies, contacts, solve, sweep. Gears and verification problems use nothing else.
 
-    block = Body(read_msh("block.msh"), supports=(Fixed("bottom"),))
-    punch = Body(read_msh("punch.msh"), rigid=Rigid("top", (Freedom("y", load=-1000.0),)))
-    solution = solve(Problem((punch, block), (Contact((0, "face"), (1, "top"), friction=0.2),)))
+block = Body(read_msh("block.msh"), supports=(Fixed("bottom"),))
+punch = Body(read_msh("punch.msh"), rigid=Rigid("top", (Freedom("y", load=-1000.0),)))
+solution = solve(Problem((punch, block), (Contact((0, "face"), (1, "top"), friction=0.2),)))
 """
 
 from __future__ import annotations
@@ -190,8 +190,10 @@ def _prepared(problem: Problem, index: int) -> PreparedBody:
     first = {c.first[1] for c in problem.contacts if c.first[0] == index}
     groups = sorted(first | {c.second[1] for c in problem.contacts if c.second[0] == index})
     surfaces = {group: surface_of(body.mesh, group) for group in groups}
-    tractions = {g: nitsche_traction(body.mesh, body.material, surfaces[g], problem.nitsche.safety) for g in groups if g in first}
-    K, d = assembled.stiffness, assembled.d
+    tractions = {
+        g: nitsche_traction(body.mesh, body.material, surfaces[g], problem.nitsche.safety) for g in groups if g in first
+    }
+    K = assembled.stiffness
     trace = {g: trace_functionals(surfaces[g], K.shape[0]) for g in groups}
     for traction in tractions.values():
         K = K - θ * traction.constant_term() if θ else K
@@ -264,14 +266,21 @@ class Position:
                     local = op.local_map(number, self.placements[body].rotation)
                     start = prepared.offsets[side[1]]
                     pad = (start, block.shape[1] - start - local.shape[1])
-                    block = block + sp.hstack([sp.csr_matrix((local.shape[0], p)) if i != 1 else local for i, p in enumerate((pad[0], 0, pad[1]))])
+                    block = block + sp.hstack(
+                        [
+                            sp.csr_matrix((local.shape[0], p)) if i != 1 else local
+                            for i, p in enumerate((pad[0], 0, pad[1]))
+                        ]
+                    )
             rows.append(block)
         return sp.vstack(rows).tocsr()
 
     @property
     def friction(self) -> Floats:
         """μ of each point, (Σq,)."""
-        return np.concatenate([np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)])
+        return np.concatenate(
+            [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
+        )
 
     def load_jump(self) -> Floats:
         """Local jumps (Σn·d,) that the external loads alone would make."""
@@ -335,7 +344,9 @@ class Position:
         contacts = tuple(_contact_result(op, t) for op, t in zip(self.operators, self._tractions(found)))
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
-        return Solution(contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step)
+        return Solution(
+            contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step
+        )
 
     def _history(self, found: Equilibrium) -> _History:
         force = self._forces(found).ravel()
@@ -344,7 +355,17 @@ class Position:
             self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
             for b, E, δ in zip(self.prepared, self.maps, motions)
         ]
-        return _History(tuple(map(partial(self._deformed, y), self.problem.contacts, self.operators, self.placed, self._tractions(found))))
+        return _History(
+            tuple(
+                map(
+                    partial(self._deformed, y),
+                    self.problem.contacts,
+                    self.operators,
+                    self.placed,
+                    self._tractions(found),
+                )
+            )
+        )
 
     def _deformed(
         self, y: list[Floats], contact: Contact, op: ContactOperator, pair: tuple[Surface, Surface], traction: Floats
@@ -388,4 +409,6 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
 
 
 def _contact_result(op: ContactOperator, local: Floats) -> ContactResult:
-    return ContactResult(op.points, op.common(np.eye(op.d)[:1].repeat(len(local), axis=0)), op.weights, local[:, 0], op.common(local))
+    return ContactResult(
+        op.points, op.common(np.eye(op.d)[:1].repeat(len(local), axis=0)), op.weights, local[:, 0], op.common(local)
+    )

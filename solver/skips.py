@@ -28,8 +28,8 @@ def skipped(scene: Scene) -> list[str]:
     pitch, whole = 360 / pair.pinion.z, math.degrees(pair.engagement_angle)
     sentences = [
         f"One pitch is solved, {pitch:.2f}° of pinion rotation instead of the {whole:.2f}° of a whole engagement.",
-        f"One sector of a gear is meshed and factored; it stands for the {teeth} teeth that can touch and one more on "
-        f"each side, instead of {pair.pinion.z} + {pair.wheel.z} teeth.",
+        f"One sector of a gear is meshed and factored; it stands for all {pair.pinion.z} + {pair.wheel.z} teeth, "
+        f"of which {teeth} pairs can touch.",
         "Only the loaded flanks are refined and searched for contact, and these only near their contact lines.",
     ]
     if is_plane(scene):

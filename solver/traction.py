@@ -24,7 +24,9 @@ from solver.lagrange import gmsh_permutation, node_points, quadrature, tabulate
 from solver.material import Material, traction_rows
 from solver.surface import Surface, hats
 
-SAFETY = 2.0  # γ over the limit of single cells; averaged between cells it needs up to 1.18, and is insensitive up to 50
+SAFETY = (
+    2.0  # γ over the limit of single cells; averaged between cells it needs up to 1.18, and is insensitive up to 50
+)
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
 class _ContactCells:
     """The cells behind the facets of a surface: facet f belongs to cell f here.
 
-    nodes: (f, k) mesh nodes of the cells; coordinates: (f, k, d); slots: (f, kf) place of the facet's nodes in the cell.
+    nodes: (f, k) mesh nodes of the cells; coordinates: (f, k, d); slots: (f, kf) places of a facet's nodes there.
     """
 
     mesh: MeshData
@@ -122,7 +124,8 @@ def adjacent_cells(cells: Ints, facets: Ints) -> Ints:
         (np.ones(cells.size), (np.repeat(np.arange(len(cells)), cells.shape[1]), cells.ravel())), (len(cells), count)
     )
     of_facet = sp.csr_matrix(
-        (np.ones(facets.size), (np.repeat(np.arange(len(facets)), facets.shape[1]), facets.ravel())), (len(facets), count)
+        (np.ones(facets.size), (np.repeat(np.arange(len(facets)), facets.shape[1]), facets.ravel())),
+        (len(facets), count),
     )
     shared = (of_facet @ of_cell.T).tocoo()
     whole = shared.data == facets.shape[1]

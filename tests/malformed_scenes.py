@@ -128,7 +128,7 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
     ),
     "bases overlap": (YANG, ["pair.centre_distance_mm=80"], "pair.centre_distance_mm", "80", "raise the centre"),
     "interference at the root": (YANG, ["wheel.tip_diameter_mm=150"], "wheel.tip_diameter_mm", "150", "lower the tip"),
-    "tip in the root": (SHALLOW, [], "pinion.tip_diameter_mm", "156", "deepen the root"),
+    "tip in the root": (SHALLOW, [], "wheel.tip_diameter_mm", "156", "deepen the root"),
     "rack tip too round": (YANG, ["wheel.rack_tip_radius_mm=2"], "wheel.rack_tip_radius_mm", "2", "smaller tool tip"),
     "bore in the teeth": (
         YANG,

@@ -184,7 +184,7 @@ def test_check_prints_the_papers_figures(name: str) -> None:
         assert line.endswith(" " + values), f"{label}: wanted {values}, found {line!r}"
 
 
-@pytest.mark.parametrize(("level", "elements"), [("quick", 2), ("standard", 3), ("fine", 6)])
+@pytest.mark.parametrize(("level", "elements"), [("quick", 1.7), ("standard", 3), ("fine", 6)])
 def test_resolution_follows_the_contact_width(level: str, elements: float) -> None:
     """Yang: as many elements as ∫ds/h wants with h = 2b/elements; at twice the torque 1/√2 of them."""
     scene = scene_from_text(YANG, [f"mesh.level={level}"])

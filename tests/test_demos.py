@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
@@ -18,3 +20,16 @@ def test_demo(run_script, tmp_path, demo, ranks):
     head = table[0].split(",")[0].strip('"')
     assert len(table) > 3
     assert sum(line.startswith(head) for line in done.stdout.splitlines()) == 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_gear_demo(run_script, tmp_path, ranks):
+    """The paper's pair on a coarse mesh: status 0, tables, fields, pictures; the demo itself asserts the trend."""
+    done = run_script("demos/yang2022.py", "--quick", "--out", str(tmp_path), ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["ranks"] == ranks
+    assert len(summary["positions"]) == 4 * 2
+    assert max(row["balance_error"] for row in summary["positions"]) < 1e-2
+    assert (tmp_path / "fields" / "contact.pvd").exists()
+    assert len(list((tmp_path / "pictures").glob("*.png"))) >= 10

@@ -117,11 +117,22 @@ def frictional(
         root = newton.solve(law, law.join(neighbour.force, neighbour.motion), "Coulomb friction", PATIENCE, TOLERANCE)
         if root.converged:
             return _equilibrium(law, root)
+    try:
+        return _converged(law, _guessed(system, friction, slip, heading, start), "Coulomb friction")
+    except NotConverged:
+        if not heading.any():
+            raise
+    return _converged(law, _guessed(system, friction, slip, np.zeros_like(heading), start), "Coulomb friction")
+
+
+def _guessed(
+    system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
+) -> Floats:
+    """x after one iteration with the known directions of slip, all else stuck."""
     force = np.zeros((len(system.operator.nodes), system.k))
     force[:, : start.force.shape[1]] = start.force
     guess = _Contact(system, lambda t: starting_guess(t, friction, heading), slip)
-    first = newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE)
-    return _converged(law, first.x, "Coulomb friction")
+    return newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE).x
 
 
 class _Contact:

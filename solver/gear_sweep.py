@@ -6,6 +6,7 @@ tooth pair i stands where pair i + 1 stood at φ. Later pitches are never comput
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -16,6 +17,7 @@ from solver.gear_position import GearModel, Memory, PositionResult, remembered, 
 from solver.newton import NotConverged
 
 HALVINGS = 4
+LOG = logging.getLogger("evolvent")
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,7 @@ def _advance(
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°, also after {HALVINGS} halvings of the step: {failure}"
             ) from failure
+        LOG.info("the step to %.4f° is halved: %s", np.degrees(angle), failure)
         middle = _advance(model, frictions, state, 0.5 * (last + angle), 0.5 * span, halvings - 1)
         return _advance(model, frictions, middle.state, angle, 0.5 * span, halvings - 1)
 

@@ -147,7 +147,7 @@ def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
     """The facets (global nodes), those turned over whose normal points into the cell behind them."""
     points = mesh.points[:, : mesh.dimension]
     corners = {"triangle": 3, "quadrilateral": 4, "tetrahedron": 4, "hexahedron": 8}[mesh.shape]
-    behind = _cells_behind(mesh.cells[:, :corners], facets[:, : len(reference_cell(shape, 1).nodes)], len(points))
+    behind = cells_behind(mesh.cells[:, :corners], facets[:, : len(reference_cell(shape, 1).nodes)], len(points))
     surface = Surface(points, points, facets, shape, mesh.order, np.arange(len(points)))
     every = np.arange(len(facets))
     middle = np.broadcast_to(reference_cell(shape, 1).centre, (len(every), 1, mesh.dimension - 1))
@@ -157,8 +157,8 @@ def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
     return np.where(inwards[:, None], facets[:, TURNED_OVER[shape, mesh.order]], facets)
 
 
-def _cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
-    """The one cell that has all corners of each facet."""
+def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
+    """The one cell (f,) that has all nodes of each facet (f, k). Raises ValueError for a facet with none or two."""
     def incidence(items: Ints) -> Any:
         rows = np.repeat(np.arange(len(items)), items.shape[1])
         return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))

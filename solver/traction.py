@@ -22,7 +22,7 @@ from meshes.data import Floats, Ints, MeshData
 from solver.frames import tangent_frames
 from solver.lagrange import gmsh_permutation, node_points, quadrature, tabulate
 from solver.material import Material, traction_rows
-from solver.surface import Surface, hats
+from solver.surface import Surface, cells_behind, hats
 
 SAFETY = (
     2.0  # γ over the limit of single cells; averaged between cells it needs up to 1.18, and is insensitive up to 50
@@ -95,7 +95,7 @@ class _ContactCells:
     @staticmethod
     def of(mesh: MeshData, surface: Surface) -> _ContactCells:
         facets = surface.nodes[surface.facets]
-        nodes = mesh.cells[adjacent_cells(mesh.cells, facets)][:, gmsh_permutation(mesh.shape, mesh.order)]
+        nodes = mesh.cells[cells_behind(mesh.cells, facets, len(mesh.points))][:, gmsh_permutation(mesh.shape, mesh.order)]
         slots = np.argmax(nodes[:, None, :] == facets[:, :, None], axis=2)
         return _ContactCells(mesh, surface, nodes, mesh.points[nodes][..., : mesh.dimension], slots)
 
@@ -112,31 +112,6 @@ class _ContactCells:
         f, kf, k, d = at_facet.shape
         rows = traction_rows(material, at_facet.reshape(-1, k, d), normals.reshape(-1, d))
         return rows.reshape(f, kf, d, k, d)
-
-
-def adjacent_cells(cells: Ints, facets: Ints) -> Ints:
-    """The cell (f,) that holds all nodes of each facet (f, kf).
-
-    Raises ValueError for a facet that belongs to no cell, or to two (an interior facet carries no contact).
-    """
-    count = int(max(cells.max(), facets.max())) + 1
-    of_cell = sp.csr_matrix(
-        (np.ones(cells.size), (np.repeat(np.arange(len(cells)), cells.shape[1]), cells.ravel())), (len(cells), count)
-    )
-    of_facet = sp.csr_matrix(
-        (np.ones(facets.size), (np.repeat(np.arange(len(facets)), facets.shape[1]), facets.ravel())),
-        (len(facets), count),
-    )
-    shared = (of_facet @ of_cell.T).tocoo()
-    whole = shared.data == facets.shape[1]
-    owner, cell = shared.row[whole], shared.col[whole]
-    found = np.bincount(owner, minlength=len(facets))
-    if np.any(found != 1):
-        bad = int(np.flatnonzero(found != 1)[0])
-        raise ValueError(f"facet {bad}: wanted one adjacent cell, found {found[bad]}; contact needs boundary facets")
-    result = np.empty(len(facets), dtype=np.int64)
-    result[owner] = cell
-    return result
 
 
 def _recovered(cells: _ContactCells, material: Material) -> sp.csr_matrix:

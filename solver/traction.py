@@ -95,7 +95,8 @@ class _ContactCells:
     @staticmethod
     def of(mesh: MeshData, surface: Surface) -> _ContactCells:
         facets = surface.nodes[surface.facets]
-        nodes = mesh.cells[cells_behind(mesh.cells, facets, len(mesh.points))][:, gmsh_permutation(mesh.shape, mesh.order)]
+        behind = cells_behind(mesh.cells, facets, len(mesh.points))
+        nodes = mesh.cells[behind][:, gmsh_permutation(mesh.shape, mesh.order)]
         slots = np.argmax(nodes[:, None, :] == facets[:, :, None], axis=2)
         return _ContactCells(mesh, surface, nodes, mesh.points[nodes][..., : mesh.dimension], slots)
 

@@ -38,18 +38,21 @@ __all__ = [
 
 
 def compliance(
-    stiffness: sp.spmatrix, functionals: sp.spmatrix, free: Ints | None = None, settings: DissectionSettings = STANDARD
-) -> Floats:
+    stiffness: sp.spmatrix, functionals: sp.spmatrix, free: Ints | None = None,
+    settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None,
+) -> Floats:  # fmt: skip
     """C = P K⁻¹ Pᵀ (m × m, symmetric, one array; mm/N for displacements).
 
     `stiffness` K (n × n), `functionals` P (m × n); `free` picks the degrees of freedom that are not fixed (default:
-    all). Peak memory above K and P is about twice C.
+    all). `graph` (n × n) has the pattern that cuts follow, see `dissection.schur_complement`. Peak memory above K and
+    P is about twice C.
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
     if free is not None:
         stiffness, functionals = _restricted(stiffness, free), functionals.tocsc()[:, free]
-    result = schur_complement(_augmented(stiffness, functionals), functionals.shape[0], settings)
+        graph = None if graph is None else _restricted(graph, free)
+    result = schur_complement(_augmented(stiffness, functionals), functionals.shape[0], settings, graph)
     return np.negative(result, out=result)
 
 
@@ -106,9 +109,12 @@ class SectorCondensation:
 
 
 def condense_sector(
-    stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, settings: DissectionSettings = STANDARD
-) -> SectorCondensation:
+    stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints,
+    settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None,
+) -> SectorCondensation:  # fmt: skip
     """Condense K (n × n, fixed rows already gone) onto the cut dofs `low`, `high` (c each) and `functionals` P (m × n).
+
+    `graph` (n × n) has the pattern that cuts follow, see `dissection.schur_complement`.
 
     Raises ValueError where the faces do not match, NotPositiveDefinite and OutOfMemory.
     """
@@ -116,7 +122,8 @@ def condense_sector(
     order = np.concatenate([interior, cut])
     permuted = functionals.tocsc()[:, order]
     augmented = _augmented(_restricted(stiffness, order), permuted)
-    schur = schur_complement(augmented, len(cut) + permuted.shape[0], settings)
+    inner = None if graph is None else _restricted(graph, interior)
+    schur = schur_complement(augmented, len(cut) + permuted.shape[0], settings, inner)
     faces, surface = slice(0, len(cut)), slice(len(cut), None)
     compliance = schur[surface, surface]  # stays where it is: a copy would be the largest array of a run, twice
     np.negative(compliance, out=compliance)

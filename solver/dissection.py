@@ -38,17 +38,22 @@ class DissectionSettings:
 STANDARD = DissectionSettings()
 
 
-def schur_complement(matrix: sp.spmatrix, size: int, settings: DissectionSettings = STANDARD) -> Floats:
+def schur_complement(
+    matrix: sp.spmatrix, size: int, settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None
+) -> Floats:
     """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (size × size, C order) of the last `size` rows of a symmetric A (both triangles given).
 
-    A₁₁ must be positive definite, A₂₂ need not be.
+    A₁₁ must be positive definite, A₂₂ need not be. `graph` has the pattern that the cuts follow, of the shape of A₁₁
+    and connecting no more than it does (default: A₁₁): level sets of a mesh run straight, those of a matrix in which
+    some rows couple widely run ahead along these rows and leave separators twice as large.
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
     csr = matrix.tocsr()
     first = csr.shape[0] - size
     inner, outer = np.arange(first), np.arange(first, csr.shape[0])
-    result = _update(csr, inner, outer, settings)
+    cuts = csr[:first, :first] if graph is None else graph.tocsr()
+    result = _update(_Problem(csr, cuts, settings), inner, outer)
     corner = csr[first:, first:].tocoo()
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
@@ -57,18 +62,27 @@ def schur_complement(matrix: sp.spmatrix, size: int, settings: DissectionSetting
     return result
 
 
-def _update(matrix: sp.csr_matrix, inner: Ints, outer: Ints, settings: DissectionSettings) -> Floats:
+@dataclass(frozen=True)
+class _Problem:
+    """What every part of the recursion reads: the matrix, the graph of its rows to eliminate, the settings."""
+
+    matrix: sp.csr_matrix
+    graph: sp.csr_matrix
+    settings: DissectionSettings
+
+
+def _update(problem: _Problem, inner: Ints, outer: Ints) -> Floats:
     """−A_oi A_ii⁻¹ A_io, upper triangle (|outer| × |outer|, C order), of `inner` and `outer` rows of A."""
-    rows = matrix[inner]
+    rows = problem.matrix[inner]
     within = rows[:, inner]
-    if len(inner) <= settings.leaf:
-        return _leaf(within, rows[:, outer], settings)
-    separator, parts = bisect(within, settings.balance)
-    front = _Front.of(matrix, inner[separator], outer)
+    if len(inner) <= problem.settings.leaf:
+        return _leaf(within, rows[:, outer], problem.settings)
+    separator, parts = bisect(within, problem.graph[inner][:, inner], problem.settings.balance)
+    front = _Front.of(problem.matrix, inner[separator], outer)
     del rows, within
     for part in filter(len, parts):
         mumps.return_free_memory()
-        front.add(matrix, inner[part], settings)
+        front.add(problem, inner[part])
     return front.eliminated()
 
 
@@ -100,12 +114,12 @@ class _Front:
         blocks = rows[:, separator].toarray(), rows[:, outer].toarray(), np.zeros((len(outer), len(outer)))
         return _Front(np.concatenate([separator, outer]), *blocks)
 
-    def add(self, matrix: sp.csr_matrix, part: Ints, settings: DissectionSettings, chunk: int = 512) -> None:
+    def add(self, problem: _Problem, part: Ints, chunk: int = 512) -> None:
         """Eliminate the rows `part` and add their update at the places of the variables that they touch."""
-        touched = np.zeros(matrix.shape[0], dtype=bool)
-        touched[matrix[part].indices] = True
+        touched = np.zeros(problem.matrix.shape[0], dtype=bool)
+        touched[problem.matrix[part].indices] = True
         places = np.flatnonzero(touched[self.variables])
-        update = _update(matrix, part, self.variables[places], settings)
+        update = _update(problem, part, self.variables[places])
         count = len(self.ss)
         split = np.searchsorted(places, count)
         inside, outside = places[:split], places[split:] - count
@@ -131,24 +145,25 @@ class _Front:
         return self.oo
 
 
-def bisect(pattern: sp.csr_matrix, balance: float = 0.3) -> tuple[Ints, list[Ints]]:
+def bisect(pattern: sp.csr_matrix, graph: sp.csr_matrix, balance: float = 0.3) -> tuple[Ints, list[Ints]]:
     """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n).
 
-    The separator is empty where the graph is not connected.
+    The cut follows the level sets of `graph` (n × n), which connects no more than `pattern` does. The separator is
+    empty where the graph is not connected and `pattern` does not connect its pieces either.
     """
-    ends = _levels(pattern, np.array([0]))
-    levels = _levels(pattern, np.flatnonzero(ends == ends.max()))
-    if (levels < 0).any():
-        return np.empty(0, dtype=np.int64), [np.flatnonzero(levels < 0), np.flatnonzero(levels >= 0)]
-    # of a level only what touches the next one has to be in the separator
+    ends = _levels(graph, np.array([0]))
+    levels = _levels(graph, np.flatnonzero(ends == ends.max()))
+    levels[levels < 0] = levels.max() + 1  # another piece of the graph: as if behind all levels
+    # below the cut, only what touches the other side has to be in the separator
     reach = np.maximum.reduceat(levels[pattern.indices], pattern.indptr[:-1])
-    thin = np.bincount(levels[reach > levels], minlength=levels.max() + 1)
+    count = levels.max() + 1
+    crossing = np.cumsum(np.bincount(levels, minlength=count) - np.bincount(np.maximum(reach, levels), minlength=count))
     below = np.cumsum(np.bincount(levels)) / len(levels)
     allowed = np.flatnonzero((below >= balance) & (below <= 1 - balance))
     if not len(allowed):
-        allowed = np.array([np.argmin(np.abs(below[:-1] - 0.5))]) if len(below) > 1 else np.array([0])
-    level = allowed[np.argmin(thin[allowed] * (1 + np.abs(below[allowed] - 0.5)))]
-    separator = (levels == level) & (reach > level)
+        allowed = np.array([np.argmin(np.abs(below[:-1] - 0.5))]) if count > 1 else np.array([0])
+    level = allowed[np.argmin(crossing[allowed] * (1 + np.abs(below[allowed] - 0.5)))]
+    separator = (levels <= level) & (reach > level)
     return np.flatnonzero(separator), [
         np.flatnonzero((levels <= level) & ~separator),
         np.flatnonzero(levels > level),

@@ -100,7 +100,8 @@ def condensed_gear(
     cut = [dofs[dofs >= 0] for dofs in cut]
     numbers = sorted(sign * tooth for tooth in teeth)
     assembled_at = time.perf_counter()
-    condensed = condense_sector(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1])
+    mesh_graph = assembled.stiffness[free][:, free]
+    condensed = condense_sector(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1], graph=mesh_graph)
     settings = ChainSettings(pitch, len(numbers), numbers[0], d, COUPLING_TOLERANCE)
     chain = ChainedCompliance(condensed, settings)
     end = time.perf_counter()

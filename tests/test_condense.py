@@ -77,11 +77,26 @@ def test_dissection_of_separate_bodies() -> None:
 def test_separator_separates() -> None:
     """No entry of K joins the two parts, and a slab of 12 cells is cut across its short way (one layer of nodes)."""
     matrix, _, _ = block((12, 3, 3))
-    separator, (left, right) = bisect(matrix)
+    separator, (left, right) = bisect(matrix, matrix)
     assert matrix[left][:, right].nnz == 0
     assert len(separator) == 16 * 3
     assert min(len(left), len(right)) >= 0.3 * matrix.shape[0]
     assert np.array_equal(np.sort(np.concatenate([separator, left, right])), np.arange(matrix.shape[0]))
+
+
+def test_cuts_follow_the_mesh() -> None:
+    """A wide coupling along one face (as Nitsche's constant term): cuts along the mesh's graph separate the coupled
+    matrix too, and C stays the one of dense algebra."""
+    mesh, free, functionals = block((16, 4, 4))
+    mesh, face = mesh[free][:, free], functionals[:, free]
+    coupled = (mesh + 1e-3 * face.T @ face @ face.T @ face).tocsr()
+    _, (left, right) = bisect(coupled, mesh)
+    assert min(len(left), len(right)) >= 0.3 * mesh.shape[0]
+    assert coupled[left][:, right].nnz == 0
+    found = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
+    p = face.toarray()
+    exact = p @ np.linalg.solve(coupled.toarray(), p.T)
+    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
 
 
 def test_unsymmetric_functionals() -> None:

@@ -147,11 +147,14 @@ class ChainedCompliance:
         bases = {tooth: self._turned_basis(tooth, nodes) for tooth, (_, nodes) in groups.items()}
         for tooth, (places, nodes) in groups.items():
             own = _span(places, self.dimension)
-            for other, (columns, _) in groups.items():
+            for other in (t for t in groups if t >= tooth):
+                columns = _span(groups[other][0], self.dimension)
                 part = (bases[tooth] @ self._coupling(tooth, other)) @ bases[other].T
                 if other == tooth:
                     part += self._turned_sector(tooth, nodes)
-                _assign(result, own, _span(columns, self.dimension), part)
+                else:
+                    _assign(result, columns, own, part.T)
+                _assign(result, own, columns, part)
         return result
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:

@@ -32,6 +32,31 @@ class ToothContact:
 
 
 @dataclass(frozen=True)
+class JumpMap:
+    """Displacements at m flank nodes of one gear, in its frame, to local jumps at the n nodes of one tooth pair.
+
+    weights: (n, m) of the projection, None where it is the identity. axes: (n, k, d) rows of the local frames in the
+    gear's frame, with the jump's sign.
+    """
+
+    weights: Floats | None
+    axes: Floats
+
+    def jumps(self, displacements: Floats) -> Floats:
+        """(n·k, c) from c columns of displacements (m·d, c)."""
+        n, k, d = self.axes.shape
+        columns = displacements.shape[1]
+        u = displacements.reshape(-1, d * columns)
+        projected = u if self.weights is None else self.weights @ u
+        return np.matmul(self.axes, projected.reshape(n, d, columns)).reshape(n * k, columns)
+
+    def forces(self, contact_forces: Floats) -> Floats:
+        """(m, d) what contact forces (n, k) do to the gear's nodes: the transposed map."""
+        pushed = np.einsum("jka,jk->ja", self.axes, contact_forces)
+        return pushed if self.weights is None else self.weights.T @ pushed
+
+
+@dataclass(frozen=True)
 class GearContact:
     """All tooth pairs at a position.
 
@@ -113,25 +138,25 @@ class GearContact:
     def _touched(t: ToothContact, gear: int) -> Ints:
         return np.unique((t.operator.jump1 if gear == 0 else t.operator.jump2).indices)
 
-    def local_maps(self, gear: int, k: int) -> list[Floats]:
-        """For each tooth pair (n_t·k, m_t·d): a gear's displacements, in its frame, to local jumps."""
-        R, d = self.stand.rotation(gear, self.d), self.d
+    def jump_maps(self, gear: int, k: int) -> list[JumpMap]:
+        """For each tooth pair, the map from a gear's displacements at the touched nodes to local jumps."""
+        R = self.stand.rotation(gear, self.d)
         result = []
         for t in self.teeth:
-            op = t.operator
-            jump = (op.jump1 if gear == 0 else -op.jump2)[:, self._touched(t, gear)].toarray()
-            axes = (op.frames @ R)[:, :k]
-            result.append(np.einsum("jm,jka->jkma", jump, axes).reshape(len(op.nodes) * k, jump.shape[1] * d))
+            axes = ((t.operator.frames @ R) * (1.0 - 2.0 * gear))[:, :k]
+            # the pinion's flank has a node where the jump has one
+            weights = None if gear == 0 else t.operator.jump2[:, self._touched(t, gear)].toarray()
+            result.append(JumpMap(weights, axes))
         return result
 
     def _compliance(self, gear: int, k: int) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
         rows, parts = self.rows(gear)
         C = self.bodies[gear].chain.block(rows)
-        maps = self.local_maps(gear, k)
+        maps = self.jump_maps(gear, k)
         dofs = [slice(self.d * part.start, self.d * part.stop) for part in parts]
-        half = np.concatenate([E @ C[own] for E, own in zip(maps, dofs)])
-        return np.concatenate([half[:, own] @ E.T for E, own in zip(maps, dofs)], axis=1)
+        half = np.concatenate([E.jumps(C[own]) for E, own in zip(maps, dofs)])
+        return np.concatenate([E.jumps(half[:, own].T) for E, own in zip(maps, dofs)])
 
     @cached_property
     def at_edge(self) -> np.ndarray:

@@ -254,7 +254,7 @@ def remembered(model: GearModel, shared: SharedPosition, found: Equilibrium) -> 
     for gear, body in enumerate(model.bodies):
         n = len(body.flank.points)
         everywhere = np.concatenate([body.rows(t, np.arange(n)) for t in model.teeth])
-        pushed = [-(E.T @ f.ravel()).reshape(-1, d) for E, f in zip(contact.local_maps(gear, k), forces)]
+        pushed = [-E.forces(f) for E, f in zip(contact.jump_maps(gear, k), forces)]
         u = body.chain.apply(contact.rows(gear)[0], np.concatenate(pushed), everywhere)
         fields.append(u.reshape(len(model.teeth), n, d))
     place = np.searchsorted(model.teeth, contact.tooth)

@@ -14,11 +14,11 @@ from math import pi, sqrt
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipe, ellipk, elliprd
 
-Floats = NDArray[np.float64]
+from meshes.data import Floats
+
 Value = TypeVar("Value", float, Floats)
 
 GOLDEN = (1 + sqrt(5)) / 2
@@ -239,11 +239,6 @@ def carter(half_width: float, radius: float, friction: float, load_ratio: float)
     """
     stick = half_width * stick_ratio_line(load_ratio)
     return Rolling(stick, half_width - stick, friction * (half_width - stick) / radius)
-
-
-def sliding_edge_tension(friction: float, peak: float) -> float:
-    """Surface tension at the trailing edge of a sliding line contact, +2μp0 [MPa] (Johnson, section 7.1)."""
-    return 2 * friction * peak
 
 
 def _partial(load_ratio: float) -> float:

@@ -49,6 +49,11 @@ def test_load_or_displacement():
     assert np.allclose(by_motion.contacts[0].pressure, by_load.contacts[0].pressure, atol=1e-6)
 
 
+def test_iterations_count_the_start():
+    """With friction the iterations are those of the frictionless start, the same as without, and at least one more."""
+    assert solve(cylinder(FRICTION)).iterations > solve(cylinder(0.0)).iterations > 0
+
+
 def test_normal_then_tangential():
     """First pressed, then pushed with half of what slides: the tangential load arrives, some points stick and some
     slide. Repeating the same step moves the cylinder by less than a thousandth of what the push did; the traction near

@@ -1,0 +1,238 @@
+"""The contact system of one step of a sweep, and what it finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats
+from solver.body import Assembled, RigidMotions
+from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part, stuck
+from solver.newton import NotConverged
+from solver.nitsche import ContactOperator, contact_operator, stacked
+from solver.prepared import PreparedBody
+from solver.search import pair_surfaces
+from solver.statement import Contact, Placement, Problem, Side, Step
+from solver.surface import Surface
+
+
+@dataclass(frozen=True)
+class ContactResult:
+    """One contact of a solution, at the q quadrature points of the first surface that face the second one.
+
+    points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
+    (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with.
+    """
+
+    points: Floats
+    normals: Floats
+    weights: Floats
+    pressure: Floats
+    traction: Floats
+
+    @property
+    def force(self) -> Floats:
+        """Resultant (d,) on the second body [N; N/mm in 2D]."""
+        return self.weights @ self.traction
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Equilibrium of a problem at one step.
+
+    motions: per body (r,) rigid motions in the order of its freedoms [mm, rad]. iterations: Newton's, of the start and
+    of the friction law. imbalance: largest residual force over the largest force. nodal_forces: per body, on what is
+    seen of it.
+    """
+
+    contacts: tuple[ContactResult, ...]
+    motions: tuple[Floats, ...]
+    iterations: int
+    imbalance: float
+    nodal_forces: tuple[Floats, ...]
+    prepared: tuple[PreparedBody, ...]
+    step: Step
+
+    def displacement(self, body: int) -> Floats:
+        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included."""
+        return self.prepared[body].displacement(self.nodal_forces[body], self.step.load, self.motions[body])
+
+
+@dataclass(frozen=True)
+class History:
+    """Deformed positions of the surfaces of each contact at the last step: (n1, d) and (n2, d) in the common frame."""
+
+    points: tuple[tuple[Floats, Floats], ...]
+
+
+class Position:
+    """The condensed contact system of one step. Raises ValueError for a freedom that no body has, SearchError."""
+
+    def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step) -> None:
+        self.problem, self.prepared, self.step = problem, prepared, step
+        self.d = prepared[0].assembled.d
+        if any(not 0 <= i < len(prepared) for i, _ in step.freedoms):
+            raise ValueError(f"step: wanted body indices below {len(prepared)}, found {[i for i, _ in step.freedoms]}")
+        self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
+        self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
+        self.operators = [self._operator(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
+        self.maps = [self._map(b) for b in range(len(prepared))]
+        self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(prepared)]
+
+    def _surface(self, side: Side) -> Surface:
+        where = self.placements[side[0]]
+        return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
+
+    def _operator(self, contact: Contact, first: Surface, second: Surface) -> ContactOperator:
+        reach = contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
+        traction = self.prepared[contact.first[0]].tractions[contact.first[1]]
+        frames = traction.frames @ self.placements[contact.first[0]].rotation.T
+        return contact_operator(pair_surfaces(first, second, reach, reach), first, second, traction.stabiliser, frames)
+
+    def _map(self, body: int) -> sp.csr_matrix:
+        """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
+        d, prepared = self.d, self.prepared[body]
+        rows = []
+        for contact, op in zip(self.problem.contacts, self.operators):
+            block = sp.csr_matrix((len(op.nodes) * d, prepared.functionals.shape[0]))
+            for number, side in ((1, contact.first), (2, contact.second)):
+                if side[0] == body:
+                    local = op.local_map(number, self.placements[body].rotation)
+                    columns = local.indices + prepared.offsets[side[1]]
+                    block = block + sp.csr_matrix((local.data, columns, local.indptr), block.shape)
+            rows.append(block)
+        return sp.vstack(rows).tocsr()
+
+    @property
+    def friction(self) -> Floats:
+        """μ of each point, (Σq,)."""
+        return np.concatenate(
+            [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
+        )
+
+    def load_jump(self) -> Floats:
+        """Local jumps (Σn·d,) that the external loads alone would make."""
+        return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.prepared))
+
+    def system(self) -> CondensedSystem:
+        """Compliance, motions and loads of all bodies in local jumps."""
+        operator = stacked(self.operators)
+        n = len(operator.nodes) * self.d
+        A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
+        for E, body, motions in zip(self.maps, self.prepared, self.motions):
+            A += E @ (E @ body.compliance.T).T
+            held = np.flatnonzero(~np.isnan(motions.value))
+            moved = E @ body.motion_shapes
+            jump = jump + moved[:, held] @ motions.value[held]
+            H.append(moved[:, motions.free])
+            F.append(motions.load[motions.free])
+        motion, load = np.hstack(H), np.concatenate(F)
+        lever = np.abs(motion).max(axis=0, initial=0.0)
+        return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
+
+    def solve(self, before: History | None) -> tuple[Solution, History]:
+        """Equilibrium, with the slip since `before`."""
+        system = self.system()
+        μ = self.friction
+        found = self._with_friction(system, μ, before) if μ.any() else frictionless(normal_part(system))
+        return self._solution(system, found), self._history(found)
+
+    def _with_friction(self, system: CondensedSystem, μ: Floats, before: History | None) -> Equilibrium:
+        """From the frictionless state; where there is none (only friction carries the load) or Newton's method fails
+        from there, from the state in which all contact sticks."""
+        slip, unknown = self.slip(before), np.zeros((len(μ), self.d - 1))
+        try:
+            start = frictionless(normal_part(system))
+            found = frictional(system, μ, slip, unknown, start)
+        except NotConverged:
+            start = stuck(system, slip)
+            found = frictional(system, μ, slip, unknown, start)
+        return replace(found, iterations=start.iterations + found.iterations)
+
+    def _forces(self, found: Equilibrium) -> Floats:
+        force = np.zeros((len(found.force), self.d))
+        force[:, : found.force.shape[1]] = found.force
+        return force
+
+    def _tractions(self, found: Equilibrium) -> list[Floats]:
+        """Local tractions (q, d) at the points of each contact."""
+        traction = np.zeros((len(found.traction), self.d))
+        traction[:, : found.traction.shape[1]] = found.traction
+        return np.split(traction, np.cumsum([len(op.weights) for op in self.operators])[:-1])
+
+    def _body_motions(self, found: Equilibrium) -> list[Floats]:
+        result, at = [], 0
+        for motions in self.motions:
+            value = motions.value.copy()
+            value[motions.free] = found.motion[at : at + len(motions.free)]
+            at += len(motions.free)
+            result.append(value)
+        return result
+
+    def _solution(self, system: CondensedSystem, found: Equilibrium) -> Solution:
+        force = self._forces(found)
+        on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
+        contacts = tuple(_contact_result(op, t) for op, t in zip(self.operators, self._tractions(found)))
+        largest = max(system.scale, float(np.abs(force).sum()))
+        imbalance = found.residual / largest if largest else 0.0
+        return Solution(
+            contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step
+        )
+
+    def _history(self, found: Equilibrium) -> History:
+        force = self._forces(found).ravel()
+        motions = self._body_motions(found)
+        seen = [
+            self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
+            for b, E, δ in zip(self.prepared, self.maps, motions)
+        ]
+        contacts = zip(self.problem.contacts, self.operators, self.placed, self._tractions(found))
+        return History(tuple(self._deformed(seen, *contact) for contact in contacts))
+
+    def _deformed(
+        self, seen: list[Floats], contact: Contact, op: ContactOperator, pair: tuple[Surface, Surface], traction: Floats
+    ) -> tuple[Floats, Floats]:
+        """Deformed positions of both surfaces of a contact, from what is seen of the bodies."""
+        result = []
+        for side, surface in zip((contact.first, contact.second), pair):
+            start = self.prepared[side[0]].offsets[side[1]]
+            u = seen[side[0]][start : start + surface.points.size].reshape(-1, self.d)
+            result.append(surface.points + u @ self.placements[side[0]].rotation.T)
+        result[0][op.nodes] += op.flux(traction)
+        return result[0], result[1]
+
+    def slip(self, before: History | None) -> Floats:
+        """(Σn, d−1): tangential change of [x] at the present pairs of points, but for the present displacement."""
+        result = []
+        for i, (op, pair) in enumerate(zip(self.operators, self.placed)):
+            now = then = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
+            if before is not None:
+                then = op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
+            result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
+        return np.concatenate(result)
+
+
+def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
+    """The rigid motions of body `index` with their loads and prescribed values in a step."""
+    own, rigid = assembled.motions, assembled.body.rigid
+    names = [f.direction for f in rigid.freedoms] if rigid else []
+    load, value = step.load * own.load, step.load * own.value
+    for freedom in (f for i, f in step.freedoms if i == index):
+        if freedom.direction not in names:
+            raise ValueError(
+                f"step: wanted one of the freedoms {names} of {assembled.body.name} (body {index}), found "
+                f"{freedom.direction!r}; declare it in the body's Rigid first"
+            )
+        k = names.index(freedom.direction)
+        carried = step.load * float(own.shapes[:, :, k].ravel() @ assembled.load)
+        load[k] = np.nan if freedom.load is None else freedom.load + carried
+        value[k] = np.nan if freedom.displacement is None else freedom.displacement
+    return RigidMotions(own.shapes, load, value)
+
+
+def _contact_result(op: ContactOperator, local: Floats) -> ContactResult:
+    return ContactResult(
+        op.points, op.common(np.eye(op.d)[:1].repeat(len(local), axis=0)), op.weights, local[:, 0], op.common(local)
+    )

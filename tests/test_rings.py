@@ -1,0 +1,52 @@
+"""The ring meshes: exact volumes and areas, nodes on the sphere and on the ring, good cells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from meshes.data import MeshError
+from meshes.quality import scaled_jacobians
+from meshes.rings import ring_block, ring_sphere
+from solver.surface import surface_of
+
+SIDE, HEIGHT, RADIUS, RING, SIZE, FINE = 4.0, 4.0, 8.0, 0.47, 0.12, 0.6
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_ring_block(order):
+    """Top and bottom have the area π·4²/4, the wedge's sides 16 mm²; straight-sided cells lose 1.5 % of a circle."""
+    mesh = ring_block(SIDE, HEIGHT, RING, SIZE, FINE, order)
+    circle = pytest.approx(np.pi * SIDE**2 / 4, rel=0.02 if order == 1 else 1e-5)
+    assert surface_of(mesh, "top").areas().sum() == circle
+    assert surface_of(mesh, "bottom").areas().sum() == circle
+    for group in ("symmetry_x", "symmetry_y"):
+        assert surface_of(mesh, group).areas().sum() == pytest.approx(SIDE * HEIGHT, rel=1e-9)
+    assert scaled_jacobians(mesh).min() > 0.5
+
+
+def test_ring_sphere():
+    """The spherical cap over the radius 4 mm has the area 2πRh/4; its nodes are on the sphere."""
+    mesh = ring_sphere(RADIUS, SIDE, HEIGHT, RING, SIZE, FINE)
+    cap = RADIUS - np.sqrt(RADIUS**2 - SIDE**2)
+    assert surface_of(mesh, "arc").areas().sum() == pytest.approx(0.5 * np.pi * RADIUS * cap, rel=1e-4)
+    on_sphere = mesh.points[np.unique(mesh.facets["arc"])] - (0.0, 0.0, RADIUS)
+    assert np.allclose(np.linalg.norm(on_sphere, axis=1), RADIUS, rtol=1e-12)
+    assert scaled_jacobians(mesh).min() > 0.5
+
+
+def test_a_ring_of_cells_ends_at_the_ring():
+    """No facet of the top reaches across the circle: a facet has all its nodes inside it, or all outside."""
+    mesh = ring_block(SIDE, HEIGHT, RING, SIZE, FINE)
+    radius = np.hypot(*mesh.points[mesh.facets["top"], :2].T).T
+    inside, outside = (radius <= RING + 1e-9).all(axis=1), (radius >= RING - 1e-9).all(axis=1)
+    assert (inside ^ outside).all()
+    assert mesh.points[mesh.facets["top"][inside]].size > 0
+
+
+def test_refused():
+    """A ring outside the fine zone, and a sphere that rises too high, are refused with what was found."""
+    with pytest.raises(MeshError, match=r"found ring 0\.7"):
+        ring_block(SIDE, HEIGHT, 0.7, SIZE, FINE)
+    with pytest.raises(MeshError, match=r"rises less than 0\.7"):
+        ring_sphere(4.1, SIDE, HEIGHT, RING, SIZE, FINE)

@@ -1,7 +1,7 @@
 """The compliance of a body's contact surface: of one body, or of a gear made of equal sectors, behind one interface.
 
 A gear is N sectors, sector s = one sector turned by 2πs/z, held at the bore. The sector is condensed once
-(`condense.condense_sector`), the interfaces between the sectors are eliminated exactly (`interfaces`). With v_s the
+(`condense.SectorSystem`), the interfaces between the sectors are eliminated exactly (`interfaces`). With v_s the
 displacement of the low face of sector s in its own frame and R the turn by one pitch, the high face of sector s moves
 by R v_{s+1}, and
 

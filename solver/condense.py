@@ -31,9 +31,9 @@ __all__ = [
     "OutOfMemory",
     "SectorCondensation",
     "SectorRecovery",
+    "SectorSystem",
     "compliance",
     "compliance_by_columns",
-    "condense_sector",
 ]
 
 
@@ -108,26 +108,52 @@ class SectorCondensation:
     compliance: Floats
 
 
-def condense_sector(
-    stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints,
-    settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None,
-) -> SectorCondensation:  # fmt: skip
-    """Condense K (n × n, fixed rows already gone) onto the cut dofs `low`, `high` (c each) and `functionals` P (m × n).
+@dataclass(frozen=True)
+class SectorSystem:
+    """[K Pᵀ; P 0] of a sector, ready for elimination: interior rows first, then the cut faces, then the functionals.
 
-    `graph` (n × n) has the pattern that cuts follow, see `dissection.schur_complement`.
-
-    Raises ValueError where the faces do not match, NotPositiveDefinite and OutOfMemory.
+    matrix: (n + m)², graph: pattern (interior rows)² that the cuts of the dissection follow, or None for the matrix's
+    own; cut: 2c; surface: m.
     """
-    interior, cut = _split(stiffness.shape[0], low, high)
-    order = np.concatenate([interior, cut])
-    permuted = functionals.tocsc()[:, order]
-    augmented = _augmented(_restricted(stiffness, order), permuted)
-    inner = None if graph is None else _restricted(graph, interior)
-    schur = schur_complement(augmented, len(cut) + permuted.shape[0], settings, inner)
-    faces, surface = slice(0, len(cut)), slice(len(cut), None)
-    compliance = schur[surface, surface]  # stays where it is: a copy would be the largest array of a run, twice
-    np.negative(compliance, out=compliance)
-    return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), compliance)
+
+    matrix: sp.csr_matrix
+    graph: sp.csr_matrix | None
+    cut: int
+    surface: int
+
+    @staticmethod
+    def of(
+        stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None
+    ) -> SectorSystem:
+        """From K (n × n, fixed rows already gone), P (m × n), the dofs `low`, `high` (c each) of the cut faces and a
+        pattern (n × n). Raises ValueError where the faces do not match."""
+        interior, cut = _split(stiffness.shape[0], low, high)
+        order = np.concatenate([interior, cut])
+        matrix = _augmented(_restricted(stiffness, order), functionals.tocsc()[:, order])
+        inner = None if graph is None else _restricted(graph, interior)
+        return SectorSystem(matrix, inner, len(cut), functionals.shape[0])
+
+    def condensed(self, settings: DissectionSettings = STANDARD) -> SectorCondensation:
+        """Onto the cut faces and the functionals. Raises NotPositiveDefinite and OutOfMemory."""
+        schur = schur_complement(self.matrix, self.cut + self.surface, settings, self.graph)
+        faces, surface = slice(0, self.cut), slice(self.cut, None)
+        stiffness, transfer = schur[faces, faces].copy(), schur[surface, faces].copy()
+        compliance = _corner(schur, self.cut)
+        return SectorCondensation(stiffness, transfer, np.negative(compliance, out=compliance))
+
+
+def _corner(matrix: Floats, first: int) -> Floats:
+    """matrix[first:, first:], moved to the front of the same memory: it is the largest array of a run, and a copy would
+    be there twice. `matrix` is used up."""
+    size = len(matrix) - first
+    flat = matrix.reshape(-1)
+    for row in range(size):
+        flat[row * size : (row + 1) * size] = matrix[first + row, first:]
+    if matrix.flags.owndata:
+        del flat
+        matrix.resize((size, size), refcheck=False)
+        return matrix
+    return flat[: size * size].reshape(size, size)
 
 
 class SectorRecovery:
@@ -167,4 +193,9 @@ def _restricted(stiffness: sp.spmatrix, kept: Ints) -> sp.csr_matrix:
 
 
 def _augmented(stiffness: sp.spmatrix, functionals: sp.spmatrix) -> sp.csr_matrix:
-    return sp.bmat([[stiffness, functionals.T], [functionals, None]], format="csr")
+    """[K Pᵀ; P 0] by stacking rows: `bmat` would hold K three times on the way, gigabytes at the fine end."""
+    size, count = stiffness.shape[0], functionals.shape[0]
+    upper = sp.vstack([stiffness.tocsr(), functionals.tocsr()], format="csr").T.tocsr()  # [K Pᵀ], K being symmetric
+    P = functionals.tocsr()
+    lower = sp.csr_matrix((P.data, P.indices, P.indptr), shape=(count, size + count))
+    return sp.vstack([upper, lower], format="csr")

@@ -21,6 +21,7 @@ from scipy.linalg.blas import dsyrk
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver import mumps
+from solver.memory import large_arrays_apart, return_free_memory
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -49,6 +50,7 @@ def schur_complement(
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
+    large_arrays_apart()
     csr = matrix.tocsr()
     first = csr.shape[0] - size
     inner, outer = np.arange(first), np.arange(first, csr.shape[0])
@@ -58,7 +60,7 @@ def schur_complement(
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
     mumps.fill_symmetric(result)
-    mumps.return_free_memory()
+    return_free_memory()
     return result
 
 
@@ -81,7 +83,7 @@ def _update(problem: _Problem, inner: Ints, outer: Ints) -> Floats:
     front = _Front.of(problem.matrix, inner[separator], outer)
     del rows, within
     for part in filter(len, parts):
-        mumps.return_free_memory()
+        return_free_memory()
         front.add(problem, inner[part])
     return front.eliminated()
 

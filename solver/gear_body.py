@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearParameters
 from solver.body import Body, Fixed, assemble
 from solver.chain import ChainedCompliance, ChainSettings
-from solver.condense import condense_sector
+from solver.condense import SectorSystem
 from solver.kinematics import turn
 from solver.material import Material
 from solver.surface import Surface, surface_of
@@ -82,30 +83,34 @@ def condensed_gear(
     The bore is held in the gear's frame.
     """
     begin = time.perf_counter()
-    body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
-    assembled = assemble(body)
     flank = surface_of(mesh, "flank")
-    K, d = assembled.stiffness, assembled.d
-    P = trace_functionals(flank, K.shape[0])
-    traction = None
-    if carries_pressure:
-        traction = nitsche_traction(mesh, material, flank, safety)
-        K, P = (K - traction.constant_term()).tocsr(), (P - traction.flux()).tocsr()
-    pitch = 2.0 * np.pi / gear.z
-    low, high = matching_cuts(mesh, pitch)
-    free = assembled.free
-    place = np.full(K.shape[0], -1)
-    place[free] = np.arange(len(free))
-    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in (low, high)]
-    cut = [dofs[dofs >= 0] for dofs in cut]
+    traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
+    system = _sector_system(mesh, material, flank, traction, 2.0 * np.pi / gear.z)
+    assembled = time.perf_counter()
     numbers = sorted(sign * tooth for tooth in teeth)
-    assembled_at = time.perf_counter()
-    mesh_graph = assembled.stiffness[free][:, free]
-    condensed = condense_sector(K[free][:, free].tocsr(), P[:, free], cut[0], cut[1], graph=mesh_graph)
-    settings = ChainSettings(pitch, len(numbers), numbers[0], d, COUPLING_TOLERANCE)
-    chain = ChainedCompliance(condensed, settings)
+    settings = ChainSettings(2.0 * np.pi / gear.z, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
+    chain = ChainedCompliance(system.condensed(), settings)
     end = time.perf_counter()
-    return GearBody(gear, mesh, flank, traction, chain, sign, assembled_at - begin, end - assembled_at)
+    return GearBody(gear, mesh, flank, traction, chain, sign, assembled - begin, end - assembled)
+
+
+def _sector_system(
+    mesh: MeshData, material: Material, flank: Surface, traction: NitscheTraction | None, pitch: float
+) -> SectorSystem:
+    """The sector held at its bore, with Nitsche's constant term, seen through its flank. A function of its own so that
+    the full matrices are gone when the elimination starts."""
+    assembled = assemble(Body(mesh, material, supports=(Fixed("bore"),)))
+    free, d = assembled.free, assembled.d
+    P = trace_functionals(flank, assembled.stiffness.shape[0])
+    K = assembled.stiffness[free][:, free].tocsr()
+    graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
+    if traction is not None:
+        K, P = (K - traction.constant_term()[free][:, free]).tocsr(), P - traction.flux()
+    place = np.full(len(assembled.held), -1)
+    place[free] = np.arange(len(free))
+    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in matching_cuts(mesh, pitch)]
+    low, high = (dofs[dofs >= 0] for dofs in cut)
+    return SectorSystem.of(K, P.tocsr()[:, free], low, high, graph)
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:

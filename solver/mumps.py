@@ -120,13 +120,6 @@ def fill_symmetric(matrix: Floats, tile: int = 512) -> None:
         matrix[start + tile :, rows] = matrix[rows, start + tile :].T
 
 
-def return_free_memory() -> None:
-    """Give freed memory back to the system; glibc holds on to gigabytes of it otherwise (elsewhere: nothing)."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:
-        trim(0)
-
-
 def library() -> ctypes.CDLL:
     """The PETSc C library that petsc4py runs on.
 

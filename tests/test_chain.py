@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from q1_elasticity import Ring, ring
 
 from solver.chain import ChainedCompliance, ChainSettings, Compliance, DenseCompliance
-from solver.condense import Factor, SectorCondensation, SectorRecovery, compliance, condense_sector
+from solver.condense import Factor, SectorCondensation, SectorRecovery, SectorSystem, compliance
 from solver.interfaces import compressed
 
 PITCH = 2 * np.pi / 17
@@ -41,7 +41,7 @@ def sector_parts(shape: str, pitch: float = PITCH) -> tuple[sp.csr_matrix, sp.cs
 
 
 def sector_of(shape: str, pitch: float = PITCH) -> SectorCondensation:
-    return condense_sector(*sector_parts(shape, pitch))
+    return SectorSystem.of(*sector_parts(shape, pitch)).condensed()
 
 
 def merged(shape: str) -> tuple[Ring, np.ndarray]:

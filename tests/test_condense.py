@@ -12,9 +12,9 @@ from q1_elasticity import dofs_of, grid_cells, stiffness
 from solver.condense import (
     Factor,
     NotPositiveDefinite,
+    SectorSystem,
     compliance,
     compliance_by_columns,
-    condense_sector,
 )
 from solver.dissection import DissectionSettings, bisect
 from solver.mumps import fill_symmetric
@@ -156,9 +156,9 @@ def test_cut_faces_must_match() -> None:
     matrix, free, functionals = block((2, 2, 2))
     kept, p = matrix[free][:, free], functionals[:, free]
     with pytest.raises(ValueError, match="found 3 and 2"):
-        condense_sector(kept, p, np.array([0, 1, 2]), np.array([6, 7]))
+        SectorSystem.of(kept, p, np.array([0, 1, 2]), np.array([6, 7]))
     with pytest.raises(ValueError, match="3 different"):
-        condense_sector(kept, p, np.array([0, 1]), np.array([1, 7]))
+        SectorSystem.of(kept, p, np.array([0, 1]), np.array([1, 7]))
 
 
 def test_mirrored_triangle() -> None:

@@ -17,7 +17,11 @@ from solver.gear_contact import GearContact, gear_contact
 from solver.kinematics import Stand, nominal_slip
 from solver.newton import NotConverged
 
-RELOCATE = 2e-4  # [mm] a free rotation that moves the flanks further than this is made exact and searched again
+RELOCATE = 5e-4
+"""A free rotation that moves the flanks further [mm] is made exact and searched again; the gap is linear in a smaller
+one but for its square over the curvature radius, 1e-7 mm."""
+FIRST_CONTACT = 0.25
+"""Share of the window that is taken for pressed to start with: Newton's method needs fewer steps from too few points."""
 NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
 ROUNDS = 8
 
@@ -149,7 +153,7 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        smooth = frictionless(system if normal_only else normal_part(system), contact.distance <= 0.5 * half_width)
+        smooth = frictionless(system if normal_only else normal_part(system), contact.distance <= FIRST_CONTACT * half_width)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5

@@ -51,7 +51,7 @@ def fan(polygons: Floats, count: Ints) -> tuple[Ints, Floats]:
     """Cut polygons (p, v, c) with count (p,) vertices into triangles: their polygon (t,), their corners (t, 3, c).
 
     Every vertex is tried as the apex; taken is the one that overlaps least (not at all if the polygon is convex) and,
-    among these, leaves the fewest triangles. The signed areas always sum to the polygon's.
+    among these, leaves the fewest triangles, the one furthest down and left of equals. The signed areas always sum to the polygon's.
     """
     keep = count >= 3
     owner, polygons, count = np.flatnonzero(keep), polygons[keep], count[keep]
@@ -66,7 +66,10 @@ def fan(polygons: Floats, count: Ints) -> tuple[Ints, Floats]:
     spent = np.where(apex, np.abs(area).sum(axis=2), np.inf)
     least = spent <= spent.min(axis=1, initial=np.inf)[:, None] + ROUND_OFF
     filled = np.where(least, (np.abs(area) > ROUND_OFF).sum(axis=2), len(index))
-    best = np.argmin(filled, axis=1) if len(polygons) else np.empty(0, dtype=np.int64)
+    # among equals the place decides, not the order of the corners, which is a matter of round-off
+    place = np.round(polygons[..., 0] + np.pi * polygons[..., 1], 9)
+    rank = np.where(filled == filled.min(axis=1, initial=len(index))[:, None], place, np.inf)
+    best = np.argmin(rank, axis=1) if len(polygons) else np.empty(0, dtype=np.int64)
     row = np.arange(len(polygons))
     turned = np.take_along_axis(polygons, order[row, best][..., None], axis=1)
     which, position = np.nonzero(np.abs(area[row, best]) > EMPTY)

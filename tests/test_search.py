@@ -292,6 +292,17 @@ def test_clipped_triangles_fill_the_polygon():
     assert np.bincount(owner, area, minlength=2) == pytest.approx([0.25, 0.0])
 
 
+def test_fan_does_not_depend_on_the_first_corner() -> None:
+    """A rectangle, listed from each of its corners and moved by round-off: the same two triangles."""
+    corners = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]])
+    found = []
+    for first in range(4):
+        turned = np.roll(corners, first, axis=0) + 1e-15 * np.arange(8).reshape(4, 2)
+        _, triangles = fan(turned[None], np.array([4]))
+        found.append(sorted(tuple(sorted(map(tuple, np.round(t, 9).tolist()))) for t in triangles))
+    assert all(cut == found[0] for cut in found[1:])
+
+
 def test_fan_of_a_dented_polygon_overlaps_nowhere():
     """A square with one dented side: the apex is chosen so that no triangle has negative area; they sum to 0.95."""
     dented = np.array([[[0, 0], [0.5, 0.1], [1, 0], [1, 1], [0, 1]]], float)

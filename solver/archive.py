@@ -23,7 +23,8 @@ import numpy as np
 
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearPair
-from solver.gear_position import ContactPoints, Memory, PositionResult
+from solver.gear_memory import Memory
+from solver.gear_position import ContactPoints, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 from solver.scene import Scene

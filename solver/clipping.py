@@ -51,7 +51,8 @@ def fan(polygons: Floats, count: Ints) -> tuple[Ints, Floats]:
     """Cut polygons (p, v, c) with count (p,) vertices into triangles: their polygon (t,), their corners (t, 3, c).
 
     Every vertex is tried as the apex; taken is the one that overlaps least (not at all if the polygon is convex) and,
-    among these, leaves the fewest triangles, the one furthest down and left of equals. The signed areas always sum to the polygon's.
+    among these, leaves the fewest triangles; of equals the one furthest down and left. The signed areas always sum to
+    the polygon's.
     """
     keep = count >= 3
     owner, polygons, count = np.flatnonzero(keep), polygons[keep], count[keep]

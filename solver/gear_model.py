@@ -1,4 +1,7 @@
-"""From a scene to a gear model: meshes, condensed gears, window. With several ranks each gear is condensed on one."""
+"""What all positions of a gear pair share, and how it comes from a scene: meshes, condensed gears, window.
+
+With several ranks each gear is condensed on one.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,35 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
-from solver.gear_position import GearLoad, GearModel
 from solver.parallel import shared, together
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 from solver.skips import is_plane, touching_teeth
 
 WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
+
+
+@dataclass(frozen=True)
+class GearLoad:
+    """The load: torque [N·mm; per mm of width in 2D] held on gear `on` (0 pinion, 1 wheel); the other one is driven."""
+
+    torque: float
+    on: int = 0
+
+
+@dataclass(frozen=True)
+class GearModel:
+    """All that positions share. teeth: tooth pairs that may touch within the pitch; half_width: of the window
+    [mm of arc] to start with."""
+
+    pair: GearPair
+    bodies: tuple[GearBody, GearBody]
+    teeth: tuple[int, ...]
+    load: GearLoad
+    half_width: float
 
 
 @dataclass(frozen=True)

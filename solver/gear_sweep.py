@@ -13,7 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.gear_position import GearModel, Memory, PositionResult, remembered, shared_position, solve_position
+from solver.gear_memory import Memory, remembered
+from solver.gear_model import GearModel
+from solver.gear_position import PositionResult, shared_position, solve_position
 from solver.newton import NotConverged
 
 HALVINGS = 4
@@ -101,7 +103,7 @@ def _position(
     for μ, memory in zip(frictions, state.memories):
         begin = time.perf_counter()
         result, found = solve_position(model, shared, μ, memory, span, found)
-        memories.append(remembered(model, shared, found) if μ > 0.0 else None)
+        memories.append(remembered(model, shared.contact, found) if μ > 0.0 else None)
         seconds = common / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     return SweptPosition(angle, False, tuple(results), SweepState(shared.contact.stand.extra, tuple(memories)))

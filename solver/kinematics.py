@@ -6,7 +6,7 @@ on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -41,6 +41,12 @@ class Stand:
             self.angle - pinion.half_angle(d1) + self.extra[0],
             np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.extra[1],
         )
+
+    def turned(self, gear: int, δ: float) -> Stand:
+        """With δ [rad] added to the extra rotation of a gear."""
+        extra = list(self.extra)
+        extra[gear] += δ
+        return replace(self, extra=(extra[0], extra[1]))
 
     def centre(self, gear: int, d: int) -> Floats:
         """Centre (d,) of gear 0 (pinion) or 1 (wheel)."""

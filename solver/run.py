@@ -19,8 +19,7 @@ from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive, gear_shape
 from solver.fields import write_fields
-from solver.gear_model import Preparation, prepare_model
-from solver.gear_position import GearModel
+from solver.gear_model import GearModel, Preparation, prepare_model
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from solver.parallel import on_first, together

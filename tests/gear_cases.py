@@ -9,8 +9,8 @@ import numpy as np
 from mpi4py import MPI
 
 from meshes.data import Floats
-from solver.gear_model import prepare_model
-from solver.gear_position import GearModel, PositionResult, shared_position
+from solver.gear_model import GearModel, prepare_model
+from solver.gear_position import PositionResult, shared_position
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from solver.scene import Scene, load_scene, scene_from_text
 

@@ -22,7 +22,7 @@ from gear_cases import (
 )
 
 from solver import gear_sweep
-from solver.gear_position import GearModel
+from solver.gear_model import GearModel
 from solver.gear_results import balance_error, slices
 from solver.newton import NotConverged
 from solver.run import pitch_of

@@ -1,4 +1,4 @@
-"""What can be said of a scene before it is computed: Hertz on the nominal contact lines, memory.
+"""What can be said of a scene before it is computed: Hertz on the nominal contact lines.
 
 The estimates are frictionless and spread the load evenly over the contact lines of rigid flanks.
 """
@@ -17,12 +17,6 @@ from solver.hertz import contact_modulus, line_half_width, line_peak_pressure
 
 if TYPE_CHECKING:
     from solver.scene import Scene
-
-MEGABYTES_AT, DOFS_AT, EXPONENT = 2100.0, 220e3, 1.31
-"""Measured with MUMPS on sectors of second-order hexahedra: 0.6 GB for 84k, 2.1 GB for 220k, 5.4 GB for 455k dofs."""
-PLANE_MEGABYTES_PER_DOF = 2e-3
-"""A plane section: some 250 numbers of the factor a dof."""
-
 
 @dataclass(frozen=True)
 class HertzEstimate:
@@ -73,8 +67,3 @@ def hertz_estimate(scene: Scene) -> HertzEstimate:
     modulus = contact_modulus(*constants)
     torque = 1e3 * scene.load.torque_Nm
     return HertzEstimate(pair, modulus, torque if scene.load.on == "pinion" else torque / pair.ratio)
-
-
-def memory_megabytes(dofs: float, plane: bool = False) -> float:
-    """Memory [MB] to factor a sector of so many second-order dofs."""
-    return PLANE_MEGABYTES_PER_DOF * dofs if plane else MEGABYTES_AT * (dofs / DOFS_AT) ** EXPONENT

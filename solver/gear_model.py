@@ -62,8 +62,8 @@ class Preparation:
 def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     """Meshes and condenses both gears of a scene. Raises MeshError, NotPositiveDefinite, OutOfMemory."""
     begin = time.perf_counter()
-    # the wheel's sector is the larger one: condensed first, while memory is free
-    own = [index for index in (1, 0) if index % comm.size == comm.rank]
+    # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
+    own = [index for index in (0, 1) if index % comm.size == comm.rank]
     meshes = together(comm, lambda: {index: gear_mesh(scene, index) for index in own})
     meshed = time.perf_counter()
     teeth, pair = contact_teeth(scene), scene.gear_pair()

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from meshes.parameters import GearPair, GearParameters
-from solver.estimates import HertzEstimate, hertz_estimate, memory_megabytes
+from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors, yang_estimate
-from solver.resolution import elements_per_contact_width, sector_dofs, sector_resolutions
+from solver.resolution import elements_per_contact_width, memory_megabytes, sector_resolutions, sector_size
 from solver.scene import Scene
 from solver.scene_gears import working_angle_of
 from solver.skips import is_plane, skipped, touching_teeth
@@ -166,17 +166,16 @@ def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
 
 def _cost_rows(scene: Scene) -> list[Row]:
     gears, sectors, plane = scene.gear_pair().gears, sector_resolutions(scene), is_plane(scene)
-    dofs = [sector_dofs(gear, sector, scene.mesh.order, plane) for gear, sector in zip(gears, sectors, strict=True)]
+    sizes = [sector_size(gear, sector, scene.mesh.order, plane) for gear, sector in zip(gears, sectors, strict=True)]
     layers = tuple("plane" if plane else str(sector.face_elements) for sector in sectors)
-    memory = (memory_megabytes(count, plane) for count in dofs)
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
         _one("elements across the contact width 2b", "", "", 1, elements_per_contact_width(scene)),
         Row("elements along the loaded flank", "", "", tuple(str(sector.profile_elements) for sector in sectors)),
         Row("layers over the face width", "", "", layers),
-        Row("degrees of freedom of a sector", "", "", tuple(f"{count:,}" for count in dofs)),
-        _both("memory to factor a sector", "", "MB", 0, memory),
+        Row("degrees of freedom of a sector", "", "", tuple(f"{size.dofs:,}" for size in sizes)),
+        _one("largest memory of a run, estimated", "", "MB", 0, memory_megabytes(*sizes)),
         Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
         Row("positions, with warm-up", "", "", (str(positions_to_solve(scene)),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),

@@ -34,6 +34,7 @@ PITCH = slice(4, 44)
 """The 40 positions of one pitch, 7.2°, among DEGREES."""
 SINGLE = (7.0, 7.2)
 """Only pair −1 touches, before its pitch point."""
+SINGLE_PAIR = np.array(SINGLE)
 
 
 @pytest.fixture(scope="module")
@@ -272,3 +273,19 @@ def test_misaligned_axis_shifts_the_load(helical: GearModel) -> None:
     assert away < aligned - 0.02
     assert towards > aligned + 0.02
     assert away + towards == pytest.approx(2.0 * aligned, abs=0.2 * (towards - away))
+
+
+@pytest.mark.parametrize(("shape", "deviation"), [("hexahedron", 0.06), ("tetrahedron", 0.15)])
+def test_other_cells(spur: GearModel, shape: str, deviation: float) -> None:
+    """Quadrilaterals, triangles of order 1 and 2 solve the same pair. Exact: a coarser displacement space on the same
+    mesh is stiffer, so the transmission error grows with the order; the flanks stay conjugate, T_2/T_1 = z_2/z_1."""
+    reference = swept(spur, SINGLE_PAIR, [0.0])[0].of("transmission_error")
+    found = {}
+    for order in (1, 2):
+        model = model_of(spur_scene(f'mesh.shape="{shape}"', f"mesh.order={order}"))
+        curve = swept(model, SINGLE_PAIR, [0.0])[0]
+        found[order] = curve.of("transmission_error")
+        assert np.abs(curve.torque_ratio - 1.0).max() < 2e-4
+    assert (found[1] < found[2]).all()
+    assert np.abs(found[2] / reference - 1.0).max() < 0.01
+    assert np.abs(found[1] / reference - 1.0).max() < deviation

@@ -59,8 +59,8 @@ def schur_complement(
     corner = csr[first:, first:].tocoo()
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
-    mumps.fill_symmetric(result)
     return_free_memory()
+    mumps.fill_symmetric(result)
     return result
 
 
@@ -85,6 +85,7 @@ def _update(problem: _Problem, inner: Ints, outer: Ints) -> Floats:
     for part in filter(len, parts):
         return_free_memory()
         front.add(problem, inner[part])
+    return_free_memory()
     return front.eliminated()
 
 

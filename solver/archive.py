@@ -87,7 +87,7 @@ class Archive:
     def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Raises ArchiveError if the kept results stand on other meshes."""
         for kept, own in zip(self.read_gears(), shapes):
-            same = kept.points.shape == own.points.shape and np.allclose(kept.points, own.points, atol=1e-9)
+            same = kept.points.shape == own.points.shape and np.allclose(kept.points, own.points, rtol=0.0, atol=1e-9)
             if not (same and np.array_equal(kept.flank_nodes, own.flank_nodes)):
                 raise ArchiveError(
                     f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "

@@ -144,7 +144,7 @@ class SectorSystem:
 
 def _corner(matrix: Floats, first: int) -> Floats:
     """matrix[first:, first:], moved to the front of the same memory: it is the largest array of a run, and a copy would
-    be there twice. `matrix` is used up."""
+    be there twice. `matrix` is in C order, and used up."""
     size = len(matrix) - first
     flat = matrix.reshape(-1)
     for row in range(size):
@@ -193,9 +193,9 @@ def _restricted(stiffness: sp.spmatrix, kept: Ints) -> sp.csr_matrix:
 
 
 def _augmented(stiffness: sp.spmatrix, functionals: sp.spmatrix) -> sp.csr_matrix:
-    """[K Pᵀ; P 0] by stacking rows: `bmat` would hold K three times on the way, gigabytes at the fine end."""
+    """[K Pᵀ; P 0] by stacking rows, without the coordinate lists that `bmat` makes of K on the way."""
     size, count = stiffness.shape[0], functionals.shape[0]
-    upper = sp.vstack([stiffness.tocsr(), functionals.tocsr()], format="csr").T.tocsr()  # [K Pᵀ], K being symmetric
     P = functionals.tocsr()
+    upper = sp.vstack([stiffness.tocsr(), P], format="csr").T.tocsr()  # [K Pᵀ], K being symmetric
     lower = sp.csr_matrix((P.data, P.indices, P.indptr), shape=(count, size + count))
     return sp.vstack([upper, lower], format="csr")

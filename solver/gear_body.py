@@ -85,7 +85,8 @@ def condensed_gear(
     begin = time.perf_counter()
     flank = surface_of(mesh, "flank")
     traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
-    system = _sector_system(mesh, material, flank, traction, 2.0 * np.pi / gear.z)
+    body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+    system = _sector_system(body, flank, traction, 2.0 * np.pi / gear.z)
     assembled = time.perf_counter()
     numbers = sorted(sign * tooth for tooth in teeth)
     settings = ChainSettings(2.0 * np.pi / gear.z, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
@@ -95,11 +96,11 @@ def condensed_gear(
 
 
 def _sector_system(
-    mesh: MeshData, material: Material, flank: Surface, traction: NitscheTraction | None, pitch: float
+    body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
 ) -> SectorSystem:
-    """The sector held at its bore, with Nitsche's constant term, seen through its flank. A function of its own so that
+    """The sector with Nitsche's constant term, seen through its flank. A function of its own so that
     the full matrices are gone when the elimination starts."""
-    assembled = assemble(Body(mesh, material, supports=(Fixed("bore"),)))
+    assembled = assemble(body)
     free, d = assembled.free, assembled.d
     P = trace_functionals(flank, assembled.stiffness.shape[0])
     K = assembled.stiffness[free][:, free].tocsr()
@@ -108,7 +109,7 @@ def _sector_system(
         K, P = (K - traction.constant_term()[free][:, free]).tocsr(), P - traction.flux()
     place = np.full(len(assembled.held), -1)
     place[free] = np.arange(len(free))
-    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in matching_cuts(mesh, pitch)]
+    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in matching_cuts(body.mesh, pitch)]
     low, high = (dofs[dofs >= 0] for dofs in cut)
     return SectorSystem.of(K, P.tocsr()[:, free], low, high, graph)
 

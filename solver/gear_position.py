@@ -120,7 +120,8 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        pressed = contact.distance <= FIRST_CONTACT * half_width
+        # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
+        pressed = contact.distance <= max(FIRST_CONTACT * half_width, float(contact.distance.min()))
         smooth = frictionless(system if normal_only else normal_part(system), pressed)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):

@@ -62,11 +62,11 @@ class _Tangent:
 
 
 def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: float) -> Root:
-    """SNES until |residual| <= tolerance·scale(x), each step of the length that makes the residual smallest.
+    """SNES until |residual| <= tolerance·scale(x), each step of about the length that makes the residual smallest.
 
     With full steps Newton's method may cycle for ever where sliding nodes change their direction (seen at μ = 0.3); a
-    residual costs a thirtieth of a step. Raises NotConverged on NaN or a singular tangent; whether too many iterations
-    are an error is left to the caller (Root.converged).
+    residual costs a thirtieth of a step, and the l2 search takes one secant step. Raises NotConverged on NaN or a
+    singular tangent; whether too many iterations are an error is left to the caller (Root.converged).
     """
     tangent = _Tangent(problem)
     x = PETSc.Vec().createWithArray(start.copy(), comm=PETSc.COMM_SELF)

@@ -175,7 +175,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
         Row("elements along the loaded flank", "", "", tuple(str(sector.profile_elements) for sector in sectors)),
         Row("layers over the face width", "", "", layers),
         Row("degrees of freedom of a sector", "", "", tuple(f"{size.dofs:,}" for size in sizes)),
-        _one("largest memory of a run, estimated", "", "MB", 0, memory_megabytes(*sizes)),
+        _one("largest memory of a run on one rank, estimated", "", "MB", 0, memory_megabytes(*sizes)),
         Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
         Row("positions, with warm-up", "", "", (str(positions_to_solve(scene)),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),

@@ -93,7 +93,7 @@ def _prepared(body: Body, first: set[str], second: set[str], nitsche: Nitsche) -
     free = assembled.free
     K = K[free][:, free].tocsr()
     if θ == 1.0 or not tractions:
-        C = compliance(K, seen[:, free])
+        C = compliance(K, seen[:, free], graph=assembled.stiffness[free][:, free])
     else:
         C = compliance_by_columns(Factor(K), seen[:, free], pushed[:, free])
     offsets = dict(zip(groups, np.cumsum([0] + [trace[g].shape[0] for g in groups])))

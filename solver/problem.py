@@ -1,4 +1,4 @@
-"""The public API: bodies, contacts, solve, sweep. Gears and verification problems use nothing else.
+"""The public API: bodies, contacts, solve, sweep. The verification problems use nothing else.
 
 block = Body(read_msh("block.msh"), supports=(Fixed("bottom"),))
 punch = Body(read_msh("punch.msh"), rigid=Rigid("top", (Freedom("y", load=-1000.0),)))

@@ -121,7 +121,7 @@ def sector_size(gear: GearParameters, resolution: SectorResolution, order: int, 
 
 
 def memory_megabytes(pinion: SectorSize, wheel: SectorSize) -> float:
-    """Largest memory [MB] of a run: eliminating one sector to flank and cuts beside the other's finished compliance."""
+    """Largest memory [MB] of a run on one rank: one sector's elimination beside the other's finished compliance."""
     first, second = (
         MEGABYTES_PER_DOF * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts)
         for size in (pinion, wheel)

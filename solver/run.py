@@ -29,6 +29,7 @@ from solver.run_data import RunData, run_data
 from solver.scene import Scene
 from solver.sectors import sector_meshes
 from solver.skips import skipped
+from solver.surface import surface_of
 
 BALANCE_LIMIT = 1e-2  # a position whose energy does not balance better is an error, not a result
 
@@ -85,7 +86,7 @@ def _swept(
     if start is not None:
         log.info("resumed after %d of %d positions", start.complete, len(pitch_of(scene).angles))
         if start.complete == len(pitch_of(scene).angles):
-            return Sweep(on_first(comm, lambda: sector_meshes(scene)), Timings())
+            return Sweep(on_first(comm, lambda: _same_meshes(scene, archive)), Timings())
     preparation = prepare_model(scene, comm)
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     on_first(comm, lambda: _open_archive(scene, archive, preparation, start))
@@ -94,6 +95,14 @@ def _swept(
     _solve_positions(scene, preparation.model, archive, begin, comm, quiet, log)
     pinion, wheel = (body.mesh for body in preparation.model.bodies)
     return Sweep((pinion, wheel), _timings(preparation, time.perf_counter() - swept))
+
+
+def _same_meshes(scene: Scene, archive: Archive) -> tuple[MeshData, MeshData]:
+    """The scene's meshes; raises ArchiveError where the results stand on others."""
+    meshes = sector_meshes(scene)
+    pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
+    archive.check_gears((pinion, wheel))
+    return meshes
 
 
 def _timings(preparation: Preparation, positions: float) -> Timings:

@@ -64,7 +64,7 @@ def compute(out: Path) -> None:
 def keep(path: Path, solution: Solution) -> None:
     """Writes the contact and the displacements of a solution.
 
-    The points themselves are not kept: along which diagonal a rectangle is cut into triangles is left to rounding.
+    The points themselves are not kept: what a user reads are forces, tractions and displacements.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     contact = solution.contacts[0]

@@ -90,7 +90,9 @@ def condensed_gear(
     assembled = time.perf_counter()
     numbers = sorted(sign * tooth for tooth in teeth)
     settings = ChainSettings(2.0 * np.pi / gear.z, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
-    chain = ChainedCompliance(system.condensed(), settings)
+    condensed = system.condensed()
+    del system  # gigabytes at the fine end
+    chain = ChainedCompliance(condensed, settings)
     end = time.perf_counter()
     return GearBody(gear, mesh, flank, traction, chain, sign, assembled - begin, end - assembled)
 

@@ -12,7 +12,7 @@ def large_arrays_apart() -> None:
     """Give every large array pages of its own that go back to the system when it is freed (glibc; elsewhere nothing).
 
     That is glibc's default, but it is off once petsc4py is imported (mallinfo2 shows it); freed arrays then stay as
-    holes in the heap. Quick run of the helical pair: 3.5 instead of 4.4 GB at the peak of the condensation.
+    holes in the heap. Condensing the helical pair at quick: 3.5 instead of 4.4 GB.
     """
     set_option = getattr(ctypes.CDLL(None), "mallopt", None)
     if set_option is not None:

@@ -19,7 +19,7 @@ export OMPI_MCA_btl ?= self,vader
 export OMPI_MCA_btl_vader_single_copy_mechanism ?= none
 
 demo: $(ready)
-	.venv/bin/evolvent run demos/yang2022.toml --level quick --set sweep.positions=16 --out out/yang2022
+	.venv/bin/evolvent run demos/yang2022.toml --level quick --set sweep.positions=12 --out out/yang2022
 
 test: $(ready)
 	.venv/bin/python -m pytest $(PYTEST_ARGS)

@@ -1,0 +1,74 @@
+"""A claim: a figure that was measured, what it is held against, and how far off it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+from matplotlib.figure import Figure
+
+
+class Reference(Enum):
+    """What a claim is held against. Only a regression proves nothing but that nothing changed."""
+
+    ANALYTICAL = "analytical"
+    EXTERNAL = "external"
+    OVERKILL = "overkill"
+    REGRESSION = "regression"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """`found` lies within `tolerance` (absolute) of `wanted`.
+
+    quantity: what it is, with its unit. source: the formula, publication or mesh that `wanted` comes from.
+    """
+
+    quantity: str
+    found: float
+    wanted: float
+    tolerance: float
+    reference: Reference
+    source: str
+
+    @staticmethod
+    def relative(
+        quantity: str, found: float, wanted: float, tolerance: float, reference: Reference, source: str
+    ) -> Claim:
+        """The tolerance is a share of `wanted`."""
+        return Claim(quantity, found, wanted, tolerance * abs(wanted), reference, source)
+
+    @staticmethod
+    def bound(quantity: str, error: float, largest: float, reference: Reference, source: str) -> Claim:
+        """An error (a norm, not negative) is at most `largest`."""
+        return Claim(quantity, error, 0.0, largest, reference, source)
+
+    @property
+    def error(self) -> float:
+        """|found − wanted|."""
+        return abs(self.found - self.wanted)
+
+    @property
+    def holds(self) -> bool:
+        """False for a found number that is not one."""
+        return self.error <= self.tolerance
+
+    def __str__(self) -> str:
+        verdict = "holds" if self.holds else "FAILS"
+        return (
+            f"{self.quantity}: found {self.found:.6g}, wanted {self.wanted:.6g} ± {self.tolerance:.3g} "
+            f"({self.reference.value}: {self.source}), error {self.error:.3g}: {verdict}"
+        )
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A verification problem solved. name: of its picture's file. problem: what is solved, and its known answer, in a
+    paragraph. draw: its figure, found against exact."""
+
+    name: str
+    title: str
+    problem: str
+    claims: tuple[Claim, ...]
+    draw: Callable[[Figure], None]

@@ -121,7 +121,7 @@ class Archive:
             return None
         arrays = self._state()
         memories = tuple(
-            _memory(arrays, f"{i}/", pair) if f"{i}/teeth" in arrays else None for i in range(int(arrays["memories"]))
+            _memory(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
         )
         extra = arrays["extra"]
         return int(arrays["complete"]), SweepState((float(extra[0]), float(extra[1])), memories)
@@ -143,9 +143,10 @@ class Archive:
         for i, memory in enumerate(state.memories):
             if memory is not None:
                 arrays |= {
-                    f"{i}/teeth": np.array(memory.teeth), f"{i}/angle": memory.stand.angle,
-                    f"{i}/extra": np.array(memory.stand.extra),
-                    f"{i}/pinion": memory.fields[0], f"{i}/wheel": memory.fields[1],
+                    f"{i}/angle": memory.stand.angle, f"{i}/extra": np.array(memory.stand.extra),
+                    f"{i}/pinion_rows": memory.rows[0], f"{i}/wheel_rows": memory.rows[1],
+                    f"{i}/pinion_forces": memory.forces[0], f"{i}/wheel_forces": memory.forces[1],
+                    f"{i}/flux": memory.flux,
                 }  # fmt: skip
         return arrays
 
@@ -215,5 +216,6 @@ def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResul
 def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:
     extra = arrays[start + "extra"]
     stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
-    teeth = tuple(int(t) for t in arrays[start + "teeth"])
-    return Memory(stand, teeth, (arrays[start + "pinion"], arrays[start + "wheel"]))
+    rows = arrays[start + "pinion_rows"], arrays[start + "wheel_rows"]
+    forces = arrays[start + "pinion_forces"], arrays[start + "wheel_forces"]
+    return Memory(stand, rows, forces, arrays[start + "flux"])

@@ -1,4 +1,4 @@
-"""The compliance of a body's contact surface: of one body, or of a gear made of equal sectors, behind one interface.
+"""The compliance of a gear's flanks, the gear being made of equal sectors.
 
 A gear is N sectors, sector s = one sector turned by 2πs/z, held at the bore. The sector is condensed once
 (`condense.SectorSystem`), the interfaces between the sectors are eliminated exactly (`interfaces`). With v_s the
@@ -26,8 +26,9 @@ cores): condensed in 70 s with 6.2 GB at the peak, ring 17 s (8 s with tolerance
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,59 +40,21 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-class Compliance(Protocol):
-    """What a contact solver needs of a body: displacements of its surface nodes under forces on surface nodes.
-
-    Rows are (k × 2) integers: tooth and surface node; a body that is not a gear has the one tooth 0. Vectors are in
-    the frame of the whole body, `dimension` d components a node.
-    """
-
-    @property
-    def dimension(self) -> int:
-        """Components a node, 2 or 3."""
-        ...
-
-    @property
-    def node_count(self) -> int:
-        """Surface nodes of one tooth."""
-        ...
-
-    @property
-    def teeth(self) -> range:
-        """Numbers of the teeth that exist."""
-        ...
-
-    def block(self, rows: Ints) -> Floats:
-        """Dense compliance (d·k × d·k, mm/N, symmetric) of the `rows` (k × 2)."""
-        ...
-
-    def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """Displacements (k_out × d, mm) of `rows_out` under `forces` (k_in × d, N) on `rows_in`."""
-        ...
+Map = Callable[[Floats], Floats]
 
 
-class DenseCompliance:
-    """A body that is not a gear: its compliance C (d·n × d·n) is simply indexed."""
+def _unchanged(displacements: Floats) -> Floats:
+    return displacements
 
-    def __init__(self, compliance: Floats, dimension: int) -> None:
-        self.compliance = compliance
-        self.dimension = dimension
-        self.node_count = _node_count(compliance, dimension)
-        self.teeth = range(1)
 
-    def block(self, rows: Ints) -> Floats:
-        """See `Compliance.block`."""
-        dofs = self._dofs(rows)
-        return self.compliance[np.ix_(dofs, dofs)]
+@dataclass(frozen=True)
+class Part:
+    """Some nodes of one tooth's surface, (k,), and a linear map from columns of their displacements (d·k, c) to what is
+    wanted of them, (m, c)."""
 
-    def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `Compliance.apply`."""
-        picked = self.compliance[np.ix_(self._dofs(rows_out), self._dofs(rows_in))]
-        return (picked @ forces.ravel()).reshape(-1, self.dimension)
-
-    def _dofs(self, rows: Ints) -> Ints:
-        _check_rows(rows, self.teeth, self.node_count)
-        return _dofs(rows[:, 1], self.dimension)
+    tooth: int
+    nodes: Ints
+    map: Map = _unchanged
 
 
 @dataclass(frozen=True)
@@ -133,49 +96,55 @@ class ChainedCompliance:
         turned = _with_turned_high_face(sector, settings.pitch, settings.dimension)
         self._basis, self._reduced = compressed(turned.transfer, settings.tolerance)
         self._interfaces = _joined(turned.stiffness, self._reduced, settings)
+        # what goes in and out through the interfaces is smoother than what one of them can do: a quarter of the columns
+        modes, _ = compressed(self._interfaces.couplings(), settings.tolerance, step=16)
+        self._smooth = self._basis @ modes
+        places = range(settings.count)
+        self._couplings = {(i, j): modes.T @ self._interfaces.coupling(i, j) @ modes for i in places for j in places}
 
-    @property
-    def rank(self) -> int:
-        """Columns of the compressed transfer."""
-        return self._basis.shape[1]
+    def block(self, parts: Sequence[Part]) -> Floats:
+        """E C Eᵀ (mm/N where E = 1) of the parts, in their order; each tooth at most once.
 
-    def block(self, rows: Ints) -> Floats:
-        """See `Compliance.block`; memory is that of the result and of one temporary tooth block."""
-        groups = self._groups(rows)
-        size = len(rows) * self.dimension
-        result = np.empty((size, size))
-        bases = {tooth: self._turned_basis(tooth, nodes) for tooth, (_, nodes) in groups.items()}
-        for tooth, (places, nodes) in groups.items():
-            own = _span(places, self.dimension)
-            for other in (t for t in groups if t >= tooth):
-                columns = _span(groups[other][0], self.dimension)
-                part = (bases[tooth] @ self._coupling(tooth, other)) @ bases[other].T
-                if other == tooth:
-                    part += self._turned_sector(tooth, nodes)
-                else:
-                    _assign(result, columns, own, part.T)
-                _assign(result, own, columns, part)
+        The maps see the few modes in which teeth feel each other, and whole compliances of their own tooth only.
+        """
+        self._check([(part.tooth, node) for part in parts for node in part.nodes])
+        modes = [part.map(self._turned(part.tooth, self._smooth[_dofs(part.nodes, self.dimension)])) for part in parts]
+        ends = np.cumsum([0] + [len(mode) for mode in modes])
+        result = np.empty((ends[-1], ends[-1]))
+        for i, (part, mode) in enumerate(zip(parts, modes)):
+            for j in range(i, len(parts)):
+                block = mode @ self._coupling(part.tooth, parts[j].tooth) @ modes[j].T
+                if j == i:
+                    block += part.map(part.map(self._turned_sector(part)).T)
+                result[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
+                result[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
         return result
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `Compliance.apply`."""
+        """Displacements (..., k_out, d; mm) of `rows_out` under `forces` (..., k_in, d; N) on `rows_in`.
+
+        Rows are (k × 2) integers, tooth and surface node; vectors are in the frame of the whole gear. Leading axes are
+        for several loads on the same rows: reading the compliance costs more than multiplying with it.
+        """
         loaded = self._loads(rows_in, forces)
-        result = np.empty((len(rows_out), self.dimension))
+        result = np.empty((*forces.shape[:-2], len(rows_out), self.dimension))
         for tooth, (places, nodes) in self._groups(rows_out).items():
             dofs = _dofs(nodes, self.dimension)
-            modes = sum(self._coupling(tooth, other) @ amplitude for other, (_, _, amplitude) in loaded.items())
-            local = self._basis[dofs] @ modes
+            modes = sum(amplitude @ self._coupling(other, tooth) for other, (_, _, amplitude) in loaded.items())
+            local = modes @ self._smooth[dofs].T
             if tooth in loaded:
                 sources, values, _ = loaded[tooth]
-                rows_of_sources = self._sector[sources]  # C is symmetric, and rows are what lies together in memory
-                local += values @ (rows_of_sources if len(dofs) == len(self._sector) else rows_of_sources[:, dofs])
-            result[places] = local.reshape(-1, self.dimension) @ self._turn(tooth).T
+                local += values @ self._sector[np.ix_(sources, dofs)]  # C is symmetric
+            result[..., places, :] = local.reshape(*local.shape[:-1], -1, self.dimension) @ self._turn(tooth).T
         return result
 
     def cut_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
         """Displacements (2c: low, high face; sector's own frame) of each tooth's cut faces, for `SectorRecovery`."""
         loaded = self._loads(rows_in, forces)
-        sources = {self._place(tooth): self._reduced.T @ amplitude for tooth, (_, _, amplitude) in loaded.items()}
+        sources = {
+            self._place(tooth): self._reduced.T @ (self._basis[dofs].T @ values)
+            for tooth, (dofs, values, _) in loaded.items()
+        }
         low_faces = self._interfaces.displacements(sources)
         turn = _turn_by(self._pitch, self.dimension)
         highs = [(face.reshape(-1, self.dimension) @ turn.T).ravel() for face in low_faces[1:]]
@@ -183,54 +152,48 @@ class ChainedCompliance:
         return {tooth: np.concatenate([low_faces[i], highs[i]]) for i, tooth in enumerate(self.teeth)}
 
     def _loads(self, rows: Ints, forces: Floats) -> dict[int, tuple[Ints, Floats, Floats]]:
-        """Tooth -> dofs, forces in the sector's frame, amplitudes of the basis."""
+        """Tooth -> dofs, forces in the sector's frame, amplitudes of the modes."""
         loaded = {}
         for tooth, (places, nodes) in self._groups(rows).items():
             dofs = _dofs(nodes, self.dimension)
-            values = (forces[places] @ self._turn(tooth)).ravel()
-            loaded[tooth] = (dofs, values, self._basis[dofs].T @ values)
+            values = forces[..., places, :] @ self._turn(tooth)
+            values = values.reshape(*values.shape[:-2], -1)
+            loaded[tooth] = (dofs, values, values @ self._smooth[dofs])
         return loaded
 
     def _groups(self, rows: Ints) -> dict[int, tuple[Ints, Ints]]:
         """Tooth -> places in `rows`, nodes."""
-        _check_rows(rows, self.teeth, self.node_count)
+        self._check(rows)
         places = {int(tooth): np.flatnonzero(rows[:, 0] == tooth) for tooth in np.unique(rows[:, 0])}
         return {tooth: (place, rows[place, 1]) for tooth, place in places.items()}
+
+    def _check(self, rows: Ints | list[tuple[int, int]]) -> None:
+        rows = np.asarray(rows).reshape(-1, 2)
+        teeth, nodes = rows.T
+        bad = (teeth < self.teeth.start) | (teeth >= self.teeth.stop) | (nodes < 0) | (nodes >= self.node_count)
+        if bad.any():
+            tooth, node = rows[np.argmax(bad)]
+            raise IndexError(
+                f"rows (tooth, node) with teeth {self.teeth.start} to {self.teeth.stop - 1} and nodes 0 to "
+                f"{self.node_count - 1} are wanted, found ({tooth}, {node}): model more teeth or correct the number"
+            )
 
     def _place(self, tooth: int) -> int:
         return tooth - self.teeth.start
 
     def _coupling(self, tooth: int, other: int) -> Floats:
-        return self._interfaces.coupling(self._place(tooth), self._place(other))
+        return self._couplings[self._place(tooth), self._place(other)]
 
     def _turn(self, tooth: int) -> Floats:
         return _turn_by(tooth * self._pitch, self.dimension)
 
-    def _turned_basis(self, tooth: int, nodes: Ints) -> Floats:
-        return _turn_rows(self._turn(tooth), self._basis[_dofs(nodes, self.dimension)])
+    def _turned(self, tooth: int, matrix: Floats) -> Floats:
+        return matrix if tooth == 0 else _turn_rows(self._turn(tooth), matrix)
 
-    def _turned_sector(self, tooth: int, nodes: Ints) -> Floats:
-        dofs = _dofs(nodes, self.dimension)
+    def _turned_sector(self, part: Part) -> Floats:
+        dofs = _dofs(part.nodes, self.dimension)
         local = self._sector[np.ix_(dofs, dofs)]
-        if tooth == 0:
-            return local
-        turn = self._turn(tooth)
-        return _turn_rows(turn, _turn_rows(turn, local).T)
-
-
-def _span(places: Ints, d: int) -> slice | Ints:
-    """Degrees of freedom of rows at `places`, as a slice where they follow one another."""
-    if len(places) and places[-1] - places[0] + 1 == len(places):
-        return slice(d * int(places[0]), d * (int(places[-1]) + 1))
-    return _dofs(places, d)
-
-
-def _assign(matrix: Floats, rows: slice | Ints, columns: slice | Ints, block: Floats) -> None:
-    """matrix[rows, columns] = block, for any two index sets."""
-    if isinstance(rows, slice) or isinstance(columns, slice):
-        matrix[rows, columns] = block
-    else:
-        matrix[np.ix_(rows, columns)] = block
+        return self._turned(part.tooth, self._turned(part.tooth, local).T)
 
 
 def _joined(stiffness: Floats, reduced: Floats, settings: ChainSettings) -> Interfaces:
@@ -274,13 +237,3 @@ def _node_count(compliance: Floats, dimension: int) -> int:
             "give the functionals node by node"
         )
     return len(compliance) // dimension
-
-
-def _check_rows(rows: Ints, teeth: range, node_count: int) -> None:
-    bad = (rows[:, 0] < teeth.start) | (rows[:, 0] >= teeth.stop) | (rows[:, 1] < 0) | (rows[:, 1] >= node_count)
-    if bad.any():
-        tooth, node = rows[np.argmax(bad)]
-        raise IndexError(
-            f"rows (tooth, node) with teeth {teeth.start} to {teeth.stop - 1} and nodes 0 to {node_count - 1} are "
-            f"wanted, found ({tooth}, {node}): model more teeth or correct the node number"
-        )

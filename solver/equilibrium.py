@@ -6,23 +6,21 @@ Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 witho
     Hᵀ f = F                                         (balance of the free rigid motions)
 
 The bodies are eliminated exactly (A is their compliance), so this is the finite element system and not a model of it.
-The tangent is reduced to the nodes in contact and factored densely.
+The tangent is in solver/tangent.py.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as la
-import scipy.sparse as sp
 
 from meshes.data import Floats
 from solver import newton
 from solver.friction import Law, coulomb, starting_guess
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, LawOf
+from solver.tangent import Tangent
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 40
@@ -74,6 +72,14 @@ class Equilibrium:
     residual: float
 
 
+@dataclass(frozen=True)
+class Start:
+    """Where Newton's method starts: forces (n, k) [N] and motions (r,)."""
+
+    force: Floats
+    motion: Floats
+
+
 def normal_part(system: CondensedSystem) -> CondensedSystem:
     """The frictionless system: normal components only."""
     k = system.k
@@ -82,14 +88,17 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     )
 
 
-def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
+def frictionless(
+    system: CondensedSystem, start: np.ndarray | None = None, tolerance: float = TOLERANCE
+) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
+    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. tolerance: of the
+    residual force over the force in the system. Raises NotConverged.
     """
     chosen = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
     problem = _Contact(system, lambda t: coulomb(t, 0.0))
-    return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
+    return _converged(problem, _assumed_contact(system, chosen), "contact without friction", tolerance)
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
@@ -104,17 +113,17 @@ def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
 
 def frictional(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium,
-    neighbour: Equilibrium | None = None,
+    near: Start | None = None,
 ) -> Equilibrium:  # fmt: skip
     """Equilibrium with Coulomb friction.
 
     friction: a number or (q,). slip: (n, d−1) what slipped since the last state apart from the present displacement
     [mm]; heading: (q, d−1) the known direction of slip, or zero; start: the equilibrium without friction, or `stuck`.
-    neighbour: the equilibrium at another friction coefficient near by, tried first. Raises NotConverged.
+    near: a guess of the solution, tried first. Raises NotConverged.
     """
     law = _Contact(system, lambda t: coulomb(t, friction), slip)
-    if neighbour is not None and neighbour.force.shape[1] == system.k:
-        root = newton.solve(law, law.join(neighbour.force, neighbour.motion), "Coulomb friction", PATIENCE, TOLERANCE)
+    if near is not None:
+        root = newton.solve(law, law.join(near.force, near.motion), "Coulomb friction", PATIENCE, TOLERANCE)
         if root.converged:
             return _equilibrium(law, root)
     try:
@@ -136,7 +145,7 @@ def _guessed(
 
 
 class _Contact:
-    """Residual and reduced tangent of the contact system."""
+    """Residual and tangent of the contact system."""
 
     def __init__(self, system: CondensedSystem, law: LawOf, slip: Floats | None = None) -> None:
         self.system, self.law, self.slip = system, law, slip
@@ -165,53 +174,11 @@ class _Contact:
         return np.concatenate([contact.ravel(), balance])
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        """The tangent's inverse: dense on the nodes in contact, the others only take their own residual."""
-        k, r, system = self.k, self.r, self.system
-        M = self.system.operator.tangent(self.state(x)[2])
-        rows = _rows_of_nodes(M, k)
-        if len(rows) == 0 and r:
-            raise NotConverged(
-                "no node in contact while a motion is free: bring the bodies together, or hold the motion"
-            )
-        rest = np.setdiff1d(np.arange(self.n * k), rows)
-        A, H = system.compliance, system.motion / system.lever
-        M, H_a = M[rows][:, rows], H[rows]
-        known = A[np.ix_(rows, rest)] @ right[rest] if np.any(right[rest]) else np.zeros(len(rows))
-        b = np.concatenate([right[rows] - M @ known, right[self.n * k :] - H[rest].T @ right[rest]])
-        y = _regular_solve(_bordered(M, A[np.ix_(rows, rows)], H_a), b)
-        result = right.copy()
-        result[rows], result[self.n * k :] = y[: len(rows)], y[len(rows) :]
-        return result
+        return self.tangent(x).solve(right)
 
-
-def _regular_solve(matrix: Floats, right: Floats) -> Floats:
-    """matrix⁻¹ right, overwriting the matrix. Raises NotConverged where it is singular to rounding."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", la.LinAlgWarning)
-        try:
-            return la.solve(matrix, right, overwrite_a=True, check_finite=False)
-        except (la.LinAlgError, la.LinAlgWarning) as error:
-            raise NotConverged(
-                "a free rigid motion meets no resistance: wanted a support, or friction that sticks somewhere; "
-                "support the body, prescribe the motion, or lower the load"
-            ) from error
-
-
-def _rows_of_nodes(M: sp.csr_matrix, k: int) -> np.ndarray:
-    """The rows of all nodes that M, (n·k, n·k), couples to anything."""
-    touched = np.flatnonzero(np.diff(M.indptr).reshape(-1, k).any(axis=1))
-    return (k * touched[:, None] + np.arange(k)).ravel()
-
-
-def _bordered(M: sp.csr_matrix, A: Floats, H: Floats) -> Floats:
-    """[I + M A, −M H; Hᵀ, 0]."""
-    a, r = H.shape
-    T = np.zeros((a + r, a + r))
-    T[:a, :a] = M @ A
-    T[np.arange(a), np.arange(a)] += 1.0
-    T[:a, a:] = -(M @ H)
-    T[a:, :a] = H.T
-    return T
+    def tangent(self, x: Floats) -> Tangent:
+        system = self.system
+        return Tangent.of(system.operator, self.state(x)[2], system.compliance, system.motion / system.lever)
 
 
 def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:
@@ -222,11 +189,11 @@ def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats |
 
     problem = _Contact(system, law, slip)
     zero = np.zeros(problem.n * problem.k + problem.r)
-    return -problem.solve(zero, problem.residual(zero))
+    return -problem.tangent(zero).solve(problem.residual(zero))
 
 
-def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
-    root = newton.solve(problem, start, stage, ITERATIONS, TOLERANCE)
+def _converged(problem: _Contact, start: Floats, stage: str, tolerance: float = TOLERANCE) -> Equilibrium:
+    root = newton.solve(problem, start, stage, ITERATIONS, tolerance)
     if not root.converged:
         left = root.residual / problem.scale(root.x)
         raise NotConverged(

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from meshes.data import Floats, Ints
+from solver.chain import Part
 from solver.equilibrium import CondensedSystem
 from solver.gear_body import GearBody
 from solver.kinematics import Stand, spin
@@ -29,6 +30,19 @@ class ToothContact:
 
     tooth: int
     operator: ContactOperator
+
+    def touched(self, gear: int) -> Ints:
+        """Flank nodes of a gear that the jump sees, sorted."""
+        return self.operator.nodes if gear == 0 else self._wheel_nodes
+
+    @cached_property
+    def _wheel_nodes(self) -> Ints:
+        return np.unique(self.operator.jump2.indices)
+
+    @cached_property
+    def projection(self) -> Floats:
+        """Π from the wheel's touched nodes, (n, m); dense in most of its entries."""
+        return np.asarray(self.operator.jump2[:, self._wheel_nodes].toarray())
 
 
 @dataclass(frozen=True)
@@ -129,14 +143,10 @@ class GearContact:
 
     def rows(self, gear: int) -> tuple[Ints, list[slice]]:
         """Rows (m, 2) of a gear's chain that the contact sees, and which of them belong to each tooth pair."""
-        nodes = [self._touched(t, gear) for t in self.teeth]
+        nodes = [t.touched(gear) for t in self.teeth]
         ends = np.cumsum([0] + [len(own) for own in nodes])
         rows = np.concatenate([self.bodies[gear].rows(t.tooth, own) for t, own in zip(self.teeth, nodes)])
         return rows, [slice(a, b) for a, b in pairwise(ends)]
-
-    @staticmethod
-    def _touched(t: ToothContact, gear: int) -> Ints:
-        return np.unique((t.operator.jump1 if gear == 0 else t.operator.jump2).indices)
 
     def jump_maps(self, gear: int, k: int) -> list[JumpMap]:
         """For each tooth pair, the map from a gear's displacements at the touched nodes to local jumps."""
@@ -145,18 +155,14 @@ class GearContact:
         for t in self.teeth:
             axes = ((t.operator.frames @ R) * (1.0 - 2.0 * gear))[:, :k]
             # the pinion's flank has a node where the jump has one
-            weights = None if gear == 0 else t.operator.jump2[:, self._touched(t, gear)].toarray()
-            result.append(JumpMap(weights, axes))
+            result.append(JumpMap(None if gear == 0 else t.projection, axes))
         return result
 
     def _compliance(self, gear: int, k: int) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
-        rows, parts = self.rows(gear)
-        C = self.bodies[gear].chain.block(rows)
-        maps = self.jump_maps(gear, k)
-        dofs = [slice(self.d * part.start, self.d * part.stop) for part in parts]
-        half = np.concatenate([E.jumps(C[own]) for E, own in zip(maps, dofs)])
-        return np.concatenate([E.jumps(half[:, own].T) for E, own in zip(maps, dofs)])
+        body, maps = self.bodies[gear], self.jump_maps(gear, k)
+        parts = [Part(body.sign * t.tooth, t.touched(gear), E.jumps) for t, E in zip(self.teeth, maps)]
+        return body.chain.block(parts)
 
     @cached_property
     def at_edge(self) -> np.ndarray:

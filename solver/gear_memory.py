@@ -2,29 +2,68 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
 from solver.equilibrium import Equilibrium
 from solver.gear_contact import GearContact
 from solver.gear_model import GearModel
 from solver.kinematics import Stand, nominal_slip
 
+SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 foretell equally well
 NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
 
 
 @dataclass(frozen=True)
 class Memory:
-    """What friction remembers of a position: where the gears stood, and the displacements of their flanks.
+    """What friction remembers of a position: where the gears stood, and what their flanks carried. The displacements
+    follow from it at whatever nodes the next position asks for.
 
-    fields: per gear (teeth, n, d) in the gear's own frame [mm], for the tooth pairs `teeth`.
+    rows: per gear (m, 2) of its chain. forces: per gear (m, d) on these rows in the gear's own frame [N]. flux: (m, d)
+    F at the pinion's rows in its frame [mm].
     """
 
     stand: Stand
-    teeth: tuple[int, ...]
-    fields: tuple[Floats, Floats]
+    rows: tuple[Ints, Ints]
+    forces: tuple[Floats, Floats]
+    flux: Floats
+
+
+@dataclass(frozen=True)
+class Past:
+    """What a memory tells the nodes of the present contact: where the gears stood, and w (n, d) there, local [mm]."""
+
+    stand: Stand
+    jump: Floats
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """Where the flanks were pressed at a position. All teeth are alike, so it foretells the next position's.
+
+    places: (q, 2) roll distance ξ and signed distance from the contact line [mm] of its points. pressed: (q,) bool.
+    """
+
+    places: Floats
+    pressed: np.ndarray
+
+    @staticmethod
+    def of(contact: GearContact, pressure: Floats) -> Footprint:
+        """From the pressures (q,) at the contact's points."""
+        return Footprint(_places(contact), pressure > 0.0)
+
+    def at(self, contact: GearContact) -> np.ndarray:
+        """(q,) bool: which points of another contact are nearest to a pressed one."""
+        return np.asarray(self.pressed[cKDTree(self.places).query(_places(contact))[1]])
+
+
+def _places(contact: GearContact) -> Floats:
+    ξ = contact.operator.shape @ contact.ξ
+    return np.column_stack([SLICE_WEIGHT * ξ, contact.across])
 
 
 def relative_velocity(contact: GearContact) -> Floats:
@@ -41,20 +80,15 @@ def known_heading(contact: GearContact, rate: Floats) -> Floats:
     return np.where(far & (size > 0.0), v / np.where(size > 0.0, size, 1.0), 0.0)
 
 
-def slice_roll(contact: GearContact, stand: Stand) -> Floats:
-    """Roll distance of each node's slice when the gears stood at `stand`."""
-    return stand.pair.roll_distance(stand.angle, contact.tooth, contact.bodies[0].z[contact.node])
-
-
 def slipped(
-    model: GearModel, contact: GearContact, before: Memory, rate: Floats, ξ_before: Floats, span: float
+    model: GearModel, contact: GearContact, before: Past, rate: Floats, ξ_before: Floats, span: float
 ) -> Floats:
-    """(n, d−1) slip since `before` [mm] but for the present displacement: nominal slip, change of the free rotations,
+    """(n, d−1) slip since the past [mm] but for the present displacement: nominal slip, change of the free rotations,
     and the elastic part remembered at the material points that now face each other."""
     slip = nominal_slip(rate[:, 1:], contact.ξ, ξ_before, growing_slip(contact), model.pair.ratio, span)
     for gear in (0, 1):
         slip = slip + contact.spins[gear][:, 1:] * (contact.stand.extra[gear] - before.stand.extra[gear])
-    return slip - remembered_jump(contact, before)[:, 1:]
+    return slip - before.jump[:, 1:]
 
 
 def growing_slip(contact: GearContact) -> Floats:
@@ -67,37 +101,52 @@ def growing_slip(contact: GearContact) -> Floats:
     return np.einsum("jia,ja->ji", contact.operator.frames, along)[:, 1:]
 
 
-def remembered_jump(contact: GearContact, before: Memory) -> Floats:
-    """(n, d) local: w of the memory, turned with the wheel to the present."""
+def recalled(contact: GearContact, memories: Sequence[Memory]) -> list[Past]:
+    """What memories of one position, at several friction coefficients, tell the present contact."""
+    if not memories:
+        return []
+    u1, u2 = (_traces(contact, memories, gear) for gear in (0, 1))
+    return [Past(memory.stand, _past_jump(contact, memory.stand, *u)) for memory, *u in zip(memories, u1, u2)]
+
+
+def _past_jump(contact: GearContact, before: Stand, u1: Floats, u2: Floats) -> Floats:
+    """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the past, turned with the wheel to the present."""
     d = contact.d
-    R1, R2 = (before.stand.rotation(gear, d) for gear in (0, 1))
+    R1, R2 = (before.rotation(gear, d) for gear in (0, 1))
     onward = contact.stand.rotation(1, d) @ R2.T
-    parts = []
-    for t in contact.teeth:
-        place = before.teeth.index(t.tooth)
-        w = t.operator.jump1 @ before.fields[0][place] @ R1.T - t.operator.jump2 @ before.fields[1][place] @ R2.T
-        parts.append(w @ onward.T)
-    return np.einsum("jia,ja->ji", contact.operator.frames, np.concatenate(parts))
+    parts = zip(contact.teeth, contact.rows(0)[1], contact.rows(1)[1])
+    w = [(u1[own] @ R1.T - t.projection @ u2[other] @ R2.T) @ onward.T for t, own, other in parts]
+    return np.einsum("jia,ja->ji", contact.operator.frames, np.concatenate(w))
+
+
+def _traces(contact: GearContact, memories: Sequence[Memory], gear: int) -> Floats:
+    """Displacements (memories, m, d) that the rows of the contact had then."""
+    before, rows = memories[0].rows, contact.rows(gear)[0]
+    forces = np.stack([memory.forces[gear] for memory in memories])
+    u = contact.bodies[gear].chain.apply(before[gear], forces, rows)
+    if gear == 0:
+        both = _row_keys(before[0]), _row_keys(rows)
+        _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
+        u[:, now] += np.stack([memory.flux for memory in memories])[:, then]
+    return u
+
+
+def _row_keys(rows: Ints) -> Ints:
+    """One number for each row (tooth, node)."""
+    return rows[:, 0] * 2**32 + rows[:, 1]
 
 
 def remembered(model: GearModel, contact: GearContact, found: Equilibrium) -> Memory:
-    """The memory of a converged state: displacement of all flank nodes of all teeth."""
+    """The memory of a converged state."""
     d, k = contact.d, found.force.shape[1]
     ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
-    forces = np.split(found.force, ends)
-    fields = []
-    for gear, body in enumerate(model.bodies):
-        n = len(body.flank.points)
-        everywhere = np.concatenate([body.rows(t, np.arange(n)) for t in model.teeth])
-        pushed = [-E.forces(f) for E, f in zip(contact.jump_maps(gear, k), forces)]
-        u = body.chain.apply(contact.rows(gear)[0], np.concatenate(pushed), everywhere)
-        fields.append(u.reshape(len(model.teeth), n, d))
-    place = np.searchsorted(model.teeth, contact.tooth)
-    fields[0][place, contact.node] += contact.operator.flux(
-        _with_all_components(found.traction, d)
-    ) @ contact.stand.rotation(0, d)
+    split = np.split(found.force, ends)
+    pushed = [
+        np.concatenate([-E.forces(f) for E, f in zip(contact.jump_maps(gear, k), split)]) for gear in (0, 1)
+    ]
+    flux = contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(0, d)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
-    return Memory(stand, model.teeth, (fields[0], fields[1]))
+    return Memory(stand, (contact.rows(0)[0], contact.rows(1)[0]), (pushed[0], pushed[1]), flux)
 
 
 def _with_all_components(values: Floats, d: int) -> Floats:

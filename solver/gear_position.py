@@ -5,14 +5,15 @@ The search, the compliance and the frictionless solution are shared by all coeff
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshes.data import Floats, Ints
-from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part
+from solver.equilibrium import TOLERANCE, CondensedSystem, Equilibrium, Start, frictional, frictionless, normal_part
 from solver.gear_contact import GearContact, gear_contact
-from solver.gear_memory import Memory, known_heading, relative_velocity, remembered, slice_roll, slipped
+from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
 from solver.gear_model import GearModel
 from solver.kinematics import Stand
 from solver.newton import NotConverged
@@ -23,6 +24,7 @@ one but for its square over the curvature radius, 1e-7 mm."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
+START_TOLERANCE = 1e-4  # residual of a frictionless state that nobody asked for, a start for friction
 
 
 @dataclass(frozen=True)
@@ -100,18 +102,36 @@ class PositionResult:
 
 @dataclass(frozen=True)
 class SharedPosition:
-    """What all friction coefficients of a position share."""
+    """What all friction coefficients of a position share. smooth: the frictionless state."""
 
     contact: GearContact
     system: CondensedSystem
     smooth: Equilibrium
 
+    @property
+    def footprint(self) -> Footprint:
+        """Where the flanks are pressed without friction."""
+        return Footprint.of(self.contact, self.smooth.traction[:, 0])
 
-def shared_position(model: GearModel, angle: float, extra: tuple[float, float], normal_only: bool) -> SharedPosition:
+
+@dataclass(frozen=True)
+class Solved:
+    """The equilibrium of a position at one friction coefficient."""
+
+    friction: float
+    state: Equilibrium
+
+
+def shared_position(
+    model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: Footprint | None
+) -> SharedPosition:
     """Search, compliance and frictionless equilibrium; the free rotation is made exact.
 
-    extra: predicted rotations beyond the nominal ones. Raises NotConverged, SearchError.
+    extra: predicted rotations beyond the nominal ones. frictions: the coefficients that are to come: without one that
+    is not 0 only normal components are condensed, without a 0 the frictionless state is a mere start. before: the
+    footprint of the last position. Raises NotConverged, SearchError.
     """
+    normal_only, tolerance = not any(frictions), TOLERANCE if 0.0 in frictions else START_TOLERANCE
     stand, half_width = Stand(model.pair, angle, extra), model.half_width
     for _ in range(ROUNDS):
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
@@ -120,9 +140,8 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
-        pressed = contact.distance <= max(FIRST_CONTACT * half_width, float(contact.distance.min()))
-        smooth = frictionless(system if normal_only else normal_part(system), pressed)
+        pressed = _near_line(contact) if before is None else before.at(contact)
+        smooth = frictionless(system if normal_only else normal_part(system), pressed, tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
@@ -134,27 +153,43 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
     )
 
 
+def _near_line(contact: GearContact) -> np.ndarray:
+    """(q,) bool: the points that are taken for pressed where there is no position before."""
+    # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
+    return contact.distance <= max(FIRST_CONTACT * contact.half_width, float(contact.distance.min()))
+
+
 def solve_position(
-    model: GearModel, shared: SharedPosition, friction: float, before: Memory | None, span: float,
-    neighbour: Equilibrium | None = None,
-) -> tuple[PositionResult, Equilibrium]:  # fmt: skip
-    """Equilibrium with friction, from the memory of the position before. span: Δφ [rad] assumed where there is none;
-    neighbour: the solution at a friction coefficient near by, to start from.
+    model: GearModel, shared: SharedPosition, friction: float, before: Past | None, span: float,
+    solved: Sequence[Solved] = (),
+) -> tuple[PositionResult, Solved]:  # fmt: skip
+    """Equilibrium with friction, from the past (None without friction). span: Δφ [rad] since then; solved: states at
+    other coefficients, the last ones near by, to start from.
 
     Raises NotConverged.
     """
     contact, smooth = shared.contact, shared.smooth
     found = smooth
-    if friction > 0.0:
-        memory = before or remembered(model, contact, smooth)
-        ξ_before = (
-            contact.ξ - model.pair.pinion.base_radius * span if before is None else slice_roll(contact, before.stand)
-        )
-        span = span if before is None else contact.stand.angle - before.stand.angle
+    if before is not None:
+        ξ_before = contact.ξ - model.pair.pinion.base_radius * span
         rate = relative_velocity(contact)
-        slip = slipped(model, contact, memory, rate, ξ_before, span)
-        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth, neighbour)
-    return position_result(model, contact, found, friction, smooth.iterations), found
+        slip = slipped(model, contact, before, rate, ξ_before, span)
+        near = foretold(friction, [Solved(0.0, smooth), *solved])
+        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth, near)
+    return position_result(model, contact, found, friction, smooth.iterations), Solved(friction, found)
+
+
+def foretold(friction: float, solved: Sequence[Solved]) -> Start | None:
+    """Forces and motions continued in a straight line from the last two coefficients, in which sliding friction is
+    nearly linear; None where there is but one, or both are the same."""
+    if len(solved) < 2 or solved[-1].friction == solved[-2].friction:
+        return None
+    older, last = solved[-2:]
+    share = (friction - last.friction) / (last.friction - older.friction)
+    earlier = np.zeros_like(last.state.force)
+    earlier[:, : older.state.force.shape[1]] = older.state.force
+    force = last.state.force + share * (last.state.force - earlier)
+    return Start(force, last.state.motion + share * (last.state.motion - older.state.motion))
 
 
 def position_result(

@@ -10,12 +10,13 @@ import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import cycle
 
 import numpy as np
 
-from solver.gear_memory import Memory, remembered
+from solver.gear_memory import Footprint, Memory, Past, recalled, remembered
 from solver.gear_model import GearModel
-from solver.gear_position import PositionResult, shared_position, solve_position
+from solver.gear_position import PositionResult, SharedPosition, Solved, shared_position, solve_position
 from solver.newton import NotConverged
 
 HALVINGS = 4
@@ -27,10 +28,12 @@ class SweepState:
     """Where a sweep stands: everything that the next position needs.
 
     extra: rotations [rad] to start the next search from. memories: one per friction coefficient (None: no past).
+    footprint: where the flanks were pressed; without it Newton's method takes more iterations to the same solution.
     """
 
     extra: tuple[float, float]
     memories: tuple[Memory | None, ...]
+    footprint: Footprint | None = None
 
 
 @dataclass(frozen=True)
@@ -97,13 +100,33 @@ def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float
 ) -> SweptPosition:
     begin = time.perf_counter()
-    shared = shared_position(model, angle, state.extra, normal_only=not any(frictions))
+    shared = shared_position(model, angle, state.extra, frictions, state.footprint)
+    pasts, span = _pasts(model, shared, frictions, state, span)
     common = time.perf_counter() - begin
-    results, memories, found = [], [], None
-    for μ, memory in zip(frictions, state.memories):
+    results: list[PositionResult] = []
+    memories: list[Memory | None] = []
+    solved: list[Solved] = []
+    for μ, past in zip(frictions, pasts):
         begin = time.perf_counter()
-        result, found = solve_position(model, shared, μ, memory, span, found)
-        memories.append(remembered(model, shared.contact, found) if μ > 0.0 else None)
+        result, found = solve_position(model, shared, μ, past, span, solved)
+        solved.append(found)
+        memories.append(remembered(model, shared.contact, found.state) if μ > 0.0 else None)
         seconds = common / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
-    return SweptPosition(angle, False, tuple(results), SweepState(shared.contact.stand.extra, tuple(memories)))
+    after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
+    return SweptPosition(angle, False, tuple(results), after)
+
+
+def _pasts(
+    model: GearModel, shared: SharedPosition, frictions: Sequence[float], state: SweepState, span: float
+) -> tuple[list[Past | None], float]:
+    """The past of each friction coefficient (None for 0) and the step [rad] since then. Where nothing is remembered,
+    the flanks are taken to have moved by `span` in the state without friction."""
+    contact = shared.contact
+    kept = [memory for memory in state.memories if memory is not None]
+    if kept:
+        pasts, span = iter(recalled(contact, kept)), contact.stand.angle - kept[0].stand.angle
+    else:
+        fresh = [remembered(model, contact, shared.smooth)] if any(frictions) else []
+        pasts = cycle(recalled(contact, fresh))
+    return [next(pasts) if μ > 0.0 else None for μ in frictions], span

@@ -25,6 +25,10 @@ class Interfaces(Protocol):
         """B G Bᵀ (r × r): B times the face displacements of `sector` under the face forces Bᵀ of `other`."""
         ...
 
+    def couplings(self) -> Floats:
+        """All different couplings side by side, (r × r·number)."""
+        ...
+
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
         """v_i (c) of the interfaces 0 … n under face forces (2c: low, high) of sectors."""
         ...
@@ -52,6 +56,10 @@ class Ring:
         if offset > self._total // 2:
             return self._couplings[self._total - offset].T
         return self._couplings[offset]
+
+    def couplings(self) -> Floats:
+        """See `Interfaces.couplings`."""
+        return np.hstack([*self._couplings, *(coupling.T for coupling in self._couplings[1:])])
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
         """See `Interfaces.displacements`; factorises every harmonic again, as keeping them all would need gigabytes."""
@@ -98,6 +106,10 @@ class OpenChain:
     def coupling(self, sector: int, other: int) -> Floats:
         """See `Interfaces.coupling`."""
         return self._couplings[sector, other]
+
+    def couplings(self) -> Floats:
+        """See `Interfaces.couplings`."""
+        return np.hstack([coupling for row in self._couplings for coupling in row])
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
         """See `Interfaces.displacements`."""

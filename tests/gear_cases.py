@@ -105,7 +105,7 @@ def friction_force(result: PositionResult, tooth: int) -> float:
 
 def touches(model: GearModel, degrees: float, tooth: int) -> bool:
     """Whether a tooth pair carries load without friction at a pinion rotation [°]."""
-    shared = shared_position(model, float(np.radians(degrees)), (0.0, 0.0), normal_only=True)
+    shared = shared_position(model, float(np.radians(degrees)), (0.0, 0.0), (0.0,), None)
     pressed = shared.smooth.traction[:, 0] > 0.0
     return bool(np.any(pressed & (shared.contact.point_tooth == tooth)))
 

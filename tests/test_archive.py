@@ -154,10 +154,10 @@ def test_full_disk(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
 def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
-    """On a file system of 256 kB: status 1 and the reason."""
+    """On a file system of 64 kB: status 1 and the reason."""
     small = tmp_path / "small"
     small.mkdir()
-    if os.system(f"mount -t tmpfs -o size=256k tmpfs {small} 2>/dev/null") != 0:
+    if os.system(f"mount -t tmpfs -o size=64k tmpfs {small} 2>/dev/null") != 0:
         pytest.skip("mounting is not allowed here")
     try:
         done = run_script("tests/broken_run.py", "ok", *arguments(small / "out"))

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 from q1_elasticity import Ring, ring
 
-from solver.chain import ChainedCompliance, ChainSettings, Compliance, DenseCompliance
+from solver.chain import ChainedCompliance, ChainSettings, Part
 from solver.condense import Factor, SectorCondensation, SectorRecovery, SectorSystem, compliance
 from solver.interfaces import compressed
 
@@ -55,8 +55,13 @@ def chained(shape: str) -> ChainedCompliance:
     return ChainedCompliance(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=len(SHAPES[shape]), ends="free"))
 
 
-def all_rows(body: Compliance) -> np.ndarray:
+def all_rows(body: ChainedCompliance) -> np.ndarray:
     return np.array([(tooth, node) for tooth in body.teeth for node in range(body.node_count)])
+
+
+def parts(rows: np.ndarray) -> list[Part]:
+    """Rows (tooth, node), sorted by tooth, as a block wants them."""
+    return [Part(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -64,7 +69,7 @@ def test_equal_to_merged_model(shape: str) -> None:
     """Compliance of all teeth of four chained sectors = that of one mesh of four sectors, to 1e-12."""
     _, exact = merged(shape)
     gear = chained(shape)
-    found = gear.block(all_rows(gear))
+    found = gear.block(parts(all_rows(gear)))
     assert np.abs(found - exact).max() < 1e-12 * np.abs(exact).max()
     # the test would not see a missing coupling if there were none
     across = exact[: len(exact) // TEETH, len(exact) // TEETH : 2 * len(exact) // TEETH]
@@ -86,8 +91,23 @@ def test_apply_equals_block(shape: str) -> None:
 
     wanted = (exact[np.ix_(dofs(rows_out), dofs(rows_in))] @ forces.ravel()).reshape(-1, d)
     assert np.abs(gear.apply(rows_in, forces, rows_out) - wanted).max() < 1e-12 * np.abs(wanted).max()
-    window = gear.block(rows_out)
-    assert np.abs(window - exact[np.ix_(dofs(rows_out), dofs(rows_out))]).max() < 1e-12 * np.abs(exact).max()
+    sorted_rows = rows_out[np.argsort(rows_out[:, 0], kind="stable")]
+    wanted = exact[np.ix_(dofs(sorted_rows), dofs(sorted_rows))]
+    assert np.abs(gear.block(parts(sorted_rows)) - wanted).max() < 1e-12 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_mapped_block(shape: str) -> None:
+    """E C Eᵀ with a random linear map on each tooth, teeth in any order, = the same from the merged compliance."""
+    _, exact = merged(shape)
+    gear, random = chained(shape), np.random.default_rng(3)
+    size = gear.node_count * len(SHAPES[shape])
+    maps = {tooth: random.normal(size=(4, size)) for tooth in (1, -1, 0)}
+    found = gear.block([Part(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
+    E = np.zeros((12, len(exact)))
+    for i, (tooth, own) in enumerate(maps.items()):
+        E[4 * i : 4 * i + 4, (tooth - FIRST) * size : (tooth - FIRST + 1) * size] = own
+    assert np.abs(found - E @ exact @ E.T).max() < 1e-12 * np.abs(E @ exact @ E.T).max()
 
 
 def test_field_recovery() -> None:
@@ -118,7 +138,7 @@ def test_closed_ring_equals_merged_ring(shape: str, sectors: int) -> None:
     model = ring(SHAPES[shape], sectors, pitch, -2, closed=True)
     exact = compliance(model.stiffness, picker(np.concatenate(model.surface), model.stiffness.shape[0]), model.free)
     gear = ChainedCompliance(sector_of(shape, pitch), ChainSettings(pitch, sectors, -2, dimension=len(SHAPES[shape])))
-    assert np.abs(gear.block(all_rows(gear)) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(gear.block(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
 @pytest.mark.parametrize("sectors", [7, 6])
@@ -149,8 +169,8 @@ def test_window_of_a_ring() -> None:
     whole = ChainedCompliance(sector, ChainSettings(pitch, 7, -3, dimension=2))
     window = ChainedCompliance(sector, ChainSettings(pitch, 3, -1, dimension=2))
     rows = all_rows(window)
-    wanted = whole.block(rows)
-    assert np.abs(window.block(rows) - wanted).max() < 1e-14 * np.abs(wanted).max()
+    wanted = whole.block(parts(rows))
+    assert np.abs(window.block(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()
 
 
 def test_pitch_must_divide_the_circle() -> None:
@@ -169,20 +189,22 @@ def test_clamped_ends() -> None:
     exact = compliance(model.stiffness, functionals, free=free)
     sector = sector_of("2D")
     gear = ChainedCompliance(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=2, ends="clamped"))
-    assert np.abs(gear.block(all_rows(gear)) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(gear.block(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
 def test_one_tooth_is_a_free_sector() -> None:
-    """A chain of one sector = that sector alone with free cut faces, also as DenseCompliance, and turns with it."""
+    """A chain of one sector = that sector alone with free cut faces, and turns with it."""
     sector = sector_of("2D")
     restricted, functionals, *_ = sector_parts("2D")
-    alone = DenseCompliance(compliance(restricted, functionals), dimension=2)
+    alone = compliance(restricted, functionals)
+    dofs = np.array([2, 3, 8, 9, 0, 1])  # of nodes 1, 4, 0
     rows = np.array([(0, 1), (0, 4), (0, 0)])
     gear = ChainedCompliance(sector, ChainSettings(PITCH, 1, 0, dimension=2, ends="free"))
-    np.testing.assert_allclose(gear.block(rows), alone.block(rows), rtol=0, atol=1e-12 * np.abs(alone.compliance).max())
+    wanted = alone[np.ix_(dofs, dofs)]
+    np.testing.assert_allclose(gear.block(parts(rows)), wanted, rtol=0, atol=1e-12 * np.abs(alone).max())
     forces = np.array([[1.0, 2.0], [-3.0, 0.5], [0.2, 0.0]])
     moved = gear.apply(rows, forces, rows[:2])
-    np.testing.assert_allclose(alone.apply(rows, forces, rows[:2]), moved, rtol=1e-11)
+    np.testing.assert_allclose((wanted @ forces.ravel())[:4].reshape(2, 2), moved, rtol=1e-11)
     turn = turned(3 * PITCH, 2)
     third = ChainedCompliance(sector, ChainSettings(PITCH, 1, 3, dimension=2, ends="free"))
     there = rows + np.array([3, 0])
@@ -204,4 +226,4 @@ def test_unknown_rows_are_refused() -> None:
     """A tooth that is not modelled is an error, not a wrapped index."""
     gear = chained("2D")
     with pytest.raises(IndexError, match=r"teeth -1 to 2 .* found \(3, 0\)"):
-        gear.block(np.array([(0, 0), (3, 0)]))
+        gear.block(parts(np.array([(0, 0), (3, 0)])))

@@ -114,7 +114,7 @@ def shared_position(model: GearModel, angle: float, extra: tuple[float, float], 
     """
     stand, half_width = Stand(model.pair, angle, extra), model.half_width
     for _ in range(ROUNDS):
-        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width, model.whole_flank)
         if not contact.teeth:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
@@ -145,7 +145,7 @@ def solve_position(
     """
     contact, smooth = shared.contact, shared.smooth
     found = smooth
-    if friction > 0.0:
+    if model.has_friction_terms(friction):
         memory = before or remembered(model, contact, smooth)
         ξ_before = (
             contact.ξ - model.pair.pinion.base_radius * span if before is None else slice_roll(contact, before.stand)
@@ -173,7 +173,7 @@ def position_result(
         node=contact.node,
         weights=weights,
         traction=traction,
-        iterations=found.iterations + (extra_iterations if friction > 0.0 else 0),
+        iterations=found.iterations + (extra_iterations if model.has_friction_terms(friction) else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
     )
 

@@ -52,10 +52,10 @@ class Pitch:
     warm_up: int
 
 
-def uniform_pitch(z1: int, positions: int, warm_up: int) -> Pitch:
-    """`positions` equal steps over the base pitch 2π/z_1, and a few before it."""
+def uniform_pitch(z1: int, positions: int, warm_up: int, pitches: int = 1) -> Pitch:
+    """`positions` equal steps over each base pitch 2π/z_1, and a few before the first."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(-warm_up, positions)), warm_up)
+    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:
@@ -97,13 +97,13 @@ def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float
 ) -> SweptPosition:
     begin = time.perf_counter()
-    shared = shared_position(model, angle, state.extra, normal_only=not any(frictions))
+    shared = shared_position(model, angle, state.extra, normal_only=not any(map(model.has_friction_terms, frictions)))
     common = time.perf_counter() - begin
     results, memories, found = [], [], None
     for μ, memory in zip(frictions, state.memories):
         begin = time.perf_counter()
         result, found = solve_position(model, shared, μ, memory, span, found)
-        memories.append(remembered(model, shared.contact, found) if μ > 0.0 else None)
+        memories.append(remembered(model, shared.contact, found) if model.has_friction_terms(μ) else None)
         seconds = common / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     return SweptPosition(angle, False, tuple(results), SweepState(shared.contact.stand.extra, tuple(memories)))

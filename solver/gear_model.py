@@ -78,8 +78,8 @@ def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 
     def condensed(index: int) -> GearBody:
-        gear, material = pair.gears[index], scene.materials()[index]
-        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, carries_pressure=index == 0)
+        gear, material, whole = pair.gears[index], scene.materials()[index], not skips(scene, "one-sector")
+        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, index == 0, whole=whole)
 
     built = together(comm, lambda: {index: condensed(index) for index in own})
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 from solver.scene import Scene
 from solver.schema import Output, SkipName
 
-ROUND_OFF = 1e-7
+ROUND_OFF = 1e-8
 """Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
+SEARCH = 1e-5
+"""Of what starts from another guess of the free rotation: the gap is linear in up to 0.5 µm of it between searches."""
 
 
 @dataclass(frozen=True)
@@ -99,10 +101,10 @@ SKIPS: tuple[Skip, ...] = (
         "warm-up",
         _is_frictionless,
         lambda scene: f"The {scene.sweep.warm_up_positions} warm-up positions: without friction there is no history.",
-        tolerance=ROUND_OFF,
+        tolerance=SEARCH,
     ),
-    Skip("one-pitch", _always, _pitch_sentence, tolerance=1e-5),  # friction's history: only warmed up once
-    Skip("one-sector", _always, _sector_sentence, tolerance=1e-7),  # the ring's coupling is compressed to 1e-10
+    Skip("one-pitch", _always, _pitch_sentence, tolerance=1e-4),  # friction's history at its start: warmed up or known
+    Skip("one-sector", _always, _sector_sentence, tolerance=ROUND_OFF),  # the ring's coupling is compressed to 1e-10
     Skip(
         "far-teeth",
         _always,
@@ -113,13 +115,17 @@ SKIPS: tuple[Skip, ...] = (
         "window",
         _always,
         lambda _: "The search is kept to a moving window about each contact line.",
-        tolerance=1e-5,  # the projection of the wheel's displacement fades out beyond the window within an element
+        # the projection of the wheel's displacement is cut off at the window's rim, which is felt within an element or
+        # two. He's pair: pressure 6e-4 at quick, 3e-4 at standard, 6e-6 at fine; a fiftieth of it in the other figures
+        tolerance=1e-3,
     ),
     Skip(
-        "back-flank",
+        "coarse-body",
         _always,
-        lambda _: "Only the loaded flanks are refined, the back flanks stay coarse.",
-        tolerance=2e-3,  # another mesh of the same tooth: its bending differs by the coarse back's error
+        lambda _: "Only the loaded flanks are refined; back flanks, fillets, core and rim of the teeth stay coarse.",
+        # what the teeth's bending is wrong by on the coarse body: He's pair 0.3 % at quick, 0.4 at standard, 0.7 at
+        # fine, where thinner layers meet the same coarse columns; the back flank alone 0.01 %
+        tolerance=1e-2,
     ),
     Skip("reuse", lambda scene: len(scene.contact.friction) > 1, _reuse_sentence, tolerance=ROUND_OFF),
     Skip(

@@ -29,7 +29,7 @@ from meshes.lattice import boundary_facets, subdivided, transfinite, weld
 from meshes.parameters import GearParameters
 from meshes.profile import Profile, polar
 from meshes.root_band import RootBand
-from meshes.section_blocks import Piece, ToothRows, grid, growing, row_radii, steps, three_to_one
+from meshes.section_blocks import Piece, ToothRows, grid, growing, mirrored, row_radii, steps, three_to_one
 
 WELD = 1e-7
 """Points closer than this are one node [mm]."""
@@ -50,6 +50,7 @@ class SectorResolution:
     fillet_elements: from the flank start to the sector's cut on the loaded side, back_elements on the other side;
         neck_elements of both lie above the middle of the fillet. core_elements: coarse columns of the tooth between
         transition and back band. rim_elements: from the root band to the bore.
+    back_alike: refine the back flank as the loaded one, to show what leaving it coarse changes.
     """
 
     profile_elements: int = 27
@@ -64,6 +65,7 @@ class SectorResolution:
     neck_elements: int = 3
     core_elements: int = 2
     rim_elements: int = 4
+    back_alike: bool = False
 
     def __post_init__(self) -> None:
         if self.profile_elements % 3 or len(self.layer_depths) != 3:
@@ -105,14 +107,16 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     start = _flank_start(profile, resolution)
     radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at)
     band = sum(resolution.layer_depths)
-    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2)
+    alike = resolution.back_alike
+    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, alike)
     at_cut = max(band, 0.3 * gear.normal_module)
     widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
     neck = resolution.neck_elements
     loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)
-    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1], at_cut), mirrored=True)
-    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band()]
-    pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, resolution)]
+    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - alike], at_cut), mirrored=True)
+    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(alike))]
+    pieces += [mirrored(_strip_end(loaded, resolution))] if alike else []
+    pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, rows.inner, resolution)]
     points, cells = _joined(pieces)
     edges = _named_edges(profile, start, points[:, :2], boundary_facets("quadrilateral", 2, cells))
     return Section(points[:, :2], cells, edges, points[:, 2], start)
@@ -143,10 +147,11 @@ def _tooth(rows: ToothRows, resolution: SectorResolution) -> list[Piece]:
     layers = subdivided(_layer_columns(resolution), 2)
     strip = grid(rows.points(*np.meshgrid(steps(0, n), layers, indexing="ij")), 1 - layers)
     coarse_rows = np.linspace(0, n, 2 * n // 3 + 1)
-    columns = steps(2, 1 + rows.columns)
+    columns = steps(2, 2 + rows.coarse)
     coarse = grid(rows.points(*np.meshgrid(coarse_rows, columns, indexing="ij")))
     transition = [three_to_one(partial(_transition_point, rows, first)) for first in range(0, n, 3)]
-    return [strip, *transition, coarse]
+    fine = [strip, *transition]
+    return [*fine, coarse, *(map(mirrored, fine) if rows.alike else [])]
 
 
 def _transition_point(rows: ToothRows, first: int, u: Floats, v: Floats) -> Floats:
@@ -169,13 +174,15 @@ def _strip_end(side: RootBand, resolution: SectorResolution) -> Piece:
 def _neck(rows: ToothRows, loaded: RootBand, back: RootBand) -> Piece:
     """Between the bands of both sides, from the flank start down to the middles of the fillets."""
     q = steps(0, loaded.neck)
-    columns = steps(1, rows.columns)
+    columns = steps(1, 1 + rows.inner)
     top = rows.points(np.zeros_like(columns), columns)
     bottom = _line(loaded.inner(q[-1:])[0], back.inner(q[-1:])[0], _even(columns))
     return grid(transfinite(loaded.inner(q), back.inner(q), top, bottom, _even(q), _even(columns)))
 
 
-def _rim(loaded: RootBand, back: RootBand, gear: GearParameters, resolution: SectorResolution) -> list[Piece]:
+def _rim(
+    loaded: RootBand, back: RootBand, gear: GearParameters, inner: int, resolution: SectorResolution
+) -> list[Piece]:
     """Root blocks of both sides and the base between them, down to the bore."""
     corners = [side.inner(np.array([float(side.neck)]))[0] for side in (loaded, back)]
     radius = gear.bore_diameter / 2
@@ -187,7 +194,7 @@ def _rim(loaded: RootBand, back: RootBand, gear: GearParameters, resolution: Sec
     for side, angle, end in zip((loaded, back), angles, (cut, -cut), strict=True):
         top = side.inner(steps(side.neck, side.cells))
         blocks.append(_down_to_bore(top, radius, (angle, end), ends))
-    columns = _even(steps(0, resolution.core_elements + 1))
+    columns = _even(steps(0, inner))
     blocks.append(_down_to_bore(_line(corners[0], corners[1], columns), radius, (angles[0], angles[1]), ends))
     return blocks
 

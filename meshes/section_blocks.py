@@ -55,6 +55,12 @@ def three_to_one(place: Callable[[Floats, Floats], Floats]) -> Piece:
     return place(u, v), np.arange(36).reshape(4, 9)
 
 
+def mirrored(piece: Piece) -> Piece:
+    """The piece on the side θ < 0, which follows no modification of the flank."""
+    points, cells = piece
+    return points * [1.0, -1.0, 0.0], cells
+
+
 def growing(length: float, first: float, n: int) -> Floats:
     """Cell ends (n + 1,), from 0 to 1, of n cells over `length` that grow geometrically from about `first`."""
     if n == 1 or first * n >= length:
@@ -74,7 +80,8 @@ class ToothRows:
     """The tooth above the flank start.
 
     radii (2 rows + 1,): of all row nodes. band: depth of the thin layers together [mm], tip_share: its largest part of
-    the tooth's thickness. columns: behind the thin layers, the transitions are the first.
+    the tooth's thickness. columns: behind the thin layers, the transitions are the first. alike: the back flank has
+    thin layers and transitions as well; the transitions are the last of the columns.
     """
 
     profile: Profile
@@ -82,38 +89,55 @@ class ToothRows:
     band: float
     tip_share: float
     columns: int
+    alike: bool = False
 
     @property
     def start(self) -> float:
         """Flank start radius [mm]."""
         return float(self.radii[0])
 
+    @property
+    def inner(self) -> int:
+        """Columns between the bands of both flanks."""
+        return self.columns if self.alike else self.columns - 1
+
+    @property
+    def coarse(self) -> int:
+        """Columns behind the transitions."""
+        return self.columns - 1 - self.alike
+
+    @property
+    def sides(self) -> int:
+        """How many flanks have thin layers."""
+        return 1 + self.alike
+
     def strip_width(self, radius: Floats) -> Floats:
         """Arc length [mm] of the thin layers along a row: their depth is normal to the flank, the row is not."""
         along_row = self.band * radius / self.profile.gear.base_radius
-        most = self.tip_share * 2 * radius * self.profile.angle(radius)
+        most = self.tip_share / self.sides * 2 * radius * self.profile.angle(radius)
         return _smaller(along_row, most)
 
     def transition_width(self, radius: Floats) -> Floats:
         """Arc length [mm] of the 3:1 transitions along a row: a coarse row's height, if the tooth is thick enough."""
         height = np.interp(radius, self.radii, 6 * np.gradient(self.radii))  # three fine rows: six nodes
-        rest = 2 * radius * self.profile.angle(radius) - self.strip_width(radius)
+        rest = 2 * radius * self.profile.angle(radius) / self.sides - self.strip_width(radius)
         return _smaller(0.45 * rest, height)
 
     def column_width(self, radius: Floats) -> Floats:
         """Arc length [mm] of one coarse column behind the transitions along a row."""
         thickness = 2 * radius * self.profile.angle(radius)
-        rest = thickness - self.strip_width(radius) - self.transition_width(radius)
-        return np.asarray(rest / (self.columns - 1))
+        rest = thickness - self.sides * (self.strip_width(radius) + self.transition_width(radius))
+        return np.asarray(rest / self.coarse)
 
     def points(self, row: Floats, column: Floats) -> Floats:
         """Points (..., 2) at rows (whole and half numbers) and columns."""
         radius = np.interp(row, np.arange(len(self.radii)) / 2, self.radii)
         arc = self.strip_width(radius) * np.clip(column, 0, 1)
         arc += self.transition_width(radius) * np.clip(column - 1, 0, 1)
-        arc += self.column_width(radius) * np.maximum(column - 2, 0)
+        arc += self.column_width(radius) * np.clip(column - 2, 0, self.coarse)
+        arc += self.transition_width(radius) * np.maximum(column - 2 - self.coarse, 0)
         points = polar(radius, self.profile.angle(radius) - arc / radius)
-        last = np.asarray(column) == 1 + self.columns
+        last = (np.asarray(column) == 1 + self.columns) & (not self.alike)
         return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
 
 

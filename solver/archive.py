@@ -28,7 +28,8 @@ from solver.gear_position import ContactPoints, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 from solver.scene import Scene
-from solver.schema import Output
+from solver.schema import Output, Skipping
+from solver.skips import OF_OUTPUT
 
 EARLIER = (
     "results/*.npz", "results/*.tmp", "summary.json", "positions.csv", "teeth.csv", "fields/contact*",
@@ -157,8 +158,9 @@ class Archive:
 
 
 def fingerprint(scene: Scene) -> str:
-    """A hash of all that results depend on: of the scene without its title and the section [output]."""
-    essence = scene.model_copy(update={"title": "", "output": Output()})
+    """A hash of all that results depend on: of the scene without its title and what says what else is written."""
+    ways = Skipping(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
+    essence = scene.model_copy(update={"title": "", "output": Output(), "skip": ways})
     return hashlib.sha256(essence.resolved_toml().encode()).hexdigest()
 
 

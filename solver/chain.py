@@ -28,7 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,22 @@ class Part:
     tooth: int
     nodes: Ints
     map: Map = _unchanged
+
+
+class Compliance(Protocol):
+    """What contact needs of a gear: displacements of its flanks' nodes under forces on them, d components a node."""
+
+    def block(self, parts: Sequence[Part]) -> Floats:
+        """E C Eᵀ (mm/N where E = 1) of the parts, in their order; each tooth at most once."""
+        ...
+
+    def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
+        """Displacements (..., k_out, d; mm) of `rows_out` under `forces` (..., k_in, d; N) on `rows_in`.
+
+        Rows are (k × 2) integers, tooth and surface node; vectors are in the frame of the whole gear. Leading axes are
+        for several loads on the same rows: reading the compliance costs more than multiplying with it.
+        """
+        ...
 
 
 @dataclass(frozen=True)
@@ -103,10 +119,8 @@ class ChainedCompliance:
         self._couplings = {(i, j): modes.T @ self._interfaces.coupling(i, j) @ modes for i in places for j in places}
 
     def block(self, parts: Sequence[Part]) -> Floats:
-        """E C Eᵀ (mm/N where E = 1) of the parts, in their order; each tooth at most once.
-
-        The maps see the few modes in which teeth feel each other, and whole compliances of their own tooth only.
-        """
+        """See `Compliance.block`. The maps see the few modes in which teeth feel each other, and whole compliances of
+        their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
         modes = [part.map(self._turned(part.tooth, self._smooth[_dofs(part.nodes, self.dimension)])) for part in parts]
         ends = np.cumsum([0] + [len(mode) for mode in modes])
@@ -121,11 +135,7 @@ class ChainedCompliance:
         return result
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """Displacements (..., k_out, d; mm) of `rows_out` under `forces` (..., k_in, d; N) on `rows_in`.
-
-        Rows are (k × 2) integers, tooth and surface node; vectors are in the frame of the whole gear. Leading axes are
-        for several loads on the same rows: reading the compliance costs more than multiplying with it.
-        """
+        """See `Compliance.apply`."""
         loaded = self._loads(rows_in, forces)
         result = np.empty((*forces.shape[:-2], len(rows_out), self.dimension))
         for tooth, (places, nodes) in self._groups(rows_out).items():

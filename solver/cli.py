@@ -7,6 +7,7 @@ fails says so and ends the run on all ranks.
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import sys
 import time
@@ -67,6 +68,10 @@ Overrides = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
 ]
+NoSkip = Annotated[
+    list[str] | None,
+    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
+]
 LevelOption = Annotated[
     str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
 ]
@@ -84,6 +89,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.")],
     level: LevelOption = None,
     settings: Overrides = None,
+    no_skip: NoSkip = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar; the log file is written.")] = False,
 ) -> None:
@@ -92,7 +98,7 @@ def run(
     One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
     """
     with reported(parallel=True):
-        loaded = _load(scene, level, settings)
+        loaded = _load(scene, level, settings, no_skip)
         _require(not out.is_file(), f"--out: found the file {out}; allowed: a directory; remedy: give another name")
         from solver.run import run_scene
 
@@ -100,13 +106,15 @@ def run(
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
-def check(scene: SceneFile, level: LevelOption = None, settings: Overrides = None) -> None:
+def check(
+    scene: SceneFile, level: LevelOption = None, settings: Overrides = None, no_skip: NoSkip = None
+) -> None:
     """Validate a scene, print what follows from it.
 
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = _load(scene, level, settings)
+        loaded = _load(scene, level, settings, no_skip)
         from solver.overview import overview
 
         typer.echo(overview(loaded))
@@ -118,13 +126,14 @@ def mesh(
     out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.")],
     level: LevelOption = None,
     settings: Overrides = None,
+    no_skip: NoSkip = None,
 ) -> None:
     """Write the mesh of both sectors for gmsh.
 
     One tooth sector of each gear, as they stand when they touch at the pitch point, with named groups.
     """
     with reported():
-        loaded = _load(scene, level, settings)
+        loaded = _load(scene, level, settings, no_skip)
         _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
         if MPI.COMM_WORLD.rank > 0:
             return
@@ -193,7 +202,7 @@ def reported(parallel: bool = False) -> Iterator[None]:
         raise _leave(message, status) from error
 
 
-def _load(path: Path, level: str | None, settings: Sequence[str] | None) -> Scene:
+def _load(path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None) -> Scene:
     """The scene, read on rank 0 and sent to the others: either all ranks have it or all fail alike."""
     from solver.scene import load_scene
 
@@ -201,6 +210,7 @@ def _load(path: Path, level: str | None, settings: Sequence[str] | None) -> Scen
     if MPI.COMM_WORLD.rank == 0:
         try:
             overrides = [*(settings or ()), *([f"mesh.level={level}"] if level else ())]
+            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
             result = error

@@ -13,12 +13,13 @@ from scipy.spatial import cKDTree
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearParameters
 from solver.body import Body, Fixed, assemble
-from solver.chain import ChainedCompliance, ChainSettings
-from solver.condense import SectorSystem
+from solver.chain import ChainedCompliance, ChainSettings, Compliance
+from solver.condense import SectorCondensation, SectorSystem
 from solver.kinematics import turn
 from solver.material import Material
 from solver.surface import Surface, surface_of
 from solver.traction import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
+from solver.whole_gear import WholeSystem, whole_mesh, whole_system
 
 COUPLING_TOLERANCE = 1e-10  # of the coupling between teeth, which is smooth; relative
 
@@ -37,7 +38,7 @@ class GearBody:
     mesh: MeshData
     flank: Surface
     traction: NitscheTraction | None
-    chain: ChainedCompliance
+    chain: Compliance
     sign: int
     assemble_seconds: float
     condense_seconds: float
@@ -77,24 +78,32 @@ def condensed_gear(
     sign: int,
     carries_pressure: bool,
     safety: float = SAFETY,
+    whole: bool = False,
 ) -> GearBody:
-    """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch.
+    """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch;
+    whole: assemble and condense all sectors instead.
 
     The bore is held in the gear's frame.
     """
     begin = time.perf_counter()
     flank = surface_of(mesh, "flank")
     traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
-    body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
-    system = _sector_system(body, flank, traction, 2.0 * np.pi / gear.z)
+    pitch, numbers = 2.0 * np.pi / gear.z, sorted(sign * tooth for tooth in teeth)
+    if whole:
+        ring = whole_mesh(mesh, matching_cuts(mesh, pitch), gear.z)
+        named, own_safety = range(numbers[0], numbers[-1] + 1), safety if carries_pressure else None
+        system: WholeSystem | SectorSystem = whole_system(ring, material, gear.z, named, own_safety)
+    else:
+        body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+        system = _sector_system(body, flank, traction, pitch)
     assembled = time.perf_counter()
-    numbers = sorted(sign * tooth for tooth in teeth)
-    settings = ChainSettings(2.0 * np.pi / gear.z, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
-    condensed = system.condensed()
+    condensed: SectorCondensation | Compliance = system.condensed()
     del system  # gigabytes at the fine end
-    chain = ChainedCompliance(condensed, settings)
+    if isinstance(condensed, SectorCondensation):
+        settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
+        condensed = ChainedCompliance(condensed, settings)
     end = time.perf_counter()
-    return GearBody(gear, mesh, flank, traction, chain, sign, assembled - begin, end - assembled)
+    return GearBody(gear, mesh, flank, traction, condensed, sign, assembled - begin, end - assembled)
 
 
 def _sector_system(

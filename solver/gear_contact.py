@@ -1,7 +1,8 @@
 """The contact of a gear pair at one position: tooth pairs within reach, their window, and the condensed system.
 
 Only the nodes of a window about each contact line take part; a solution that touches the window's rim is refused by
-`reaches_rim`, and the caller widens the window.
+`reaches_rim`, and the caller widens the window. The whole flanks can be searched instead, to show that it changes
+nothing.
 """
 
 from __future__ import annotations
@@ -211,14 +212,16 @@ def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) 
 
 
 def gear_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float
+    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float, whole_flank: bool = False
 ) -> GearContact:
-    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc].
+    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc];
+    whole_flank: there is none.
 
     Raises SearchError.
     """
-    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, half_width)) is not None]
-    return GearContact(bodies, stand, tuple(found), half_width)
+    width = np.inf if whole_flank else half_width
+    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, width)) is not None]
+    return GearContact(bodies, stand, tuple(found), width)
 
 
 def _tooth_operator(
@@ -226,9 +229,7 @@ def _tooth_operator(
 ) -> ContactOperator | None:
     pinion, wheel = bodies
     assert pinion.traction is not None
-    near = arc_distance(pinion, stand, tooth, np.arange(len(pinion.flank.points))) <= half_width
-    within = _line_within_reach(pinion, stand, tooth)
-    near &= within
+    near = _near_line(pinion, stand, tooth, half_width)
     facets = np.flatnonzero(near[pinion.flank.facets].any(axis=1))
     if len(facets) == 0:
         return None
@@ -241,6 +242,14 @@ def _tooth_operator(
         return None
     frames = pinion.traction.frames @ stand.rotation(0, d, tooth).T
     return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
+
+
+def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+    """(n,) bool: the flank nodes within the window; all where it has no end."""
+    every = np.arange(len(pinion.flank.points))
+    if np.isinf(half_width):
+        return np.ones(len(every), dtype=bool)
+    return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
 
 
 def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:

@@ -18,7 +18,7 @@ from solver.memory import large_arrays_apart
 from solver.parallel import shared, together
 from solver.scene import Scene
 from solver.sectors import gear_mesh
-from solver.skips import is_plane, touching_teeth
+from solver.skips import contact_teeth, is_plane, skips, switched_off
 
 WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
 
@@ -34,13 +34,20 @@ class GearLoad:
 @dataclass(frozen=True)
 class GearModel:
     """All that positions share. teeth: tooth pairs that may touch within the pitch; half_width: of the window
-    [mm of arc] to start with."""
+    [mm of arc] to start with. whole_flank: search all of the flanks instead of the window. friction_terms: also keep
+    them where μ = 0."""
 
     pair: GearPair
     bodies: tuple[GearBody, GearBody]
     teeth: tuple[int, ...]
     load: GearLoad
     half_width: float
+    whole_flank: bool = False
+    friction_terms: bool = False
+
+    def has_friction_terms(self, friction: float) -> bool:
+        """Whether tangential components and a memory are kept at this μ."""
+        return friction > 0.0 or self.friction_terms
 
 
 @dataclass(frozen=True)
@@ -71,20 +78,18 @@ def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 
     def condensed(index: int) -> GearBody:
-        gear, material = pair.gears[index], scene.materials()[index]
-        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, carries_pressure=index == 0)
+        gear, material, whole = pair.gears[index], scene.materials()[index], not skips(scene, "one-sector")
+        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, index == 0, whole=whole)
 
     built = together(comm, lambda: {index: condensed(index) for index in own})
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
-    model = GearModel(pair, (pinion, wheel), tuple(teeth), load, _window(scene))
+    model = GearModel(
+        pair, (pinion, wheel), tuple(teeth), load, _window(scene),
+        whole_flank=not skips(scene, "window"),
+        friction_terms="friction-terms" in switched_off(scene),
+    )  # fmt: skip
     return Preparation(model, meshed - begin, time.perf_counter() - meshed)
-
-
-def contact_teeth(scene: Scene) -> list[int]:
-    """The tooth pairs that can touch within a pitch, and those that deflection may bring into contact."""
-    teeth = touching_teeth(scene)
-    return list(range(teeth[0] - 1, teeth[-1] + 2))
 
 
 def _torque(scene: Scene) -> float:

@@ -131,10 +131,11 @@ def shared_position(
     is not 0 only normal components are condensed, without a 0 the frictionless state is a mere start. before: the
     footprint of the last position. Raises NotConverged, SearchError.
     """
-    normal_only, tolerance = not any(frictions), TOLERANCE if 0.0 in frictions else START_TOLERANCE
+    normal_only = not any(map(model.has_friction_terms, frictions))
+    tolerance = TOLERANCE if 0.0 in frictions else START_TOLERANCE
     stand, half_width = Stand(model.pair, angle, extra), model.half_width
     for _ in range(ROUNDS):
-        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width, model.whole_flank)
         if not contact.teeth:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
@@ -208,7 +209,7 @@ def position_result(
         node=contact.node,
         weights=weights,
         traction=traction,
-        iterations=found.iterations + (extra_iterations if friction > 0.0 else 0),
+        iterations=found.iterations + (extra_iterations if model.has_friction_terms(friction) else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
     )
 

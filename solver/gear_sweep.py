@@ -55,10 +55,10 @@ class Pitch:
     warm_up: int
 
 
-def uniform_pitch(z1: int, positions: int, warm_up: int) -> Pitch:
-    """`positions` equal steps over the base pitch 2π/z_1, and a few before it."""
+def uniform_pitch(z1: int, positions: int, warm_up: int, pitches: int = 1) -> Pitch:
+    """`positions` equal steps over each base pitch 2π/z_1, and a few before the first."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(-warm_up, positions)), warm_up)
+    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:
@@ -110,7 +110,7 @@ def _position(
         begin = time.perf_counter()
         result, found = solve_position(model, shared, μ, past, span, solved)
         solved.append(found)
-        memories.append(remembered(model, shared.contact, found.state) if μ > 0.0 else None)
+        memories.append(remembered(model, shared.contact, found.state) if past is not None else None)
         seconds = common / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
@@ -120,13 +120,13 @@ def _position(
 def _pasts(
     model: GearModel, shared: SharedPosition, frictions: Sequence[float], state: SweepState, span: float
 ) -> tuple[list[Past | None], float]:
-    """The past of each friction coefficient (None for 0) and the step [rad] since then. Where nothing is remembered,
-    the flanks are taken to have moved by `span` in the state without friction."""
-    contact = shared.contact
+    """The past of each friction coefficient (None for μ = 0) and the step [rad] since then. Where nothing is
+    remembered, the flanks are taken to have moved by `span` in the state without friction."""
+    contact, rough = shared.contact, [model.has_friction_terms(μ) for μ in frictions]
     kept = [memory for memory in state.memories if memory is not None]
     if kept:
         pasts, span = iter(recalled(contact, kept)), contact.stand.angle - kept[0].stand.angle
     else:
-        fresh = [remembered(model, contact, shared.smooth)] if any(frictions) else []
+        fresh = [remembered(model, contact, shared.smooth)] if any(rough) else []
         pasts = cycle(recalled(contact, fresh))
-    return [next(pasts) if μ > 0.0 else None for μ in frictions], span
+    return [next(pasts) if slips else None for slips in rough], span

@@ -12,7 +12,7 @@ from solver.hertz import LoadFactors, yang_estimate
 from solver.resolution import elements_per_contact_width, memory_megabytes, sector_resolutions, sector_size
 from solver.scene import Scene
 from solver.scene_gears import working_angle_of
-from solver.skips import is_plane, skipped, touching_teeth
+from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth, warm_up_positions
 
 HANDS = {1: "right", -1: "left"}
 
@@ -35,9 +35,15 @@ def overview(scene: Scene) -> str:
         table("Pair", _pair_rows(pair)),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         table("Mesh and cost (estimate)", _cost_rows(scene), ("pinion", "wheel")),
-        "Skipped\n" + "\n".join(f"  - {sentence}" for sentence in skipped(scene)),
+        _skip_lines(scene),
     ]
     return "\n\n".join(blocks)
+
+
+def _skip_lines(scene: Scene) -> str:
+    lines = ["Skipped", *(f"  {skip.name:<15}{skip.sentence}" for skip in skipped(scene))]
+    off = switched_off(scene)
+    return "\n".join([*lines, *(["Computed the long way", f"  {', '.join(off)}"] if off else [])])
 
 
 def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
@@ -183,5 +189,5 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 
 def positions_to_solve(scene: Scene) -> int:
-    """Positions of the sweep; only friction has a history that must be warmed up."""
-    return scene.sweep.positions + (scene.sweep.warm_up_positions if any(scene.contact.friction) else 0)
+    """Positions of the sweep, with those that warm up."""
+    return pitches(scene) * scene.sweep.positions + warm_up_positions(scene)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from meshes.data import Floats
 from meshes.parameters import GearParameters
 from meshes.section import SectorResolution, section_mesh
 from solver.estimates import HertzEstimate, hertz_estimate
+from solver.skips import skips
 
 if TYPE_CHECKING:
     from solver.scene import Scene
@@ -64,12 +65,26 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> Sect
     density = roll / gear.base_radius * count / width.at_roll_length(roll)
     along, shear = trapezoid(density, roll), np.mean(density) * math.tan(gear.base_helix_angle) * gear.face_width
     depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
-    return SectorResolution(
+    resolution = SectorResolution(
         profile_elements=3 * max(2, math.ceil(along / 3)),
         face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][index])),
         layer_depths=(depths[0], depths[1], depths[2]),
         flank_start_diameter=start,
         size_at=width,
+    )
+    return resolution if skips(scene, "coarse-body") else _fine_everywhere(resolution)
+
+
+def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
+    """The back flank like the loaded one, and three times as many elements in all the rest."""
+    return replace(
+        resolution,
+        back_alike=True,
+        core_elements=3 * resolution.core_elements,
+        rim_elements=3 * resolution.rim_elements,
+        fillet_elements=3 * resolution.fillet_elements,
+        back_elements=3 * resolution.back_elements,
+        neck_elements=3 * resolution.neck_elements,
     )
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.gear_results import ToothSummary, balance_error
 from solver.run_data import RunData, SolvedPosition
+from solver.skips import Skipped
 
 
 @dataclass(frozen=True)
@@ -44,14 +45,14 @@ class MeshFacts:
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What a run knows beside its results. versions: name -> version. skipped: one sentence each."""
+    """What a run knows beside its results. versions: name -> version. skipped: what was left out."""
 
     versions: Mapping[str, str]
     ranks: int
     dofs: int
     cells: int
     mesh: MeshFacts
-    skipped: Sequence[str]
+    skipped: Sequence[Skipped]
     timings_s: Timings
     peak_memory_MB: float
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import logging
 import resource
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -14,10 +13,9 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import MeshData
 from meshes.quality import scaled_jacobians
 from solver import compat
-from solver.archive import Archive, gear_shape
+from solver.archive import Archive
 from solver.fields import write_fields
 from solver.gear_model import GearModel, Preparation, prepare_model
 from solver.gear_results import balance_error
@@ -26,10 +24,9 @@ from solver.parallel import on_first, together
 from solver.progress import Progress
 from solver.results import MeshFacts, RunFacts, Timings, write_tables, write_text
 from solver.run_data import RunData, run_data
+from solver.run_start import Meshes, Start, kept_start, logged, open_archive, same_meshes
 from solver.scene import Scene
-from solver.sectors import sector_meshes
-from solver.skips import skipped
-from solver.surface import surface_of
+from solver.skips import pitches, skipped, skips, switched_off, wanted_output, warm_up_positions
 
 BALANCE_LIMIT = 1e-2  # a position whose energy does not balance better is an error, not a result
 
@@ -39,18 +36,10 @@ class BalanceError(RuntimeError):
 
 
 @dataclass(frozen=True)
-class Start:
-    """Where a run begins: after `complete` positions, in this state."""
-
-    complete: int
-    state: SweepState
-
-
-@dataclass(frozen=True)
 class Sweep:
     """What sweeping took: the meshes it stood on, and wall seconds."""
 
-    meshes: tuple[MeshData, MeshData]
+    meshes: Meshes
     timings: Timings
 
 
@@ -64,70 +53,97 @@ def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False
     comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
     archive = Archive(out, scene)
-    start = on_first(comm, lambda: _start(scene, archive, resume))  # before the first file is touched
-    with _logged(out, comm, start) as log:
-        for sentence in skipped(scene):
-            log.info("skipped: %s", sentence)
+    start = on_first(comm, lambda: kept_start(scene, archive, resume))  # before the first file is touched
+    with logged(out, comm, start) as log:
+        for skip in skipped(scene):
+            log.info("skipped, %s: %s", skip.name, skip.sentence)
+        for name in switched_off(scene):
+            log.info("not skipped, as asked: %s", name)
         sweep = _swept(scene, archive, start, comm, quiet, log)
         memory = comm.allreduce(peak_memory_MB())
         on_first(comm, lambda: _write_output(scene, archive, sweep, comm.size, begin, memory, log))
-
-
-def _start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
-    """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
-    kept = archive.read_state(scene.gear_pair()) if resume else None
-    return None if kept is None else Start(*kept)
 
 
 def _swept(
     scene: Scene, archive: Archive, start: Start | None, comm: MPI.Comm, quiet: bool, log: logging.Logger
 ) -> Sweep:
     """All positions in the archive. Where they are there already the gears are not even condensed."""
+    count, begun = len(pitch_of(scene).angles), time.perf_counter()
     if start is not None:
-        log.info("resumed after %d of %d positions", start.complete, len(pitch_of(scene).angles))
-        if start.complete == len(pitch_of(scene).angles):
-            return Sweep(on_first(comm, lambda: _same_meshes(scene, archive)), Timings())
-    preparation = prepare_model(scene, comm)
-    log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
-    on_first(comm, lambda: _open_archive(scene, archive, preparation, start))
-    swept = time.perf_counter()
+        log.info("resumed after %d of %d positions", start.complete, count)
+        if start.complete == count:
+            return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
     begin = start or Start(0, initial_state(scene.contact.friction))
-    _solve_positions(scene, preparation.model, archive, begin, comm, quiet, log)
-    pinion, wheel = (body.mesh for body in preparation.model.bodies)
-    return Sweep((pinion, wheel), _timings(preparation, time.perf_counter() - swept))
+    made: list[Sweep] = []
+
+    def ready(preparation: Preparation) -> None:
+        log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+        pinion, wheel = (body.mesh for body in preparation.model.bodies)
+        if not made:
+            on_first(comm, lambda: open_archive(scene, archive, (pinion, wheel), start))
+        made.append(Sweep((pinion, wheel), _timings(preparation)))
+
+    sweeps = [_solved(scene, group, begin.only(group), comm, ready) for group in friction_groups(scene)]
+    if len(sweeps) > 1:  # each with its own gears, one after the other
+        sweeps = [iter(list(each)) for each in sweeps]
+    with Progress(count, begin.complete, hidden=quiet or comm.rank > 0) as progress:
+        for k, parts in enumerate(zip(*sweeps), begin.complete):
+            position = _joined(parts)
+            on_first(comm, partial(archive.write_position, k, position))
+            log.info(_line(position))
+            progress.advance()
+    return _total(made, time.perf_counter() - begun)
 
 
-def _same_meshes(scene: Scene, archive: Archive) -> tuple[MeshData, MeshData]:
-    """The scene's meshes; raises ArchiveError where the results stand on others."""
-    meshes = sector_meshes(scene)
-    pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
-    archive.check_gears((pinion, wheel))
-    return meshes
+def friction_groups(scene: Scene) -> list[slice]:
+    """Which friction coefficients share gears, search and compliance: all, or each its own."""
+    count = len(scene.contact.friction)
+    shared = count == 1 or skips(scene, "reuse")
+    return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
 
 
-def _timings(preparation: Preparation, positions: float) -> Timings:
-    return Timings(preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds, positions)
+def _solved(
+    scene: Scene, group: slice, start: Start, comm: MPI.Comm, ready: Callable[[Preparation], None]
+) -> Iterator[SweptPosition]:
+    """Condenses the gears and solves the positions of some friction coefficients, each certified."""
+    preparation = prepare_model(scene, comm)
+    ready(preparation)
+    pitch, state = pitch_of(scene), start.state
+    for k in range(start.complete, len(pitch.angles)):
+        position = _position(preparation.model, pitch, scene.contact.friction[group], state, k, comm)
+        _certify(position)
+        yield position
+        state = position.state
 
 
-def _open_archive(scene: Scene, archive: Archive, preparation: Preparation, start: Start | None) -> None:
-    """Makes the folder ready for this scene's positions."""
-    pinion, wheel = (gear_shape(body.mesh, body.flank.nodes) for body in preparation.model.bodies)
-    if start is None:
-        archive.clear()
-        archive.write_gears((pinion, wheel))
-    else:
-        archive.check_gears((pinion, wheel))
-    write_text(archive.out / "scene.toml", scene.resolved_toml())
+def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
+    """One position from its groups of friction coefficients."""
+    results = tuple(result for part in parts for result in part.results)
+    memories = tuple(memory for part in parts for memory in part.state.memories)
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
+
+
+def _timings(preparation: Preparation) -> Timings:
+    parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
+    return Timings(*parts, total=preparation.mesh_seconds + preparation.seconds)
+
+
+def _total(made: list[Sweep], seconds: float) -> Sweep:
+    """Of all groups; what was not preparing was solving."""
+    mesh, assemble, factor, preparing = (
+        sum(getattr(each.timings, name) for each in made) for name in ("mesh", "assemble", "factor", "total")
+    )
+    return Sweep(made[0].meshes, Timings(mesh, assemble, factor, seconds - preparing))
 
 
 def _write_output(
     scene: Scene, archive: Archive, sweep: Sweep, ranks: int, begin: float, memory: float, log: logging.Logger
 ) -> None:
-    """Fields and pictures, as the scene asks; then the tables, whose being there says that the run is complete."""
+    """Fields and pictures; then the tables, whose being there says that the run is complete."""
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
     write_text(archive.out / "scene.toml", scene.resolved_toml())  # a resumed run may ask for other output
-    _draw(data, archive.out, log)
+    _draw(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.out, log)
     now = time.perf_counter()
     timings = replace(sweep.timings, output=now - started, total=now - begin)
     write_tables(archive.out, data, _facts(data, sweep.meshes, ranks, timings, memory))
@@ -145,7 +161,7 @@ def _draw(data: RunData, out: Path, log: logging.Logger) -> None:
             log.info("picture: %s", path)
 
 
-def _facts(data: RunData, meshes: tuple[MeshData, MeshData], ranks: int, timings: Timings, memory: float) -> RunFacts:
+def _facts(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory: float) -> RunFacts:
     return RunFacts(
         versions=compat.versions(),
         ranks=ranks,
@@ -167,22 +183,7 @@ def _cells_across(data: RunData) -> float:
 
 def pitch_of(scene: Scene) -> Pitch:
     """The pinion rotations that a scene asks for."""
-    warm_up = scene.sweep.warm_up_positions if any(scene.contact.friction) else 0
-    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up)
-
-
-def _solve_positions(
-    scene: Scene, model: GearModel, archive: Archive, start: Start, comm: MPI.Comm, quiet: bool, log: logging.Logger
-) -> None:
-    pitch, state = pitch_of(scene), start.state
-    with Progress(len(pitch.angles), start.complete, hidden=quiet or comm.rank > 0) as progress:
-        for k in range(start.complete, len(pitch.angles)):
-            position = _position(model, pitch, scene.contact.friction, state, k, comm)
-            _certify(position)
-            on_first(comm, partial(archive.write_position, k, position))
-            log.info(_line(position))
-            progress.advance()
-            state = position.state
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene), pitches(scene))
 
 
 def _position(
@@ -198,7 +199,7 @@ def _position(
     parts: list[SweptPosition] = comm.allgather(together(comm, part))
     results = tuple(parts[i % comm.size].results[i // comm.size] for i in range(len(frictions)))
     memories = tuple(parts[i % comm.size].state.memories[i // comm.size] for i in range(len(frictions)))
-    return replace(parts[0], results=results, state=SweepState(parts[0].state.extra, memories))
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
 
 
 def _certify(position: SweptPosition) -> None:
@@ -219,39 +220,6 @@ def _line(position: SweptPosition) -> str:
     seconds = sum(r.seconds for r in position.results)
     kind = "warm-up " if position.warm_up else "position"
     return f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"
-
-
-@contextmanager
-def _logged(out: Path, comm: MPI.Comm, start: Start | None) -> Iterator[logging.Logger]:
-    """The run's log: OUT/run.log on rank 0, nothing elsewhere; a resumed run adds to it. Makes the folder.
-
-    Raises OSError.
-    """
-    log = logging.getLogger("evolvent")
-    log.setLevel(logging.INFO)
-    log.propagate = False
-    handler = together(comm, lambda: logging.NullHandler() if comm.rank > 0 else _log_file(out, "a" if start else "w"))
-    log.addHandler(handler)
-    try:
-        yield log
-    except Exception as error:
-        log.error("failed: %s", error)
-        raise
-    finally:
-        log.removeHandler(handler)
-        handler.close()
-
-
-def _log_file(out: Path, mode: str) -> logging.Handler:
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        handler = logging.FileHandler(out / "run.log", mode=mode, encoding="utf-8")
-    except OSError as error:
-        raise OSError(
-            f"{out}: wanted a folder to write to, found {error.strerror}; name another one with --out"
-        ) from error
-    handler.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
-    return handler
 
 
 def peak_memory_MB() -> float:

@@ -5,7 +5,7 @@ A key with a unit has it in its name. `Scene` in scene.py puts the sections toge
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, JsonValue, field_validator, model_validator
 
@@ -274,3 +274,26 @@ class Output(Section):
     pictures: bool = key("draw the PNG pictures", "true or false", default=True)
     animation: bool = key("draw the animation", "true or false", default=True)
     fields: bool = key("write the fields for ParaView", "true or false", default=True)
+
+
+SkipName = Literal["plane", "friction-terms", "warm-up", "one-pitch", "one-sector", "far-teeth", "window",
+                   "coarse-body", "reuse", "fields", "pictures"]  # fmt: skip
+"""What a run leaves out where a scene does not need it: `solver.skips`."""
+SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
+
+
+class Skipping(Section):
+    """[skip]: for tests and benchmarks."""
+
+    off: Annotated[tuple[SkipName, ...], BeforeValidator(_as_tuple)] = key(
+        "skips that are switched off: what they leave out is computed the long way",
+        f"a list of {', '.join(SKIP_NAMES)}",
+        "give names of this list; `evolvent check` tells which ones apply to the scene",
+        default=(),
+    )
+
+    @field_validator("off")
+    @classmethod
+    def _each_once(cls, names: tuple[SkipName, ...]) -> tuple[SkipName, ...]:
+        """In one order, so that a scene does not depend on theirs."""
+        return tuple(name for name in SKIP_NAMES if name in names)

@@ -1,0 +1,96 @@
+"""How a run begins: in an empty folder, or after the positions that an earlier one has left there."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from mpi4py import MPI
+
+from meshes.data import MeshData
+from solver.archive import Archive, GearShape, gear_shape
+from solver.gear_sweep import SweepState
+from solver.parallel import together
+from solver.results import write_text
+from solver.scene import Scene
+from solver.sectors import sector_meshes
+from solver.surface import surface_of
+
+Meshes = tuple[MeshData, MeshData]
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a run begins: after `complete` positions, in this state."""
+
+    complete: int
+    state: SweepState
+
+    def only(self, frictions: slice) -> Start:
+        """The same for some of the friction coefficients."""
+        return Start(self.complete, SweepState(self.state.extra, self.state.memories[frictions]))
+
+
+def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
+    """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
+    kept = archive.read_state(scene.gear_pair()) if resume else None
+    return None if kept is None else Start(*kept)
+
+
+def same_meshes(scene: Scene, archive: Archive) -> Meshes:
+    """The scene's meshes; raises ArchiveError where the results stand on others."""
+    meshes = sector_meshes(scene)
+    archive.check_gears(gear_shapes(meshes))
+    return meshes
+
+
+def open_archive(scene: Scene, archive: Archive, meshes: Meshes, start: Start | None) -> None:
+    """Makes the folder ready for this scene's positions. Raises ArchiveError, OSError."""
+    if start is None:
+        archive.clear()
+        archive.write_gears(gear_shapes(meshes))
+    else:
+        archive.check_gears(gear_shapes(meshes))
+    write_text(archive.out / "scene.toml", scene.resolved_toml())
+
+
+def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:
+    """What the archive keeps of both sectors."""
+    pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
+    return pinion, wheel
+
+
+@contextmanager
+def logged(out: Path, comm: MPI.Comm, start: Start | None) -> Iterator[logging.Logger]:
+    """The run's log: OUT/run.log on rank 0, nothing elsewhere; a resumed run adds to it. Makes the folder.
+
+    Raises OSError.
+    """
+    log = logging.getLogger("evolvent")
+    log.setLevel(logging.INFO)
+    log.propagate = False
+    handler = together(comm, lambda: logging.NullHandler() if comm.rank > 0 else _log_file(out, "a" if start else "w"))
+    log.addHandler(handler)
+    try:
+        yield log
+    except Exception as error:
+        log.error("failed: %s", error)
+        raise
+    finally:
+        log.removeHandler(handler)
+        handler.close()
+
+
+def _log_file(out: Path, mode: str) -> logging.Handler:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        handler = logging.FileHandler(out / "run.log", mode=mode, encoding="utf-8")
+    except OSError as error:
+        raise OSError(
+            f"{out}: wanted a folder to write to, found {error.strerror}; name another one with --out"
+        ) from error
+    handler.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+    return handler

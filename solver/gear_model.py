@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
@@ -20,7 +21,7 @@ from solver.scene import Scene
 from solver.sectors import gear_mesh
 from solver.skips import contact_teeth, is_plane, skips, switched_off
 
-WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
+WINDOW = 1.6  # half-width of the contact window in Hertz half-widths, plus one element
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,18 @@ class GearLoad:
 
 @dataclass(frozen=True)
 class GearModel:
-    """All that positions share. teeth: tooth pairs that may touch within the pitch; half_width: of the window
-    [mm of arc] to start with. whole_flank: search all of the flanks instead of the window. friction_terms: also keep
-    them where μ = 0."""
+    """All that positions share.
+
+    teeth: tooth pairs that may touch within the pitch. half_width: (n,) of the window to start with, at the pinion's
+    flank nodes [mm of arc]. whole_flank: search all of the flanks instead of the window. friction_terms: also keep them
+    where μ = 0.
+    """
 
     pair: GearPair
     bodies: tuple[GearBody, GearBody]
     teeth: tuple[int, ...]
     load: GearLoad
-    half_width: float
+    half_width: Floats
     whole_flank: bool = False
     friction_terms: bool = False
 
@@ -85,7 +89,7 @@ def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
-        pair, (pinion, wheel), tuple(teeth), load, _window(scene),
+        pair, (pinion, wheel), tuple(teeth), load, _window(scene, pinion),
         whole_flank=not skips(scene, "window"),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
@@ -97,8 +101,10 @@ def _torque(scene: Scene) -> float:
     return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
 
 
-def _window(scene: Scene) -> float:
-    """Half-width [mm of profile arc] of the window about a contact line."""
+def _window(scene: Scene, pinion: GearBody) -> Floats:
+    """Half-width (n,) [mm of profile arc] of the window about a contact line at each flank node of the pinion: Hertz's
+    for the mean line load, whose own curvature makes it twice as wide at the tip as at the root."""
     estimate = hertz_estimate(scene)
-    ξ = np.linspace(*estimate.pair.path_of_contact, 50)
-    return WINDOW * float(np.max(estimate.half_width(ξ)))
+    start, end = estimate.pair.path_of_contact
+    ξ = pinion.roll_length - estimate.pair.pitch_point_roll_lengths[0]
+    return WINDOW * estimate.half_width(np.clip(ξ, start, end))

@@ -145,7 +145,7 @@ def shared_position(
         smooth = frictionless(system if normal_only else normal_part(system), pressed, tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
-            half_width *= 1.5
+            half_width = 1.5 * half_width
         elif abs(shift) <= RELOCATE:
             return SharedPosition(contact, system, smooth)
         stand = stand.turned(model.load.on, float(smooth.motion[0]))
@@ -157,7 +157,7 @@ def shared_position(
 def _near_line(contact: GearContact) -> np.ndarray:
     """(q,) bool: the points that are taken for pressed where there is no position before."""
     # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
-    return contact.distance <= max(FIRST_CONTACT * contact.half_width, float(contact.distance.min()))
+    return contact.distance <= max(FIRST_CONTACT, float(contact.distance.min()))
 
 
 def solve_position(

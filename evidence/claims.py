@@ -25,6 +25,7 @@ class Claim:
 
     quantity: what it is, with its unit. source: the formula, publication or mesh that `wanted` comes from.
     missed: why a bar is known to be missed. Such a claim must fail: that it holds one day shall be noticed.
+    one_sided: more than `wanted` is no error.
     """
 
     quantity: str
@@ -34,6 +35,7 @@ class Claim:
     reference: Reference
     source: str
     missed: str = ""
+    one_sided: bool = False
 
     @staticmethod
     def relative(
@@ -55,10 +57,17 @@ class Claim:
         """An error (a norm, not negative) is at most `largest`."""
         return Claim(quantity, error, 0.0, largest, reference, source, missed)
 
+    @staticmethod
+    def at_least(
+        quantity: str, found: float, least: float, tolerance: float, reference: Reference, source: str, missed: str = ""
+    ) -> Claim:
+        """`found` is above `least`, or below it by no more than `tolerance`."""
+        return Claim(quantity, found, least, tolerance, reference, source, missed, one_sided=True)
+
     @property
     def error(self) -> float:
-        """|found − wanted|."""
-        return abs(self.found - self.wanted)
+        """|found − wanted|; 0 where more than `wanted` is no error."""
+        return 0.0 if self.one_sided and self.found >= self.wanted else abs(self.found - self.wanted)
 
     @property
     def holds(self) -> bool:
@@ -79,8 +88,9 @@ class Claim:
 
     def __str__(self) -> str:
         reason = f" ({self.missed})" if self.missed else ""
+        least = "at least " if self.one_sided else ""
         return (
-            f"{self.quantity}: found {self.found:.6g}, wanted {self.wanted:.6g} ± {self.tolerance:.3g} "
+            f"{self.quantity}: found {self.found:.6g}, wanted {least}{self.wanted:.6g} ± {self.tolerance:.3g} "
             f"({self.reference.value}: {self.source}), error {self.error:.3g}: {self.verdict}{reason}"
         )
 

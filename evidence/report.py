@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -28,7 +28,7 @@ def header(title: str, command: str) -> str:
     )
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> str:
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], right: Container[int] = ()) -> str:
     """A Markdown table. right: the columns of numbers. Raises ValueError for a row of another length."""
     for row in rows:
         if len(row) != len(head):

@@ -5,5 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from evidence.claims import Rung
+from evidence.ladder import hertz_line
 
-RUNGS: tuple[Callable[[], Rung], ...] = ()
+RUNGS: tuple[Callable[[], Rung], ...] = (hertz_line.measure,)

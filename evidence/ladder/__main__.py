@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import typer
@@ -70,7 +71,7 @@ def _section(rung: Rung) -> str:
     missed = [f"Missed: {claim.quantity}. {claim.missed}" for claim in rung.claims if claim.missed]
     parts = (
         f"## {rung.title}",
-        rung.problem.strip(),
+        textwrap.fill(" ".join(rung.problem.split()), 120),
         table(head, rows, right=range(1, 5)),
         *missed,
         f"![{rung.title}]({PICTURES}/{rung.name}.png)",

@@ -42,7 +42,9 @@ class HertzFigure:
         axes.fill_between(x, exact, color="#e3e6ea")
         axes.plot(x, exact, color=FAINT, lw=1.0, label="Hertz")
         shown = np.abs(self.place) < FARTHEST
-        axes.plot(self.place[shown], self.pressure[shown], ".", color=WHEEL, ms=dot_size(shown.sum()) - 1, label="found")
+        axes.plot(
+            self.place[shown], self.pressure[shown], ".", color=WHEEL, ms=dot_size(shown.sum()) - 1, label="found"
+        )
         axes.set(xlabel=self.across, ylabel="contact pressure / $p_0$", xlim=(first, FARTHEST), ylim=(0.0, None))
         axes.legend(loc="upper right", markerscale=2)
 

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from evidence.claims import Rung
-from evidence.ladder import hertz_line
+from evidence.ladder import hertz_ellipse, hertz_line, hertz_point
 
-RUNGS: tuple[Callable[[], Rung], ...] = (hertz_line.measure,)
+RUNGS: tuple[Callable[[], Rung], ...] = (
+    hertz_line.measure,
+    hertz_point.measure,
+    hertz_ellipse.measure,
+)

@@ -59,5 +59,5 @@ class HertzFigure:
         for marker, body_name in zip(names, ("found in the punch", "found in the block")):
             axes.plot([], [], marker, color=INK, mfc="none", ms=4, label=body_name)
         axes.axhline(0.0, color=FAINT, lw=0.8)
-        axes.set(xlabel="stress / $p_0$", ylabel="depth / half-width", xlim=(0.0, 0.7), ylim=(DEEPEST, 0.0))
+        axes.set(xlabel="stress / $p_0$", ylabel="depth / half-width", xlim=(0.0, 0.85), ylim=(DEEPEST, 0.0))
         axes.legend(loc="lower right")

@@ -37,6 +37,14 @@ def test_bound():
     assert not Claim.bound("profile", 0.02, 0.019, Reference.OVERKILL, "h = a/64").holds
 
 
+def test_at_least():
+    """An order of 1.9 and one of 3 where at least 2 ± 0.15 is wanted, and one of 1.8."""
+    orders = [Claim.at_least("order", found, 2.0, 0.15, Reference.ANALYTICAL, "theory") for found in (1.9, 3.0, 1.8)]
+    assert [order.holds for order in orders] == [True, True, False]
+    assert orders[1].error == 0.0
+    assert not Claim.at_least("order", float("nan"), 2.0, 0.15, Reference.ANALYTICAL, "theory").holds
+
+
 def test_line_says_what_counts():
     """The printed line has the error, the tolerance, the kind of reference and its source."""
     line = str(claim(201.0))

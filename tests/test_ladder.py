@@ -11,7 +11,8 @@ from functools import cache
 
 import pytest
 
-from evidence.claims import Reference, Rung
+from evidence.claims import Claim, Reference, Rung
+from evidence.ladder.__main__ import write_page
 from evidence.ladder.rungs import RUNGS
 
 NAMES = [measure.__module__.rsplit(".", 1)[-1] for measure in RUNGS]
@@ -46,3 +47,19 @@ def test_names_are_unique():
     """Two rungs of one name would write the same picture."""
     names = [rung(index).name for index in range(len(RUNGS))]
     assert len(set(names)) == len(names)
+
+
+def test_page(tmp_path):
+    """A rung with a claim that holds and one that is known to be missed: both stand on the page, with the reason, the
+    summary counts them, and the picture is written."""
+    claims = (
+        Claim("p0 [MPa]", 99.0, 100.0, 2.0, Reference.ANALYTICAL, "Hertz"),
+        Claim("δ [mm]", 0.9, 1.0, 0.01, Reference.EXTERNAL, "NAFEMS", "Small strain."),
+    )
+    shown = Rung("two_balls", "Two balls: pressed", "They touch.", claims, lambda figure: figure.subplots(), "A circle")
+    text = write_page([shown], tmp_path).read_text(encoding="utf-8")
+    assert "| [Two balls: pressed](#two-balls-pressed) | 2 | 1 | 1 | 1 | 1 | 0 | 0 |" in text
+    assert "| p0 [MPa] | 99 | 100 | 2 | 1 | holds | analytical: Hertz |" in text
+    assert "| **missed** | external: NAFEMS |" in text
+    assert "Missed: Small strain." in text
+    assert 1_000 < (tmp_path / "pictures" / "verification" / "two_balls.png").stat().st_size < 150_000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 
 import typer
@@ -26,17 +27,22 @@ def main(out: Path = Path("docs")) -> None:
     """Writes OUT/verification.md. Exits with 1 where a claim is not as expected."""
     compat.silence_logs()
     rungs = [measure() for measure in RUNGS]
-    with styled():
-        for rung in rungs:
-            _draw(rung, out / PICTURES / f"{rung.name}.png")
+    page = write_page(rungs, out)
     claims = [claim for rung in rungs for claim in rung.claims]
-    head = header("Verification", "make verification")
-    page = write(out / "verification.md", [head, INTRODUCTION, _summary(rungs), *(_section(rung) for rung in rungs)])
     wrong = [str(claim) for claim in claims if not claim.as_expected]
     typer.echo(f"{page}: {len(claims)} claims, {len(wrong)} not as expected")
     if wrong:
         typer.echo("\n".join(wrong), err=True)
         raise typer.Exit(1)
+
+
+def write_page(rungs: Sequence[Rung], out: Path) -> Path:
+    """out/verification.md and a picture per rung in out/pictures/verification. Gives the page's path."""
+    with styled():
+        for rung in rungs:
+            _draw(rung, out / PICTURES / f"{rung.name}.png")
+    head = header("Verification", "make verification")
+    return write(out / "verification.md", [head, INTRODUCTION, _summary(rungs), *(_section(rung) for rung in rungs)])
 
 
 def _draw(rung: Rung, path: Path) -> None:
@@ -45,7 +51,7 @@ def _draw(rung: Rung, path: Path) -> None:
     picture(figure, path)
 
 
-def _summary(rungs: list[Rung]) -> str:
+def _summary(rungs: Sequence[Rung]) -> str:
     """A row per rung, with a link to it, and the sums."""
     rows = [[f"[{rung.title}](#{_anchor(rung.title)})", *_counts(rung.claims)] for rung in rungs]
     rows.append(["all", *_counts(tuple(claim for rung in rungs for claim in rung.claims))])
@@ -68,12 +74,12 @@ def _anchor(title: str) -> str:
 def _section(rung: Rung) -> str:
     head = ("quantity", "found", "wanted", "tolerance", "error", "", "held against")
     rows = [_row(claim) for claim in rung.claims]
-    missed = [f"Missed: {claim.quantity}. {claim.missed}" for claim in rung.claims if claim.missed]
+    missed = [f"Missed: {reason}" for reason in dict.fromkeys(claim.missed for claim in rung.claims) if reason]
     parts = (
         f"## {rung.title}",
         textwrap.fill(" ".join(rung.problem.split()), 120),
         table(head, rows, right=range(1, 5)),
-        *missed,
+        *(textwrap.fill(reason, 120) for reason in missed),
         f"![{rung.title}]({PICTURES}/{rung.name}.png)",
     )
     return "\n\n".join(parts)

@@ -56,7 +56,7 @@ class HertzFigure:
                 near = body.depth < DEEPEST * self.width
                 value = measure(body.stress[near]) / self.peak
                 axes.plot(value, body.depth[near] / self.width, marker, color=colour, ms=4, mfc="none")
-        for marker, body_name in zip(names, ("found in the punch", "found in the block")):
+        for marker, body_name in zip(names, ("found, upper body", "found, block")):
             axes.plot([], [], marker, color=INK, mfc="none", ms=4, label=body_name)
         axes.axhline(0.0, color=FAINT, lw=0.8)
         axes.set(xlabel="stress / $p_0$", ylabel="depth / half-width", xlim=(0.0, 0.85), ylim=(DEEPEST, 0.0))

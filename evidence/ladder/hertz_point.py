@@ -31,6 +31,7 @@ def measure() -> Rung:
         ring_block(SIDE, SIDE, CONTACT, size / 1.25, fine, growth=GROWTH, fine_depth=depth),
         Ellipse(float(exact.radius), float(exact.radius), float(exact.peak_pressure), STEEL),
         5 * CONTACT,
+        "ball",
     ).solved()
     return Rung(
         "hertz_point",

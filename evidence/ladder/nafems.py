@@ -80,7 +80,7 @@ def _pressure_claims(found: Found) -> list[Claim]:
 
 def _mesh_claim(found: Found) -> Claim:
     exact = pressed("block", 0.0, OVERKILL).sunk
-    quantity = "displacement under the load, no friction [mm]"
+    quantity = "displacement under the load, no friction, normals of the block [mm]"
     return Claim.relative(
         quantity, found["block", 0.0].sunk, exact, 0.001, Reference.OVERKILL, f"h = a/{OVERKILL}, order 2"
     )
@@ -90,17 +90,17 @@ def _published_claims(found: Found) -> list[Claim]:
     """The displacement and what friction takes from it."""
     sunk = [
         Claim.relative(
-            f"displacement under the load, μ = {μ:g} [mm]",
+            f"displacement under the load, μ = {μ:g}, normals of the block [mm]",
             found["block", μ].sunk, wanted, 0.003, Reference.EXTERNAL, SOURCE, SMALL_STRAIN,
         )
         for μ, wanted in PUBLISHED.items()
     ]  # fmt: skip
-    wanted = 100 * (1.0 - PUBLISHED[FRICTION] / PUBLISHED[0.0])
+    wanted = 100 * (1.0 - PUBLISHED[FRICTION] / PUBLISHED[0.0])  # within half of it: no friction at all must fail
     held = [
         Claim(
             f"friction holds the block back, normals of the {first} [%]",
             100 * (1.0 - found[first, FRICTION].sunk / found[first, 0.0].sunk),
-            wanted, 0.2, Reference.EXTERNAL, SOURCE,
+            wanted, 0.5 * wanted, Reference.EXTERNAL, SOURCE,
         )
         for first in NORMALS
     ]  # fmt: skip

@@ -174,7 +174,7 @@ def draw(figure: Figure, errors: dict[int, Floats]) -> None:
     panels = figure.subplots(1, 4, sharex=True)
     for axes, name, column in zip(panels, QUANTITIES, range(4)):
         for (order, values), colour, marker in zip(errors.items(), (PINION, WHEEL), "os"):
-            axes.loglog(h, 100 * values[:, column], marker, color=colour, ms=5, label=f"order {order}")
+            axes.loglog(h, 100 * values[:, column], marker, color=colour, ms=5, label=f"cells of order {order}")
             expected = EXPECTED[order][column]
             line = 100 * values[-1, column] * (h / h[-1]) ** expected
             axes.loglog(h, line, "-", color=colour, lw=1.0, label=f"slope {expected:g}")

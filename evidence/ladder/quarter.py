@@ -15,18 +15,17 @@ from meshes.data import Floats, MeshData
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.problem import Contact, Problem, Solution, solve
 
-NAMES = ("punch", "block")
-
 
 @dataclass(frozen=True)
 class Quarter:
     """punch, block: meshes of the quarter x, y > 0 with the facet groups of `meshes.ellipse` or `meshes.rings`. exact:
-    the contact that Hertz expects. depth: [mm] at which the approach is taken."""
+    the contact that Hertz expects. depth: [mm] at which the approach is taken. name: of the punch."""
 
     punch: MeshData
     block: MeshData
     exact: Ellipse
     depth: float
+    name: str = "punch"
 
     @property
     def load(self) -> float:
@@ -38,7 +37,7 @@ class Quarter:
         symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
         down = Rigid("top", (Freedom("z", load=-self.load / 4),))
         bodies = (
-            Body(self._near(self.punch, "arc"), self.exact.material, symmetry, rigid=down, name="punch"),
+            Body(self._near(self.punch, "arc"), self.exact.material, symmetry, rigid=down, name=self.name),
             Body(self._near(self.block, "top"), self.exact.material, (*symmetry, Fixed("bottom")), name="block"),
         )
         return Problem(bodies, (Contact((0, "near"), (1, "near"), reach=0.1 * self.exact.b),))
@@ -121,7 +120,8 @@ class Pressed:
         exact = self.quarter.exact
         source = "Johnson 1985, Eq. 3.19 integrated"
         known = SubsurfaceHertz(exact.b, exact.peak, exact.largest_shear(), exact.largest_mises(), source)
-        return tuple(c for name, body in zip(NAMES, self.stresses) for c in subsurface_claims(body, known, name))
+        names = (self.quarter.name, "block")
+        return tuple(c for name, body in zip(names, self.stresses) for c in subsurface_claims(body, known, name))
 
     def figure(self, across: str) -> HertzFigure:
         """Pressure over the ellipse's radius, stresses over the depth."""

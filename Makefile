@@ -1,7 +1,8 @@
 # make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
 # make test   sets up what is missing, runs the tests
+# make verification  solves the verification problems again, writes docs/verification.md and its figures
 # make setup  only that;  make lint, make docker, make clean as they say
-.PHONY: demo test setup lint docker clean
+.PHONY: demo test verification setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -9,7 +10,7 @@ release := $(shell . /etc/os-release; echo $${VERSION_ID:-unstable})
 ready := .venv/.ready-debian-$(release)
 
 # One BLAS thread a process: two ranks with two threads each on two cores are slower than two with one.
-test: export OMP_NUM_THREADS ?= 1
+test verification: export OMP_NUM_THREADS ?= 1
 # Tests start mpirun: as root in a container, with more ranks than a small machine has cores, on this machine only.
 export OMPI_ALLOW_RUN_AS_ROOT ?= 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM ?= 1
@@ -23,6 +24,9 @@ demo: $(ready)
 
 test: $(ready)
 	.venv/bin/python -m pytest $(PYTEST_ARGS)
+
+verification: $(ready)
+	.venv/bin/python -m evidence.ladder --out docs
 
 setup: $(ready)
 

@@ -8,9 +8,9 @@ disc. On the finest rings p0 is 0.01 % away from it with the block's normals, an
 
 The pressure rises like a square root from the edge of contact, and what a mesh misses of it, it misses in the cells
 that the edge cuts. So the cells lie in rings, one of which ends at Hertz' radius. Where the edge is not known, as on a
-grid of squares, the error is about five times as large: λ = γ[jump − gap]_+ carries the error of the jump in a cut cell
-γ times, and the symmetric method needs γ > 1.2 C. The skew one (θ = −1) needs no least γ, and with 0.3 C that error
-is a third; the table shows it.
+grid of squares, the error is five to seven times as large: λ = γ[jump − gap]_+ carries the error of the jump in a cut
+cell γ times, and the symmetric method needs γ > 1.2 C. The skew one (θ = −1) needs no least γ, and with 0.3 C that
+error is a third; the table shows it.
 """
 
 from __future__ import annotations

@@ -111,22 +111,29 @@ def sphere_quarter(
     """Quarter of a square block with a spherical underside that touches the origin from above.
 
     0 <= x, y <= side, from the sphere of `radius` about (0, 0, radius) up to the flat top at z = height [mm]. Facet
-    groups: arc (the sphere), top, symmetry_x, symmetry_y, right, back. Raises MeshError unless the sphere stays below
-    0.7 height over the block.
+    groups: arc (the sphere), top, symmetry_x, symmetry_y, right, back. Raises MeshError unless the sphere rises less
+    than 0.7 height over the block.
     """
-    if 2 * side**2 >= radius**2 or radius - np.sqrt(radius**2 - 2 * side**2) > 0.7 * height:
-        raise MeshError(
-            f"sphere quarter: wanted a sphere that rises less than 0.7 times the height over the block, found radius "
-            f"{radius}, side {side}, height {height}; take a smaller side or a larger height"
-        )
     line = graded_ends(side, size, fine, growth)
     z = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
     axes = {"symmetry_x": 0, "right": 0, "symmetry_y": 1, "back": 1, "arc": 2, "top": 2}
     flat = _tensor_block((line, line, z), order, shape, axes)
-    x, y, depth = flat.points.T
-    sag = radius - np.sqrt(radius**2 - x**2 - y**2)
-    points = np.column_stack([x, y, sag + depth * (1 - sag / height)])
+    points = over_sphere(flat.points, radius, height)
     return MeshData(points, flat.shape, order, flat.cells, flat.facets, flat.volumes)
+
+
+def over_sphere(points: Floats, radius: float, height: float) -> Floats:
+    """Points (n, 3) of an upright block, 0 <= z <= height [mm], lifted: its underside comes to lie on the sphere of
+    `radius` about (0, 0, radius), its top stays. Raises MeshError unless the sphere rises less than 0.7 height."""
+    x, y, z = points.T
+    reach = float(np.hypot(x, y).max())
+    if reach >= radius or radius - np.sqrt(radius**2 - reach**2) > 0.7 * height:
+        raise MeshError(
+            f"block over a sphere: wanted a sphere that rises less than 0.7 times the height, found radius {radius}, "
+            f"height {height}, a block that reaches {reach:g} mm from the axis; take a smaller side or a larger height"
+        )
+    sag = radius - np.sqrt(radius**2 - x**2 - y**2)
+    return np.column_stack([x, y, sag + z * (1 - sag / height)])
 
 
 def cylinder_2d(

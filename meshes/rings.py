@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshes.blocks import over_sphere
 from meshes.data import Floats, Ints, MeshData, MeshError
 from meshes.lattice import (
     boundary_facets,
@@ -36,9 +37,11 @@ def ring_block(
 ) -> MeshData:
     """Quarter of an upright cylinder of radius `side`, -height <= z <= 0 [mm], refined at the centre of its top.
 
-    Cells of at most `size` up to the radius `fine` and down to `fine_depth` (default fine/2), each next one `growth`
-    times larger; a ring of cells ends at the radius `ring`. Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side,
-    bottom, top. Hexahedra. Raises MeshError unless 0 < ring < fine < side.
+    A ring of cells ends at the radius `ring`, and up to there the cells are at most `size` wide. Outside it their
+    number along the circle stays, so that they widen with the radius; outwards they are at most `size` long up to the
+    radius `fine`, and as deep down to `fine_depth` (default fine/2), each next one at most `growth` times more. Facet
+    groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top. Hexahedra. Raises MeshError unless
+    0 < ring < fine < side.
     """
     depth = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     points, cells = _swept(side, ring, size, fine, order, growth, depth)
@@ -61,17 +64,10 @@ def ring_sphere(
     Its flat top is at z = height [mm]. Sizes as for `ring_block`. Facet groups: arc (the sphere), top, symmetry_x,
     symmetry_y, side. Raises MeshError unless 0 < ring < fine < side and the sphere rises less than 0.7 height.
     """
-    if side >= radius or radius - np.sqrt(radius**2 - side**2) > 0.7 * height:
-        raise MeshError(
-            f"ring sphere: wanted a sphere that rises less than 0.7 times the height over the block, found radius "
-            f"{radius}, side {side}, height {height}; take a smaller side or a larger height"
-        )
     line = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
     points, cells = _swept(side, ring, size, fine, order, growth, line)
-    depth = points[:, 2].copy()
-    sag = radius - np.sqrt(radius**2 - points[:, 0] ** 2 - points[:, 1] ** 2)
-    points[:, 2] = sag + depth * (1 - sag / height)
-    return _finished(points, cells, order, {"arc": depth, "top": depth - height}, side)
+    ends = {"arc": points[:, 2], "top": points[:, 2] - height}
+    return _finished(over_sphere(points, radius, height), cells, order, ends, side)
 
 
 def _swept(

@@ -19,6 +19,7 @@ import ufl
 from meshes.data import Floats, Ints, MeshData
 from solver import compat
 from solver.material import STEEL, Material
+from solver.memory import large_arrays_apart
 from solver.traction import rigid_modes
 
 DIRECTIONS = {2: ("x", "y", "rz"), 3: ("x", "y", "z", "rx", "ry", "rz")}
@@ -134,6 +135,7 @@ def assemble(body: Body) -> Assembled:
     A body that its supports let float is held at as many degrees of freedom as it has rigid motions left, and these
     motions become unknowns without load: the reactions of such pins vanish in equilibrium.
     """
+    large_arrays_apart()  # here, because whatever is large follows from a stiffness
     d = body.mesh.dimension
     points = body.mesh.points[:, :d]
     stiffness, load = _stiffness_and_load(body)

@@ -2,8 +2,8 @@
 
 MUMPS alone orders a Schur complement by minimum degree (Debian builds it without METIS, and PETSc passes no ordering
 on to its Cholesky), and holds three copies of the result. Here the domain is first cut by hand a few times and the
-separators are eliminated by dense LAPACK. Measured on a box of 216,000 rows with 13,509 retained ones, two busy cores:
-MUMPS alone 240 s and 8.7 GB, this 107 s and 6.7 GB.
+separators are eliminated by dense LAPACK. For a box of 121,000 rows with 5,043 retained ones MUMPS alone needs 50 s
+(CPU time, one thread) and brings the process to 3.1 GB, this 22 s and 1.6 GB, 1.3 GB being there from assembling.
 
 Source: George 1973, doi 10.1137/0710032 (nested dissection); separators are level sets of a breadth-first search
 that starts from a whole end of the domain (George and Liu 1978, doi 10.1137/0715069, there from one vertex).
@@ -18,10 +18,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.linalg.blas import dsyrk
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 from solver import mumps
-from solver.memory import large_arrays_apart, return_free_memory
+from solver.memory import return_free_memory
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,11 +29,21 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class DissectionSettings:
-    """Parts of at most `leaf` rows go to MUMPS; a cut leaves at least the fraction `balance` on either side."""
+    """Parts of at most `leaf` rows go to MUMPS; a cut leaves at least the fraction `balance` below and above it.
+
+    Raises ValueError unless leaf >= 1 and 0 < balance <= 0.5.
+    """
 
     leaf: int = 12000
     balance: float = 0.3
     factor: mumps.FactorSettings = mumps.STANDARD
+
+    def __post_init__(self) -> None:
+        if self.leaf < 1 or not 0 < self.balance <= 0.5:
+            raise ValueError(
+                f"dissection: wanted a leaf of at least one row and a balance above 0 and up to 0.5, found {self.leaf} "
+                f"and {self.balance}; the defaults are {DissectionSettings.leaf} and {DissectionSettings.balance}"
+            )
 
 
 STANDARD = DissectionSettings()
@@ -50,12 +60,11 @@ def schur_complement(
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
-    large_arrays_apart()
     csr = matrix.tocsr()
     first = csr.shape[0] - size
     inner, outer = np.arange(first), np.arange(first, csr.shape[0])
-    cuts = csr[:first, :first] if graph is None else graph.tocsr()
-    result = _update(_Problem(csr, cuts, settings), inner, outer)
+    elimination = _Elimination(csr, None if graph is None else graph.tocsr(), settings)
+    result = _update(elimination, inner, outer)
     corner = csr[first:, first:].tocoo()
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
@@ -65,26 +74,28 @@ def schur_complement(
 
 
 @dataclass(frozen=True)
-class _Problem:
-    """What every part of the recursion reads: the matrix, the graph of its rows to eliminate, the settings."""
+class _Elimination:
+    """What every part of the recursion reads: the matrix, the graph of its rows to eliminate (None: the matrix's own),
+    the settings."""
 
     matrix: sp.csr_matrix
-    graph: sp.csr_matrix
+    graph: sp.csr_matrix | None
     settings: DissectionSettings
 
 
-def _update(problem: _Problem, inner: Ints, outer: Ints) -> Floats:
+def _update(elimination: _Elimination, inner: Ints, outer: Ints) -> Floats:
     """−A_oi A_ii⁻¹ A_io, upper triangle (|outer| × |outer|, C order), of `inner` and `outer` rows of A."""
-    rows = problem.matrix[inner]
+    rows = elimination.matrix[inner]
     within = rows[:, inner]
-    if len(inner) <= problem.settings.leaf:
-        return _leaf(within, rows[:, outer], problem.settings)
-    separator, parts = bisect(within, problem.graph[inner][:, inner], problem.settings.balance)
-    front = _Front.of(problem.matrix, inner[separator], outer)
-    del rows, within
+    if len(inner) <= elimination.settings.leaf:
+        return _leaf(within, rows[:, outer], elimination.settings)
+    graph = within if elimination.graph is None else elimination.graph[inner][:, inner]
+    separator, parts = bisect(within, graph, elimination.settings)
+    del rows, within, graph
+    front = _Front.of(elimination.matrix, inner[separator], outer)
     for part in filter(len, parts):
         return_free_memory()
-        front.add(problem, inner[part])
+        front.add(elimination, inner[part])
     return_free_memory()
     return front.eliminated()
 
@@ -117,12 +128,12 @@ class _Front:
         blocks = rows[:, separator].toarray(), rows[:, outer].toarray(), np.zeros((len(outer), len(outer)))
         return _Front(np.concatenate([separator, outer]), *blocks)
 
-    def add(self, problem: _Problem, part: Ints, chunk: int = 512) -> None:
+    def add(self, elimination: _Elimination, part: Ints, chunk: int = 512) -> None:
         """Eliminate the rows `part` and add their update at the places of the variables that they touch."""
-        touched = np.zeros(problem.matrix.shape[0], dtype=bool)
-        touched[problem.matrix[part].indices] = True
+        touched = np.zeros(elimination.matrix.shape[0], dtype=bool)
+        touched[elimination.matrix[part].indices] = True
         places = np.flatnonzero(touched[self.variables])
-        update = _update(problem, part, self.variables[places])
+        update = _update(elimination, part, self.variables[places])
         count = len(self.ss)
         split = np.searchsorted(places, count)
         inside, outside = places[:split], places[split:] - count
@@ -148,29 +159,54 @@ class _Front:
         return self.oo
 
 
-def bisect(pattern: sp.csr_matrix, graph: sp.csr_matrix, balance: float = 0.3) -> tuple[Ints, list[Ints]]:
-    """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n).
+def bisect(
+    pattern: sp.csr_matrix, graph: sp.csr_matrix, settings: DissectionSettings = STANDARD
+) -> tuple[Ints, list[Ints]]:
+    """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n), n > 1.
 
     The cut follows the level sets of `graph` (n × n), which connects no more than `pattern` does. The separator is
-    empty where the graph is not connected and `pattern` does not connect its pieces either.
+    empty where a cut falls between two pieces of the graph that `pattern` does not connect either.
     """
-    ends = _levels(graph, np.array([0]))
-    levels = _levels(graph, np.flatnonzero(ends == ends.max()))
-    levels[levels < 0] = levels.max() + 1  # another piece of the graph: as if behind all levels
+    levels = _levels_piece_by_piece(graph)
     # below the cut, only what touches the other side has to be in the separator
     reach = np.maximum.reduceat(levels[pattern.indices], pattern.indptr[:-1])
     count = levels.max() + 1
     crossing = np.cumsum(np.bincount(levels, minlength=count) - np.bincount(np.maximum(reach, levels), minlength=count))
     below = np.cumsum(np.bincount(levels)) / len(levels)
-    allowed = np.flatnonzero((below >= balance) & (below <= 1 - balance))
+    allowed = np.flatnonzero((below >= settings.balance) & (below <= 1 - settings.balance))
     if not len(allowed):
-        allowed = np.array([np.argmin(np.abs(below[:-1] - 0.5))]) if count > 1 else np.array([0])
-    level = allowed[np.argmin(crossing[allowed] * (1 + np.abs(below[allowed] - 0.5)))]
+        allowed = np.array([np.argmin(np.abs(below[:-1] - 0.5))])
+    off_centre = np.abs(below[allowed] - 0.5)
+    level = allowed[np.lexsort((off_centre, crossing[allowed] * (1 + off_centre)))[0]]
     separator = (levels <= level) & (reach > level)
     return np.flatnonzero(separator), [
         np.flatnonzero((levels <= level) & ~separator),
         np.flatnonzero(levels > level),
     ]
+
+
+def _levels_piece_by_piece(graph: sp.csr_matrix) -> Ints:
+    """Level sets (n,) of every connected piece of a symmetric `graph`, from one of its ends to the other.
+
+    The levels of the pieces follow one another, those of the largest piece first: so some cut between two pieces is
+    balanced, unless the largest one alone is too large for that.
+    """
+    # strongly: the same in a symmetric graph, and takes no copy of it
+    count, piece = connected_components(graph, connection="strong")
+    ends = _levels(graph, np.unique(piece, return_index=True)[1])
+    levels = _levels(graph, np.flatnonzero(ends == _largest(ends, piece, count)[piece]))
+    order = np.argsort(-np.bincount(piece), kind="stable")
+    depth = 1 + _largest(levels, piece, count)[order]
+    start = np.empty(count, dtype=np.int64)
+    start[order] = np.cumsum(depth) - depth
+    return levels + start[piece]
+
+
+def _largest(values: Ints, piece: Ints, count: int) -> Ints:
+    """Largest value (count,) of each piece."""
+    largest = np.full(count, -1)
+    np.maximum.at(largest, piece, values)
+    return largest
 
 
 def _levels(pattern: sp.csr_matrix, start: Ints) -> Ints:

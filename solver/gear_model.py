@@ -15,7 +15,6 @@ from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
-from solver.memory import large_arrays_apart
 from solver.parallel import shared, together
 from solver.scene import Scene
 from solver.sectors import gear_mesh
@@ -74,7 +73,6 @@ class Preparation:
 def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     """Meshes and condenses both gears of a scene. Raises MeshError, NotPositiveDefinite, OutOfMemory."""
     begin = time.perf_counter()
-    large_arrays_apart()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [index for index in (0, 1) if index % comm.size == comm.rank]
     meshes = together(comm, lambda: {index: gear_mesh(scene, index) for index in own})

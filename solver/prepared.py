@@ -53,8 +53,6 @@ class PreparedBody:
         """The rigid motions at the functionals, (m, r): they carry no stress, so e = u."""
         shapes = self.assembled.motions.shapes
         nodes = [self.surfaces[group].nodes for group in self.offsets]
-        if not nodes:
-            return np.zeros((0, shapes.shape[2]))
         return np.concatenate([shapes[n].reshape(len(n) * shapes.shape[1], shapes.shape[2]) for n in nodes])
 
     def displacement(self, functional_forces: Floats, load: float, motion: Floats) -> Floats:

@@ -37,7 +37,8 @@ class Nitsche:
 
 @dataclass(frozen=True)
 class Problem:
-    """Bodies and the contacts between them. Raises ValueError for a body or a group that does not exist."""
+    """Bodies and the contacts between them. Raises ValueError for a body or a group that does not exist, and for a body
+    in no contact: it feels nothing of the others."""
 
     bodies: tuple[Body, ...]
     contacts: tuple[Contact, ...]
@@ -51,6 +52,13 @@ class Problem:
                 if group not in self.bodies[index].mesh.facets:
                     known = ", ".join(sorted(self.bodies[index].mesh.facets))
                     raise ValueError(f"contact: wanted the facet group {group!r}, found {known}; name one of these")
+        touched = {index for contact in self.contacts for index, _ in (contact.first, contact.second)}
+        alone = [f"body {index} ({body.name!r})" for index, body in enumerate(self.bodies) if index not in touched]
+        if alone or not self.contacts:
+            raise ValueError(
+                f"problem: wanted at least one contact, and every body in one, found {len(self.contacts)} and none for "
+                f"{', '.join(alone) or 'no body'}; add a contact, or leave the body out"
+            )
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse as sp
 from q1_elasticity import dofs_of, grid_cells, stiffness
 
+from solver import dissection
 from solver.condense import (
     Factor,
     NotPositiveDefinite,
@@ -74,6 +75,34 @@ def test_dissection_of_separate_bodies() -> None:
     assert not found[:size, size:].any()
 
 
+def test_dissection_of_many_pieces() -> None:
+    """600 chains of three rows, as large as a leaf: the recursion halves them (one piece a level would be too deep for
+    Python). C of three chains' ends is that of one end, (2 − 1/(2 − 1/2))⁻¹ = 3/4, on the diagonal."""
+    chain = sp.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(3, 3))
+    many = sp.block_diag([chain] * 600, format="csr")
+    seen = sp.csr_matrix((np.ones(3), ([0, 1, 2], [0, 900, 1799])), shape=(3, 1800))
+    found = compliance(many, seen, settings=DissectionSettings(leaf=3))
+    assert np.abs(found - 0.75 * np.eye(3)).max() < 1e-14
+
+
+@pytest.mark.parametrize("sizes", [(9, 2, 3, 2), (2, 3, 9, 2), (4, 4, 4)])
+def test_pieces_are_halved(sizes: tuple[int, ...]) -> None:
+    """A graph in pieces, the largest no more than 70 % of it, is cut between pieces, wherever in the numbering they
+    are: no separator, and at least 30 % of the rows on either side."""
+    pieces = sp.block_diag([sp.diags([1.0, 1.0, 1.0], [-1, 0, 1], shape=(n, n)) for n in sizes], format="csr")
+    separator, parts = bisect(pieces, pieces)
+    assert len(separator) == 0
+    assert min(map(len, parts)) >= 0.3 * sum(sizes)
+    assert pieces[parts[0]][:, parts[1]].nnz == 0
+
+
+@pytest.mark.parametrize("settings", [{"balance": 0.0}, {"balance": 0.51}, {"balance": -0.1}, {"leaf": 0}])
+def test_impossible_cuts_are_refused(settings: dict[str, float]) -> None:
+    """With all rows on one side of a cut there would be no end; more than half on both sides cannot be."""
+    with pytest.raises(ValueError, match=r"balance above 0 and up to 0\.5, found"):
+        DissectionSettings(**settings)
+
+
 def test_separator_separates() -> None:
     """No entry of K joins the two parts, and a slab of 12 cells is cut across its short way (one layer of nodes)."""
     matrix, _, _ = block((12, 3, 3))
@@ -84,19 +113,52 @@ def test_separator_separates() -> None:
     assert np.array_equal(np.sort(np.concatenate([separator, left, right])), np.arange(matrix.shape[0]))
 
 
-def test_cuts_follow_the_mesh() -> None:
-    """A wide coupling along one face (as Nitsche's constant term): cuts along the mesh's graph separate the coupled
-    matrix too, and C stays the one of dense algebra."""
+def widely_coupled() -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
+    """A slab along x of 16 × 4 × 4 cells with a coupling over four cells on its top (as Nitsche's constant term), the
+    slab alone, and functionals of the top."""
     mesh, free, functionals = block((16, 4, 4))
-    mesh, face = mesh[free][:, free], functionals[:, free]
-    coupled = (mesh + 1e-3 * face.T @ face @ face.T @ face).tocsr()
-    _, (left, right) = bisect(coupled, mesh)
-    assert min(len(left), len(right)) >= 0.3 * mesh.shape[0]
-    assert coupled[left][:, right].nnz == 0
+    mesh, face = mesh[free][:, free].tocsr(), functionals[:, free]
+    return (mesh + 1e-3 * face.T @ face @ face.T @ face).tocsr(), mesh, face
+
+
+def test_cuts_follow_the_mesh() -> None:
+    """Cut along the mesh's graph, the slab falls apart at a plane of nodes, with the separator all on one side of it,
+    and no entry of the coupled matrix joins the two parts. Cut along the coupled matrix itself there is no such plane,
+    because that runs ahead along its top."""
+    coupled, mesh, _ = widely_coupled()
+    x = np.repeat(np.arange(17), 5 * 4 * 3)
+
+    def is_plane(graph: sp.csr_matrix) -> bool:
+        separator, (right, left) = bisect(coupled, graph)
+        assert min(len(left), len(right)) >= 0.3 * mesh.shape[0]
+        assert coupled[left][:, right].nnz == 0
+        return bool(x[left].max() < min(x[separator].min(), x[right].min()))
+
+    assert is_plane(mesh)
+    assert not is_plane(coupled)
+
+
+def test_every_cut_follows_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All cuts of an elimination get the mesh's graph, in which a row meets those of 8 cells, 27 nodes or 81 rows; in
+    the coupled matrix it meets more. C stays the one of dense algebra."""
+    coupled, mesh, face = widely_coupled()
+    cuts: list[tuple[int, int]] = []
+
+    def widest(matrix: sp.csr_matrix) -> int:
+        return int(np.diff(matrix.indptr).max())
+
+    def recorded(pattern: sp.csr_matrix, graph: sp.csr_matrix, settings: DissectionSettings) -> object:
+        cuts.append((widest(pattern), widest(graph)))
+        return bisect(pattern, graph, settings)
+
+    monkeypatch.setattr(dissection, "bisect", recorded)
     found = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
     p = face.toarray()
     exact = p @ np.linalg.solve(coupled.toarray(), p.T)
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
+    assert len(cuts) > 2
+    assert min(pattern for pattern, _ in cuts) > 81
+    assert max(graph for _, graph in cuts) <= 81
 
 
 def test_unsymmetric_functionals() -> None:

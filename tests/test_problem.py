@@ -138,6 +138,9 @@ def _centre(solution: Solution, body: int) -> float:
     [
         (lambda p: Problem(p.bodies, (Contact((0, "arc"), (2, "top")),)), "below 2"),
         (lambda p: Problem(p.bodies, (Contact((0, "ark"), (1, "top")),)), "ark"),
+        (lambda p: Problem((*p.bodies, p.bodies[1]), p.contacts), r"found 1 and none for body 2 \('body'\); add"),
+        (lambda p: Problem(p.bodies, ()), "found 0 and none for body 0"),
+        (lambda p: Problem((), ()), "at least one contact"),
         (lambda p: solve(p, Step(freedoms=((0, Freedom("x", load=1.0)),))), "declare"),
         (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
     ],

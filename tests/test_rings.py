@@ -44,6 +44,19 @@ def test_a_ring_of_cells_ends_at_the_ring():
     assert mesh.points[mesh.facets["top"][inside]].size > 0
 
 
+def test_cell_sizes():
+    """Edges on the top are at most `size` long up to the ring, and r/ring times that from there to the end of the fine
+    zone at r = 2 ring; there some are longer than 1.5 `size`, because the cells widen with the radius."""
+    mesh = ring_block(SIDE, HEIGHT, RING, SIZE, 2 * RING, order=1)
+    points = mesh.points[mesh.facets["top"], :2]
+    edges = np.linalg.norm(points - np.roll(points, 1, axis=1), axis=2).max(axis=1)
+    radius = np.linalg.norm(points, axis=2).max(axis=1)
+    assert edges[radius < RING + 1e-9].max() <= SIZE * (1 + 1e-9)
+    fine = radius < 2 * RING + 1e-9
+    assert (edges[fine] <= SIZE * np.maximum(1.0, radius[fine] / RING) * (1 + 1e-9)).all()
+    assert edges[fine].max() > 1.5 * SIZE
+
+
 def test_refused():
     """A ring outside the fine zone, and a sphere that rises too high, are refused with what was found."""
     with pytest.raises(MeshError, match=r"found ring 0\.7"):

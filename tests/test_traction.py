@@ -66,12 +66,18 @@ def _modified(mesh: MeshData, safety: float):
 @pytest.mark.parametrize("safety", [1.25, SAFETY])
 def test_coercive(shape, order, safety):
     """θ = 1: K − ∫F·ΓF is positive definite from 1.25 times the inverse trace constants on (averaging the traction
-    between cells costs up to 1.18 with second-order quadrilaterals and hexahedra): its Cholesky factor exists."""
-    Factor(_modified(_block(shape, order), safety))
+    between cells costs up to 1.18 with second-order quadrilaterals and hexahedra): no eigenvalue is negative or zero,
+    and its Cholesky factor solves with it."""
+    stiffness = _modified(_block(shape, order), safety)
+    eigenvalues = np.linalg.eigvalsh(stiffness.toarray())
+    assert eigenvalues[0] > 1e-12 * eigenvalues[-1]
+    load = np.ones(stiffness.shape[0])
+    assert np.abs(stiffness @ Factor(stiffness).solve(load) - load).max() < 1e-9
 
 
 def test_not_coercive_far_below_the_limit():
     """A tenth of the limit is indefinite, and the factorisation says so: the test above can fail."""
+    assert np.linalg.eigvalsh(_modified(_block("quadrilateral", 2), 0.1).toarray())[0] < 0.0
     with pytest.raises(NotPositiveDefinite):
         Factor(_modified(_block("quadrilateral", 2), 0.1))
 

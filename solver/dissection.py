@@ -29,7 +29,8 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class DissectionSettings:
-    """Parts of at most `leaf` rows go to MUMPS; a cut leaves at least the fraction `balance` below and above it.
+    """Parts of at most `leaf` rows go to MUMPS; a cut leaves at least the fraction `balance` below and above it,
+    where some level set does.
 
     Raises ValueError unless leaf >= 1 and 0 < balance <= 0.5.
     """
@@ -189,7 +190,7 @@ def _levels_piece_by_piece(graph: sp.csr_matrix) -> Ints:
     """Level sets (n,) of every connected piece of a symmetric `graph`, from one of its ends to the other.
 
     The levels of the pieces follow one another, those of the largest piece first: so some cut between two pieces is
-    balanced, unless the largest one alone is too large for that.
+    balanced (to a third at the most), unless the largest one alone is too large for that.
     """
     # strongly: the same in a symmetric graph, and takes no copy of it
     count, piece = connected_components(graph, connection="strong")

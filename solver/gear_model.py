@@ -85,7 +85,7 @@ def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
-        pair, (pinion, wheel), tuple(teeth), load, _window(scene),
+        pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
         whole_flank=not skips(scene, "window"),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
@@ -97,7 +97,7 @@ def _torque(scene: Scene) -> float:
     return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
 
 
-def _window(scene: Scene) -> float:
+def window_half_width(scene: Scene) -> float:
     """Half-width [mm of profile arc] of the window about a contact line."""
     estimate = hertz_estimate(scene)
     ξ = np.linspace(*estimate.pair.path_of_contact, 50)

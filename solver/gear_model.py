@@ -87,7 +87,7 @@ def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
-        pair, (pinion, wheel), tuple(teeth), load, _window(scene, pinion),
+        pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene, pinion),
         whole_flank=not skips(scene, "window"),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
@@ -99,9 +99,9 @@ def _torque(scene: Scene) -> float:
     return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
 
 
-def _window(scene: Scene, pinion: GearBody) -> Floats:
-    """Half-width (n,) [mm of profile arc] of the window about a contact line at each flank node of the pinion: Hertz's
-    for the mean line load, whose own curvature makes it twice as wide at the tip as at the root."""
+def window_half_width(scene: Scene, pinion: GearBody) -> Floats:
+    """Half-width (n,) [mm of profile arc] of the window about a contact line, at each flank node of the pinion: Hertz's
+    there for the mean line load."""
     estimate = hertz_estimate(scene)
     start, end = estimate.pair.path_of_contact
     ξ = pinion.roll_length - estimate.pair.pitch_point_roll_lengths[0]

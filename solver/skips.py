@@ -15,8 +15,9 @@ from solver.schema import Output, SkipName
 
 ROUND_OFF = 1e-8
 """Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
-SEARCH = 1e-5
-"""Of what starts from another guess of the free rotation: the gap is linear in up to 0.5 µm of it between searches."""
+SEARCH = 1e-4
+"""Of what starts from another guess of the free rotation. The gap is linear in up to 0.5 µm of it, which makes it wrong
+by up to 1e-7 mm (`gear_position.RELOCATE`), and flanks approach each other by some µm. Found: 2e-5 in the pressure."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""What results cost, measured."""

@@ -1,0 +1,143 @@
+"""A spur pair in 2D against the same pair in 3D at equal error in transmission error.
+
+He's pair, frictionless, 20 positions. In 3D the ends of the face are free, so the two transmission errors have
+different limits: each mesh is held against its own. The limit in 2D is that of a fine mesh; in 3D it is that times the
+ratio 3D/2D of one section with many layers, a ratio that changes by less than 3e-4 from section to section. The 3D mesh
+is the smallest of a list whose error is not larger than the 2D one's.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from meshes.sector import sector_mesh
+from solver import compat
+from solver.gear_body import condensed_gear
+from solver.gear_model import GearLoad, GearModel, window_half_width
+from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
+from solver.resolution import sector_resolutions
+from solver.scene import Scene, load_scene
+from solver.skips import contact_teeth
+
+SCENE = Path(__file__).resolve().parents[2] / "demos/he2022.toml"
+POSITIONS = 20
+
+
+@dataclass(frozen=True)
+class SpurMesh:
+    """elements: across the Hertz width 2b; layers: over the face width, 0 in 2D; fine_body: see skip coarse-body."""
+
+    elements: float
+    layers: int = 0
+    fine_body: bool = False
+
+    def scene(self) -> Scene:
+        """He's pair with this section."""
+        off = ['skip.off=["coarse-body"]'] if self.fine_body else []
+        return load_scene(SCENE, ["mesh.level=quick", f"mesh.elements_per_contact_width={self.elements}", *off])
+
+
+@dataclass(frozen=True)
+class Solved:
+    """transmission_error: mean of the pitch [µm]; processor seconds of meshing and condensing, and of 20 positions;
+    largest memory [MB]; degrees of freedom of both sectors."""
+
+    transmission_error: float
+    prepare_seconds: float
+    position_seconds: float
+    memory_MB: float
+    dofs: int
+
+    @property
+    def seconds(self) -> float:
+        """Of all."""
+        return self.prepare_seconds + self.position_seconds
+
+
+@dataclass(frozen=True)
+class SpurRow:
+    """A 2D mesh and the smallest 3D mesh of the list that is as right; None where none is. errors: relative."""
+
+    plane: SpurMesh
+    plane_solved: Solved
+    plane_error: float
+    volume: SpurMesh | None
+    volume_solved: Solved | None
+    volume_error: float
+
+    @property
+    def ratio(self) -> float:
+        """Seconds in 3D over those in 2D."""
+        return self.volume_solved.seconds / self.plane_solved.seconds if self.volume_solved else float("nan")
+
+
+PLANES = (SpurMesh(1.0), SpurMesh(1.7), SpurMesh(1.7, fine_body=True))
+VOLUMES = (
+    *(SpurMesh(elements, layers) for elements in (1.0, 1.7) for layers in (1, 2, 3, 4, 6, 8)),
+    *(SpurMesh(elements, layers, fine_body=True) for elements in (1.0, 1.7) for layers in (2, 3, 4, 6, 8, 12)),
+)
+REFERENCE = SpurMesh(6.0, fine_body=True)
+ENDS = SpurMesh(1.0, layers=8), SpurMesh(1.0)
+"""A section with many layers, and the same in 2D: what the free ends do."""
+
+
+def rows(planes: tuple[SpurMesh, ...] = PLANES, volumes: tuple[SpurMesh, ...] = VOLUMES) -> Iterator[SpurRow]:
+    """One for each of the 2D meshes."""
+    limit = solved(REFERENCE).transmission_error
+    ends = solved(ENDS[0]).transmission_error / solved(ENDS[1]).transmission_error
+    ascending = sorted(volumes, key=_size)
+    for plane in planes:
+        error = abs(solved(plane).transmission_error / limit - 1.0)
+        tried = ((mesh, abs(solved(mesh).transmission_error / (limit * ends) - 1.0)) for mesh in ascending)
+        volume, own = next(((mesh, own) for mesh, own in tried if own <= error), (None, float("nan")))
+        yield SpurRow(plane, solved(plane), error, volume, solved(volume) if volume else None, own)
+
+
+def _size(mesh: SpurMesh) -> int:
+    """Nodes of the pinion's sector."""
+    scene = mesh.scene()
+    section = sector_mesh(scene.gear_pair().pinion, sector_resolutions(scene)[0], "quadrilateral")
+    return len(section.points) * (2 * mesh.layers + 1)
+
+
+@cache
+def solved(mesh: SpurMesh) -> Solved:
+    """In a process of its own, so that its memory is its own."""
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        return pool.submit(_solve, mesh).result()
+
+
+def _solve(mesh: SpurMesh) -> Solved:
+    compat.silence_logs()
+    begin = time.process_time()
+    model = _model(mesh)
+    ready = time.process_time()
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 0)
+    swept = [p.results[0].transmission_error for p in sweep_pitch(model, pitch, [0.0], initial_state([0.0]))]
+    end = time.process_time()
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    dofs = sum(len(body.mesh.points) * body.d for body in model.bodies)
+    return Solved(1e3 * float(np.mean(swept)), ready - begin, end - ready, memory, dofs)
+
+
+def _model(mesh: SpurMesh) -> GearModel:
+    """As `prepare_model` makes it, but for the number of layers."""
+    scene = mesh.scene()
+    pair, teeth = scene.gear_pair(), contact_teeth(scene)
+    bodies = []
+    for index, resolution in enumerate(sector_resolutions(scene)):
+        own = replace(resolution, face_elements=max(mesh.layers, 1))
+        cells = sector_mesh(pair.gears[index], own, "hexahedron" if mesh.layers else "quadrilateral")
+        material, sign = scene.materials()[index], 1 - 2 * index
+        bodies.append(condensed_gear(pair.gears[index], cells, material, teeth, sign, carries_pressure=index == 0))
+    torque = 1e3 * scene.load.torque_Nm / (1.0 if mesh.layers else pair.face_width)
+    return GearModel(pair, (bodies[0], bodies[1]), tuple(teeth), GearLoad(torque), window_half_width(scene, bodies[0]))

@@ -1,8 +1,8 @@
 """The matrix of settings: each sheet varies two of them over the widest range that makes sense, all else nominal.
 
-The nominal problem is a steel cylinder on a steel block, a/R = 0.01, friction 0.3, second-order quadrilaterals of a/4 on
-meshes that do not match; its error is that of p0 against Hertz. Perturbed meshes are tested with the patch test, whose
-exact solution every mesh can represent, and the position step with He's spur pair.
+The nominal problem is a steel cylinder on a steel block, a/R = 0.01, friction 0.3, second-order quadrilaterals of a/4
+on meshes that do not match; its error is that of p0 against Hertz. Perturbed meshes are tested with the patch test,
+whose exact solution every mesh can represent, and the position step with He's spur pair.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def distortion() -> Sheet:
     shapes = ("triangle", "quadrilateral", "tetrahedron", "hexahedron")
     kinds = [Patch(shape, order, friction=FRICTION) for shape in shapes for order in (1, 2)]
     return sheet_of(
-        ("distortion", "Meshes perturbed at random (patch test with pressure and shear)", "largest error of the traction"),
+        ("distortion", "Meshes perturbed at random (patch test)", "largest error of the traction"),
         ("cells, order", [f"{patch.shape}, {patch.order}" for patch in kinds]),
         ("smallest scaled Jacobian over the regular mesh's", [f"{target:g}" for target in targets]),
         lambda i, j: patch_cell(kinds[i], targets[j]),

@@ -7,15 +7,18 @@ from scipy.integrate import cumulative_trapezoid
 
 from meshes.data import Floats
 from meshes.profile import Profile, mirror, polar
-from meshes.section_blocks import TABLE, Piece, grid, steps
+from meshes.section_blocks import TABLE, Piece, grid, growing, steps
+
+LONGEST = 2.0
+"""Length of the band's first cell over its width: longer, the cells that join three layers to one are too slanted."""
 
 
 class RootBand:
     """One cell thick; q numbers its cells from 0 (flank start) over `neck` (half the fillet's turn) to `cells` (cut).
 
-    The nodes of the outline are exact, cells are equally long half-way down the band on each side of `neck`, and the
-    band's inner side is straight from cell to cell: a curved one would push its middle nodes out of the middle below a
-    tight fillet.
+    The nodes of the outline are exact, cells are equally long half-way down the band on each side of `neck`, or grow
+    down to it where the first would be much longer than the band is wide, and the band's inner side is straight from
+    cell to cell: a curved one would push its middle nodes out of the middle below a tight fillet.
     """
 
     def __init__(
@@ -67,7 +70,9 @@ class RootBand:
         speed = np.linalg.norm(np.gradient(middle_line, arc, axis=0), axis=1)
         length = cumulative_trapezoid(speed, arc, initial=0)
         half = length[np.argmax(turned >= 0.5 * turned.max())]
-        wanted = np.interp(np.arange(self.cells + 1), [0, self.neck, self.cells], [0, half, length[-1]])
+        above = half * growing(half, LONGEST * self.widths[0], self.neck)
+        below = np.linspace(half, length[-1], self.cells - self.neck + 1)
+        wanted = np.concatenate([above, below[1:]])
         return np.interp(wanted, length, arc)
 
     def _turned(self, points: Floats) -> Floats:

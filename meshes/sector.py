@@ -18,7 +18,7 @@ from meshes.quality import check_quality
 from meshes.reference import node_positions
 from meshes.section import Section, SectorResolution, section_mesh
 
-MINIMUM_QUALITY = {"quadrilateral": 0.2, "hexahedron": 0.2, "triangle": 1e-6, "tetrahedron": 1e-6}
+MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
 """Smallest scaled Jacobian of a sector; long thin layers make long thin simplices, which are not inverted ones."""
 
 _FIXED_POINT_STEPS = 6

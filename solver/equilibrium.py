@@ -23,7 +23,7 @@ from solver.nitsche import ContactOperator, LawOf
 from solver.tangent import Tangent
 
 TOLERANCE = 1e-10  # residual force over the force in the system
-ITERATIONS = 40
+ITERATIONS = 60
 PATIENCE = 10  # iterations that a start from a neighbouring solution is given
 
 

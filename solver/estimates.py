@@ -14,9 +14,14 @@ import numpy as np
 from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.hertz import contact_modulus, line_half_width, line_peak_pressure
+from solver.material import Material
 
 if TYPE_CHECKING:
     from solver.scene import Scene
+
+TOOTH_STIFFNESS = 14.0
+"""c' of a steel tooth pair [N/(mm µm)], ISO 6336-1; each tooth has twice that, in proportion to its modulus."""
+STEEL_MODULUS = 206e3
 
 @dataclass(frozen=True)
 class HertzEstimate:
@@ -58,6 +63,11 @@ class HertzEstimate:
         """p0 [MPa] at roll distances ξ [mm], with the given or the mean line length [mm]."""
         load = np.asarray(self.normal_force / (line_length or self.line_lengths[1]))
         return line_peak_pressure(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
+
+    def tooth_deflection(self, pinion: Material, wheel: Material) -> float:
+        """Deflection [mm] of one tooth pair that carries the whole load over the whole face."""
+        compliance = sum(STEEL_MODULUS / material.youngs_modulus for material in (pinion, wheel)) / 2
+        return self.normal_force / self.pair.face_width * compliance / (1e3 * TOOTH_STIFFNESS)
 
 
 def hertz_estimate(scene: Scene) -> HertzEstimate:

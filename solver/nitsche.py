@@ -153,7 +153,7 @@ def contact_operator(
         np.einsum("qk,qka->qa", N1, first.points[first.facets[pairing.facet1]]),
         pairing.weight,
         pairing.gap,
-        hat @ stabiliser[nodes],
+        1.0 / (hat @ (1.0 / stabiliser[nodes])),  # as the flux that is divided by it at the nodes
     )
 
 

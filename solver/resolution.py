@@ -11,6 +11,7 @@ from scipy.integrate import trapezoid
 
 from meshes.data import Floats
 from meshes.parameters import GearParameters
+from meshes.root_band import LONGEST
 from meshes.section import SectorResolution, section_mesh
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.skips import skips
@@ -27,8 +28,16 @@ pinion tip it is 1.7 times that. The pinion, in whose space the jump lives, deci
 standard makes nine in ten peaks right within 4.5 % instead of 2.6 %, and at quick 1.25 within 28 % instead of 13 %."""
 LEAST_LAYERS = {"quick": 8, "standard": 12, "fine": 20}
 """Layers of a spur gear, whose contact line is the lead line: enough for crowning and the ends of the face."""
+LEAST_ROWS = 4
+"""Coarse rows of a tooth, each as high as three profile elements: fewer are too high for a thin tip."""
 LAYER_DEPTHS = np.array([0.57, 0.86, 1.26])
 """Thin layers below the flank in half-widths b; measured as enough for 3 elements across 2b."""
+DEEPEST = 0.35
+"""Largest depth of the thin layers together, in modules: deeper, they don't fit into the root under a heavy load."""
+LEAST_NECK = 3
+NECK = 0.8
+"""Cells from the flank start to the middle of the fillet, and how many modules they cover at most: they grow from the
+thin layers' depth, twofold at most."""
 FORE_LAND = 1.2
 """The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
 
@@ -65,12 +74,17 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> Sect
     density = roll / gear.base_radius * count / width.at_roll_length(roll)
     along, shear = trapezoid(density, roll), np.mean(density) * math.tan(gear.base_helix_angle) * gear.face_width
     depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
+    depths *= min(1.0, DEEPEST * gear.normal_module / float(depths.sum()))
+    more = _neck_elements(float(depths.sum()) / gear.normal_module) - LEAST_NECK
     resolution = SectorResolution(
-        profile_elements=3 * max(2, math.ceil(along / 3)),
+        profile_elements=3 * max(LEAST_ROWS, math.ceil(along / 3)),
         face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][index])),
         layer_depths=(depths[0], depths[1], depths[2]),
         flank_start_diameter=start,
         size_at=width,
+        neck_elements=LEAST_NECK + more,
+        fillet_elements=SectorResolution.fillet_elements + more,
+        back_elements=SectorResolution.back_elements + more,
     )
     return resolution if skips(scene, "coarse-body") else _fine_everywhere(resolution)
 
@@ -86,6 +100,11 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
         back_elements=3 * resolution.back_elements,
         neck_elements=3 * resolution.neck_elements,
     )
+
+
+def _neck_elements(depth: float) -> int:
+    """Cells n that reach down the neck, the first 2 and the last at most 2ⁿ depths [modules] of the layers long."""
+    return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (LONGEST * depth))))
 
 
 class _ContactWidth:

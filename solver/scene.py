@@ -27,6 +27,9 @@ __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_v
 EXAMPLE = "demos/yang2022.toml is a complete example"
 WIDEST_CONTACT = 0.2
 """Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
+LARGEST_DEFLECTION = 0.1
+"""Largest deflection of a tooth pair in modules, estimated with one pair carrying all: of 230 random scenes those below
+were solved but for two, of those above every third. Loaded plastic gears come near it, steel stays far below."""
 
 
 class Scene(Section):
@@ -71,6 +74,13 @@ class Scene(Section):
             most = self.load.torque_Nm * (WIDEST_CONTACT * radius / half_width) ** 2
             size = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
             found = f"{shown(self.load.torque_Nm)} ({size})"
+            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
+            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
+            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+        deflection = estimate.tooth_deflection(*self.materials()) / self.pair.normal_module_mm
+        if deflection > LARGEST_DEFLECTION:
+            most = self.load.torque_Nm * LARGEST_DEFLECTION / deflection
+            found = f"{shown(self.load.torque_Nm)} (teeth bend by about {deflection:.2g} modules)"
             allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
             remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
             raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))

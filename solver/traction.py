@@ -69,7 +69,22 @@ def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safet
     stabiliser = np.zeros((len(surface.points), 2))
     for corner in surface.facets.T:
         np.maximum.at(stabiliser, corner, constants)
-    return NitscheTraction(surface, tangent_frames(surface.normals), _recovered(cells, material), stabiliser)
+    recovered = _recovered(cells, material)
+    return NitscheTraction(surface, tangent_frames(surface.normals), recovered, _harmonic(surface, stabiliser))
+
+
+def _harmonic(surface: Surface, stabiliser: Floats) -> Floats:
+    """(n, 2) the stabilisers with 1/γ linear over each facet, from its corners.
+
+    The flux F = S/γ lives at the nodes. Only if 1/γ between them is what F's shape functions make of it is γF the
+    uniform traction again, and the patch test passed where the size of the cells jumps; and only where it is linear
+    is it sure to be positive.
+    """
+    linear = tabulate(surface.shape, 1, node_points(surface.shape, surface.order))[0]
+    corners = surface.facets[:, np.argmax(linear, axis=0)]
+    result = stabiliser.copy()
+    result[surface.facets] = 1.0 / np.einsum("kc,fcs->fks", linear, 1.0 / stabiliser[corners])
+    return result
 
 
 def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
@@ -179,13 +194,13 @@ def rigid_modes(points: Floats) -> Floats:
 
 
 def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:
-    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ (n,) at the nodes, piecewise linear between, 1 by default."""
+    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ (n,) at the nodes, 1/γ linear between, 1 by default."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets], dN)
     area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
     if γ is not None:
-        area = area * (γ[surface.facets] @ hats(surface.shape, surface.order, xi).T)
+        area = area / ((1.0 / γ)[surface.facets] @ hats(surface.shape, surface.order, xi).T)
     return np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
 
 

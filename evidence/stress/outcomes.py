@@ -1,0 +1,93 @@
+"""A scene solved as `evolvent run` does, and what became of it."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from mpi4py import MPI
+
+from meshes.data import MeshError
+from solver.condense import NotPositiveDefinite
+from solver.gear_model import prepare_model
+from solver.gear_results import balance_error
+from solver.gear_sweep import Pitch, initial_state, sweep_pitch
+from solver.newton import NotConverged
+from solver.run import BALANCE_LIMIT
+from solver.scene import Scene
+from solver.search import SearchError
+
+POSITIONS = 4
+REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)
+"""What a run ends with when it tells its user that it found no solution."""
+
+
+class Verdict(Enum):
+    """What became of a scene. Only the first is a result; the next two are said; the last two must not be."""
+
+    CONVERGED = "converged"
+    REFUSED = "refused, with a message"
+    UNBALANCED = "out of balance, refused"
+    CRASHED = "crashed"
+    HUNG = "hung"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A scene's outcome. balance: worst of all results. iterations: mean a position and friction coefficient above 0
+    (frictionless where all are 0); most: their largest. cpu: processor seconds."""
+
+    seed: int
+    verdict: Verdict
+    message: str = ""
+    balance: float = float("nan")
+    iterations: float = float("nan")
+    most: int = 0
+    dofs: int = 0
+    cpu: float = 0.0
+
+
+def some_positions(scene: Scene, seed: int) -> Pitch:
+    """A few of the positions of a pitch one after the other, from a random one on."""
+    step = 2.0 * np.pi / scene.pinion.teeth / scene.sweep.positions
+    begin = int(np.random.default_rng([seed, 1]).integers(scene.sweep.positions))
+    return Pitch(tuple(float(step * k) for k in range(begin, begin + POSITIONS)), 0)
+
+
+def outcome_of(scene: Scene, seed: int) -> Outcome:
+    """Prepares and sweeps the scene, and applies the balance certificate. Raises nothing but what ends Python."""
+    begin = time.process_time()
+    try:
+        found = _swept(scene, seed)
+    except REFUSALS as error:
+        found = Outcome(seed, Verdict.REFUSED, f"{type(error).__name__}: {error}")
+    except Exception:
+        found = Outcome(seed, Verdict.CRASHED, traceback.format_exc(limit=-3))
+    return Outcome(**{**vars(found), "cpu": time.process_time() - begin})
+
+
+def _swept(scene: Scene, seed: int) -> Outcome:
+    model = prepare_model(scene, MPI.COMM_SELF).model
+    pitch = some_positions(scene, seed)
+    results = [
+        result
+        for position in sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction))
+        for result in position.results
+    ]
+    rubbed = [r for r in results if r.friction > 0.0] or results
+    errors = np.array([balance_error(r) for r in results])
+    balanced = bool(np.all(errors <= BALANCE_LIMIT))
+    worst = int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))
+    return Outcome(
+        seed,
+        Verdict.CONVERGED if balanced else Verdict.UNBALANCED,
+        "" if balanced else f"balance error {errors[worst]:.1e} at {results[worst].stand.angle:.5f} rad, "
+        f"μ = {results[worst].friction}" + (", at a tip edge" if results[worst].contact.edge.any() else ""),
+        float(errors[worst]),
+        float(np.mean([r.iterations for r in rubbed])),
+        max(r.iterations for r in rubbed),
+        sum(body.mesh.points.shape[0] * body.d for body in model.bodies),
+    )

@@ -99,9 +99,7 @@ def problem() -> Problem:
     """The coarser surface, the cylinder's, carries the pressure; both are fine wherever they meet."""
     size, fine = HALF_WIDTH / CELLS, (0.5 * DISTANCE + 1.5) * HALF_WIDTH
     freedoms = (Freedom("x", displacement=0.0), Freedom("y", load=-LOAD))
-    cylinder = Body(
-        cylinder_2d(RADIUS, size, fine, contact=fine), STEEL, rigid=Rigid("top", freedoms), name="cylinder"
-    )
+    cylinder = Body(cylinder_2d(RADIUS, size, fine, contact=fine), STEEL, rigid=Rigid("top", freedoms), name="cylinder")
     mesh = graded_rectangle(2.0 * RADIUS, 2.0 * RADIUS, size / 1.37, fine, fine_depth=0.75 * HALF_WIDTH)
     block = Body(with_part(mesh, "top", "met", fine), STEEL, (Fixed("bottom"),), name="block")
     return Problem((cylinder, block), (Contact((0, "arc"), (1, "met"), FRICTION, reach=0.25 * HALF_WIDTH),))
@@ -159,7 +157,10 @@ def _claims(case: Rolled, coarse: Rolled) -> list[Claim]:
             "front end of the stick zone, x/b", front, case.front, node, Reference.ANALYTICAL,
             f"the end of the contact: {SOURCE}; ± a node",
         ),
-        Claim.bound("traction, relative L2 error, mean over the last b rolled", case.steady_error, 0.05, Reference.ANALYTICAL, SOURCE),
+        Claim.bound(
+            "traction, relative L2 error, mean over the last b rolled", case.steady_error, 0.05,
+            Reference.ANALYTICAL, SOURCE,
+        ),
         Claim.bound(
             "pressure, relative L2 error", case.profiles[-1].error(exact), 0.025, Reference.ANALYTICAL, "Hertz"
         ),

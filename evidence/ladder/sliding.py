@@ -215,7 +215,7 @@ def _convergence(axes: Axes, cases: list[Slid]) -> None:
 
 
 def _inside(axes: Axes, case: Slid) -> None:
-    centre, corners, stress, _ = case.inside
+    _, corners, stress, _ = case.inside
     shown = PolyCollection(list(corners), array=stress[:, 0, 0], cmap="RdBu_r", edgecolors="none")
     shown.set_clim(-1.0, 1.0)
     axes.add_collection(shown)

@@ -108,7 +108,7 @@ def measure() -> Rung:
         "shows as a ripple with the period of the elements. It comes from the edges of contact, which cross "
         "elements, and falls nearly like h²: segments follow the die, and nothing is decided at nodes, which would "
         "make the reaction jump at each.",
-        tuple(_claims(*cases, halved)),
+        tuple(_claims(cases[0], cases[1], halved)),
         lambda figure: _draw(figure, cases, halved),
     )
 
@@ -152,9 +152,9 @@ def _reactions(axes: Axes, cases: list[Ironed]) -> None:
 def _ripples(axes: Axes, cases: list[Ironed], halved: Ironed) -> None:
     axes.axhspan(-1e2 * RIPPLE, 1e2 * RIPPLE, color="#eef0f2", label="accepted")
     shown = (
-        (plain, FAINT, "fixed Gauss points"),
-        (cases[0], PINION, "segments"),
-        (cases[1], WHEEL, "segments, μ = 0.3"),
+        (cases[0], PINION, "μ = 0"),
+        (cases[1], WHEEL, "μ = 0.3"),
+        (halved, TEETH[0], "μ = 0, elements of half the size"),
     )
     for case, colour, label in shown:
         here, smooth = case.settled, case.smooth(1)

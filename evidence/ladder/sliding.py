@@ -30,7 +30,7 @@ TOUCHING = 1.25  # half-widths to both sides that are fine and may touch
 SLID = 0.1  # half-widths: a hundred times what the contact gives way before it slides
 DEPTHS = (0.15, 2.0)  # [b] between which the stress inside is compared
 NODES = 200  # of the quadrature of the exact stress inside
-SOURCE = "Johnson 1985, eqs. 2.23, 4.44 and 7.1 ff., traction μp to the right"
+SOURCE = "Johnson 1985, section 7.1, traction μp to the right"
 
 
 @dataclass(frozen=True)
@@ -210,8 +210,8 @@ def _convergence(axes: Axes, cases: list[Slid]) -> None:
     axes.loglog(h, 100.0 * tension[0] * np.sqrt(h / h[0]), ":", color=INK, lw=1.0, label="slope ½")
     axes.set_xticks(h, [f"b/{case.cells}" for case in cases])
     axes.set_xticks([], minor=True)
-    axes.set(xlabel="element size", ylabel="error [%]")
-    axes.legend(loc="lower right", fontsize=7.5, ncols=1)
+    axes.set(ylim=(0.02, 40), xlabel="element size", ylabel="error [%]")
+    axes.legend(loc="lower right", fontsize=7.5, ncols=2)
 
 
 def _inside(axes: Axes, case: Slid) -> None:

@@ -89,7 +89,7 @@ def _claims(loads: list[Pushed]) -> list[Claim]:
 
 
 def _falling(meshes: list[Pushed]) -> Claim:
-    """Square roots end the stick zone and the contact, and cells end at neither for all loads: the L2 error falls at least like √h."""
+    """Square roots end the stick zone and the contact, inside cells: the L2 error falls at least like √h."""
     share = meshes[-1].shear_error / meshes[0].shear_error
     what = f"traction error of b/{meshes[-1].cells} over that of b/{meshes[0].cells}"
     return Claim.bound(what, share, 0.5, Reference.ANALYTICAL, "order ½ or better")

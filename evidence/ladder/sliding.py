@@ -211,7 +211,7 @@ def _convergence(axes: Axes, cases: list[Slid]) -> None:
     axes.set_xticks(h, [f"b/{case.cells}" for case in cases])
     axes.set_xticks([], minor=True)
     axes.set(ylim=(0.02, 40), xlabel="element size", ylabel="error [%]")
-    axes.legend(loc="lower right", fontsize=7.5, ncols=2)
+    axes.legend(loc="lower right", fontsize=7, ncols=2, columnspacing=1.0)
 
 
 def _inside(axes: Axes, case: Slid) -> None:

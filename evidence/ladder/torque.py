@@ -1,0 +1,124 @@
+"""The torque ratio of frictionless gear pairs, T_2/T_1 = z_2/z_1 at every angle: a spur and a helical pair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from mpi4py import MPI
+
+from evidence.claims import Claim, Reference, Rung
+from meshes.data import Floats
+from solver.gear_model import GearModel, prepare_model
+from solver.gear_position import PositionResult
+from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
+from solver.plots_style import PINION, WHEEL, note
+from solver.scene import Scene, load_scene
+
+DEMOS = Path(__file__).resolve().parents[2] / "demos"
+QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false", "contact.friction=0.0")
+WIDTH, RELIEF = 8.0, 15.0  # mm, µm: of the helical pair
+LIGHT = 0.1  # of the helical pair's torque
+AWAY, AT_EDGE = 1.2e-4, 2.2e-3  # bounds of |T_2 z_1/(T_1 z_2) − 1|, spur
+HELICAL, HELICAL_LIGHT = 5e-3, 1e-3  # the same of the helical pair, at the whole and at the light torque
+SOURCE = "virtual work of conjugate flanks"
+
+
+@dataclass(frozen=True)
+class Ratios:
+    """A pitch: pinion rotation (k,) [°], T_2 z_1/(T_1 z_2) − 1 (k,), whether a tip edge bears (k,) bool."""
+
+    degrees: Floats
+    off: Floats
+    edge: np.ndarray
+
+    def largest(self, edge: bool) -> float:
+        """|off| at the positions where a tip edge bears, or where none does; NaN without such a position."""
+        here = np.abs(self.off[self.edge == edge])
+        return float(here.max()) if len(here) else float("nan")
+
+
+def spur_scene() -> Scene:
+    """He's pair, plane strain."""
+    return load_scene(DEMOS / "he2022.toml", QUIET)
+
+
+def helical_scene() -> Scene:
+    """Yang's pair, narrower and coarse, with tip relief so that the edges bear less, under the same line load."""
+    changes = [f"{gear}.face_width_mm={WIDTH}" for gear in ("pinion", "wheel")]
+    changes += [f"{gear}.tip_relief_um={RELIEF}" for gear in ("pinion", "wheel")]
+    coarse = ['mesh.level="quick"', "mesh.elements_per_contact_width=1.0", f"load.torque_Nm={250.0 * WIDTH / 16.9}"]
+    return load_scene(DEMOS / "yang2022.toml", [*QUIET, *changes, *coarse])
+
+
+def model_of(scene: Scene) -> GearModel:
+    """Both gears, condensed on this rank alone."""
+    return prepare_model(scene, MPI.COMM_SELF).model
+
+
+def ratios(model: GearModel, positions: int) -> Ratios:
+    """Solves one pitch."""
+    pitch = uniform_pitch(model.pair.pinion.z, positions, 0)
+    results = [p.results[0] for p in sweep_pitch(model, pitch, [0.0], initial_state([0.0]))]
+    edge = np.array([bool(result.contact.edge.any()) for result in results])
+    return Ratios(np.degrees(pitch.angles), np.array([_off(result) for result in results]), edge)
+
+
+def _off(result: PositionResult) -> float:
+    return result.torques[1] / (result.torques[0] * result.stand.pair.ratio) - 1.0
+
+
+def measure() -> Rung:
+    """40 positions of the spur pair, 8 of the helical one at each of two torques."""
+    spur, pair = ratios(model_of(spur_scene()), 40), model_of(helical_scene())
+    helical = ratios(pair, 8)
+    light = ratios(replace(pair, load=replace(pair.load, torque=LIGHT * pair.load.torque)), 8)
+    return Rung(
+        "torque",
+        "Torque ratio of frictionless gears",
+        "Without friction the flanks press along the common tangent of the base circles, so T_2/T_1 = z_2/z_1 at every "
+        "angle. He's spur pair (50/50, 170 N·m) in plane strain, and Yang's helical pair (17/60) narrowed to 8 mm, on "
+        "a coarse mesh, with 15 µm of tip relief. The pinion's normals carry the force, so the pinion's torque is "
+        "exact; the wheel's is off by what the pressure's centre lies beside the line of contact. That is deflection: "
+        "teeth that bear on a tip edge before the path of contact begins, and oblique lines that bend over their "
+        "length. So the helical pair, on whose tip edges up to a fifth of the force lies, is off by more than the spur "
+        "pair, and by less under a tenth of the torque, where no edge bears.",
+        (
+            Claim.bound("spur, away from tip edges", spur.largest(False), AWAY, Reference.ANALYTICAL, SOURCE),
+            Claim.bound("spur, at tip edges", spur.largest(True), AT_EDGE, Reference.ANALYTICAL, SOURCE),
+            Claim.bound("helical, at tip edges", helical.largest(True), HELICAL, Reference.ANALYTICAL, SOURCE),
+            Claim.bound(
+                "helical, a tenth of the torque, away from tip edges", light.largest(False), HELICAL_LIGHT,
+                Reference.ANALYTICAL, SOURCE,
+            ),
+        ),
+        lambda figure: _draw(figure, spur, helical, light),
+    )  # fmt: skip
+
+
+def _draw(figure: Figure, spur: Ratios, helical: Ratios, light: Ratios) -> None:
+    left, right = figure.subplots(1, 2, sharey=True)
+    _points(left, spur, "", "o")
+    _points(right, helical, "whole torque, ", "o")
+    _points(right, light, "a tenth, ", "s")
+    for axes, bounds, name in (
+        (left, (AWAY, AT_EDGE), "spur: He, 170 N·m"),
+        (right, (HELICAL_LIGHT, HELICAL), f"helical: Yang, {WIDTH:g} mm wide, {RELIEF:g} µm of tip relief"),
+    ):
+        for bound, colour in zip(bounds, (PINION, WHEEL), strict=True):
+            axes.axhline(bound, color=colour, ls="--", lw=1.0)
+        note(axes, f"{name} (dashed: accepted)")
+        axes.set(ylim=(1e-6, 3e-2), xlabel="pinion rotation [°]")
+        axes.legend(loc="lower right")
+    left.set_ylabel("|T₂ z₁ / (T₁ z₂) − 1|")
+
+
+def _points(axes: Axes, case: Ratios, name: str, marker: str) -> None:
+    """By whether a tip edge bears."""
+    for edge, colour, label in ((False, PINION, "no tip edge bears"), (True, WHEEL, "a tip edge bears")):
+        here = case.edge == edge
+        if here.any():
+            axes.semilogy(case.degrees[here], np.abs(case.off[here]), marker, ms=5, color=colour, label=name + label)

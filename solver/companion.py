@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from mpi4py import MPI
@@ -26,6 +26,8 @@ from solver.run_data import RunData, run_data
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 
+Mesher = Callable[[Scene, int], MeshData]
+"""Makes the sector of a scene's pinion (0) or wheel (1)."""
 COARSENING = 2.0
 LEAST_LAYERS = 2  # of a gear's face width: the ends of the face need their own
 
@@ -55,7 +57,7 @@ def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm) -> Companion:
     is not lost for its error bars."""
     begin, run, failure = time.perf_counter(), None, ""
     try:
-        run = _run(scene, pitch, comm)
+        run = solved_run(scene, pitch, comm, companion_mesh)
     except Exception as error:  # alike on all ranks: the parts below fail together
         failure = f"The coarse companion that error bars come from could not be solved: {error}"
         LOG.info("%s", failure)
@@ -88,9 +90,10 @@ def companion_mesh(scene: Scene, index: int) -> MeshData:
     return gear_mesh(scene, index, adapted=coarser)
 
 
-def _run(scene: Scene, pitch: Pitch, comm: MPI.Comm) -> RunData | None:
-    """The whole companion run on rank 0. The ranks sweep without waiting for each other."""
-    model = prepare_model(scene, comm, companion_mesh).model
+def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:
+    """A scene on meshes of one's own, nothing written: the run on rank 0. The ranks sweep without waiting for each
+    other, each its own friction coefficients. Raises NotConverged, MeshError, NotPositiveDefinite, OutOfMemory."""
+    model = prepare_model(scene, comm, mesh).model
     frictions = scene.contact.friction
     parts = comm.allgather(together(comm, lambda: _counted(model, pitch, frictions[comm.rank :: comm.size])))
 

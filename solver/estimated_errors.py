@@ -61,7 +61,7 @@ def kept_errors(archive: Archive) -> EstimatedErrors | None:
 
 
 def plus_minus(value: float, bar: float, digits: int) -> str:
-    """"2.60 ± 0.08", the bar rounded up; the value alone where the bar is NaN."""
-    if not math.isfinite(bar):
+    """ "2.60 ± 0.08", the bar rounded up; the value alone where it is exact or its bar unknown (NaN)."""
+    if not (math.isfinite(bar) and bar > 0.0):
         return f"{value:.{digits}f}"
     return f"{value:.{digits}f} ± {math.ceil(bar * 10**digits) / 10**digits:.{digits}f}"

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from solver.archive import Archive, read_arrays, write_arrays
+from solver.archive import Archive, ArchiveError, read_arrays, write_arrays
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,11 @@ def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
 
 
 def kept_errors(archive: Archive) -> EstimatedErrors | None:
-    """What `keep_errors` kept of this scene, None for nothing. Raises ArchiveError where it cannot be read."""
-    path = archive.folder / "errors.npz"
-    if not path.exists():
-        return None
-    arrays = read_arrays(path)
+    """What `keep_errors` kept of this scene; None where there is nothing, or nothing that can be read."""
+    try:
+        arrays = read_arrays(archive.folder / "errors.npz")
+    except ArchiveError:
+        return None  # a bar is no reason to refuse a run's results
     if str(arrays["fingerprint"]) != archive.fingerprint:
         return None
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")

@@ -139,7 +139,8 @@ def test_written_with_their_sign() -> None:
 
 
 def test_come_back_from_disk(tmp_path: Path) -> None:
-    """What is kept is read again number by number, NaN too, but not by another scene; no bars leave no file."""
+    """What is kept is read again number by number, NaN too, but not by another scene; no bars leave no file, and a
+    broken file is none."""
     archive = Archive(tmp_path, spur_scene())
     archive.folder.mkdir()
     keep_errors(archive, EstimatedErrors(missing="It rained."))
@@ -148,6 +149,8 @@ def test_come_back_from_disk(tmp_path: Path) -> None:
     keep_errors(archive, errors)
     assert repr(kept_errors(archive)) == repr(errors)
     assert kept_errors(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
+    (archive.folder / "errors.npz").write_bytes(b"PK half")
+    assert kept_errors(archive) is None
 
 
 def test_in_the_summary_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,8 +1,9 @@
 """A run's coarse companion: the same scene on meshes of twice the element size, at the same positions.
 
-It has an eighth of the degrees of freedom (a quarter in 2D), so condensing it is some fifty times cheaper, and only
-what grows with the number of positions is felt. All friction coefficients are solved: each has its own history and its
-own error, and beside a shared search they cost little.
+It has a quarter of the degrees of freedom, towards an eighth with more of them (a half in 2D), so condensing it is ten
+times cheaper and more; what is felt are its positions. In processor time it took 12 % of a helical run of 100,000
+degrees of freedom, less of larger ones, and half of a 2D run, which takes seconds. All friction coefficients are
+solved: each has its own history and its own error, and beside a shared search they cost little.
 """
 
 from __future__ import annotations

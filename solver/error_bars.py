@@ -63,7 +63,10 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
     """The bars of all friction coefficients, or why there are none."""
     if companion.run is None:
         return EstimatedErrors(missing=companion.failure)
-    return EstimatedErrors(errors_between(run, companion.run), METHOD, "")
+    try:
+        return EstimatedErrors(errors_between(run, companion.run), METHOD, "")
+    except (ValueError, IndexError) as error:  # a companion too coarse to have the figures, as without any contact
+        return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
 
 
 def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:

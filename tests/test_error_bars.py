@@ -20,8 +20,8 @@ from meshes.data import MeshData
 from meshes.section import SectorResolution
 from solver import companion
 from solver.archive import Archive
-from solver.companion import coarser, companion_mesh, solved_run
-from solver.error_bars import Curve, difference, errors_between
+from solver.companion import Companion, coarser, companion_mesh, solved_run
+from solver.error_bars import Curve, difference, errors_between, estimated_errors
 from solver.estimated_errors import EstimatedErrors, FigureErrors, keep_errors, kept_errors, plus_minus
 from solver.newton import NotConverged
 from solver.run import pitch_of, run_scene
@@ -108,6 +108,14 @@ def test_hertz_has_no_error() -> None:
         assert errors.transmission_error_peak_to_peak_um == errors.mesh_stiffness_N_per_mm_um == 0.0
         assert errors.loss_percent == 0.0
         assert errors.max_pressure_MPa < 0.02 * 1500.0
+
+
+def test_companion_without_contact() -> None:
+    """A companion in which nothing touches has no figures: no bars, and the reason, but no exception."""
+    run = synthetic_run("contact.friction=[0.0, 0.1]")
+    bare = tuple(tuple(replace(solved, teeth=()) for solved in each) for each in run.positions)
+    found = estimated_errors(run, Companion(replace(run, positions=bare), "", 0.0))
+    assert found.figures == () and "cannot be compared" in found.missing
 
 
 def test_coarser_halves_all_directions() -> None:

@@ -6,12 +6,13 @@ With several ranks each gear is condensed on one.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import Floats
+from meshes.data import Floats, MeshData
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
@@ -70,12 +71,17 @@ class Preparation:
         return sum(body.condense_seconds for body in self.model.bodies)
 
 
-def prepare_model(scene: Scene, comm: MPI.Comm) -> Preparation:
-    """Meshes and condenses both gears of a scene. Raises MeshError, NotPositiveDefinite, OutOfMemory."""
+def prepare_model(
+    scene: Scene, comm: MPI.Comm, mesh: Callable[[Scene, int], MeshData] | None = None
+) -> Preparation:
+    """Meshes and condenses both gears of a scene. mesh: makes gear 0's and 1's, by default `gear_mesh`.
+
+    Raises MeshError, NotPositiveDefinite, OutOfMemory.
+    """
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [index for index in (0, 1) if index % comm.size == comm.rank]
-    meshes = together(comm, lambda: {index: gear_mesh(scene, index) for index in own})
+    meshes = together(comm, lambda: {index: (mesh or gear_mesh)(scene, index) for index in own})
     meshed = time.perf_counter()
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,12 +11,13 @@ from matplotlib.figure import Figure
 from meshes.data import Floats
 from meshes.flank import contact_lines
 from solver.engagement import engagements
+from solver.estimated_errors import plus_minus
 from solver.estimates import hertz_estimate
 from solver.hertz import LoadFactors
 from solver.overview import paper_estimate
 from solver.plots_stress import OWN_ANGLE
 from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet, signed
-from solver.results import friction_rows, loss_percent
+from solver.results import FrictionRow, friction_rows, loss_percent
 from solver.run_data import RunData
 
 YANG_PRINTS = 1788.0
@@ -60,10 +63,13 @@ def even_share(run: RunData) -> tuple[Floats, Floats]:
 def transmission_error(run: RunData) -> Figure:
     """Loaded transmission error over a pitch."""
     rows = friction_rows(run)
-    sizes = [row.transmission_error_peak_to_peak_um for row in rows]
+    bars = [run.errors.bar("transmission_error_peak_to_peak_um", k) for k in range(len(rows))]
+    sizes = [plus_minus(row.transmission_error_peak_to_peak_um, bar, 2) for row, bar in zip(rows, bars)]
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
-    see = f"Peak to peak {sizes[low]:.2f} µm at μ = {run.frictions[low]:g}"
-    see += f", {sizes[high]:.2f} µm at μ = {run.frictions[high]:g}." if low != high else "."
+    see = f"Peak to peak {sizes[low]} µm at μ = {run.frictions[low]:g}"
+    see += f", {sizes[high]} µm at μ = {run.frictions[high]:g}" if low != high else ""
+    stiffness = plus_minus(rows[low].mesh_stiffness_N_per_mm_um, run.errors.bar("mesh_stiffness_N_per_mm_um", low), 1)
+    see += f"; mean mesh stiffness {stiffness} N/(mm·µm)."
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
     for index, colour in enumerate(friction_colours(run.frictions)):
@@ -74,7 +80,7 @@ def transmission_error(run: RunData) -> Figure:
             color=colour,
             marker=".",
             markersize=4,
-            label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]:.2f} µm)",
+            label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]} µm)",
         )
     axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
@@ -91,7 +97,7 @@ def losses(run: RunData) -> Figure:
     """Power lost to friction over a pitch, and the efficiency over μ."""
     rows = sorted(friction_rows(run), key=lambda row: row.friction)
     ends = " and ".join(
-        f"{100 - row.loss_percent:.2f} % at μ = {row.friction:g}"
+        f"{_efficiency(row)} at μ = {row.friction:g}"
         for row in {r.friction: r for r in (rows[0], rows[-1])}.values()
     )
     figure = sheet("Friction loss", f"Efficiency of the mesh over a pitch: {ends}.", (10.6, 4.8))
@@ -102,11 +108,19 @@ def losses(run: RunData) -> Figure:
     over.set(xlabel=PINION_ANGLE, ylabel="friction power over input power [%]")
     over.set_ylim(bottom=0.0)
     over.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    total.plot([row.friction for row in rows], [row.loss_percent for row in rows], color=INK, marker="o")
+    bars = [0.0 if row.estimated_error is None else row.estimated_error.loss_percent for row in rows]
+    points = [row.friction for row in rows], [row.loss_percent for row in rows]
+    total.errorbar(*points, yerr=bars, color=INK, marker="o", capsize=3.0)
     total.set(xlabel="friction coefficient μ", ylabel="mean loss over a pitch [%]")
     total.set_xlim(left=0.0)
     total.set_ylim(bottom=0.0)
     return figure
+
+
+def _efficiency(row: FrictionRow) -> str:
+    """With its error bar, which is the loss's [%]."""
+    bar = math.nan if row.estimated_error is None else row.estimated_error.loss_percent
+    return f"{plus_minus(100.0 - row.loss_percent, bar, 2)} %"
 
 
 def line_load(run: RunData, index: int = 0) -> Figure:

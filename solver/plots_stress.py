@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements
-from solver.plots_style import FAINT, TEETH, friction_colours, note, sheet, signed
+from solver.estimated_errors import plus_minus
+from solver.plots_style import FAINT, INK, TEETH, friction_colours, note, sheet, signed
 from solver.run_data import RunData
 
 STRESS = "maximum contact stress [MPa]"
@@ -28,11 +29,13 @@ def engagement_stress(run: RunData) -> Figure:
     """Maximum contact stress of one tooth over its whole engagement for every μ; the crossing enlarged (Fig. 9)."""
     curves = engagements(run)
     cross = _crossing_deg(curves)
-    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross), (10.4, 5.6))
+    bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
+    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 5.6))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
     note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.01, 1.0)
+    _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
     values = np.concatenate([c.max_pressure for c in curves])
@@ -166,11 +169,20 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
             axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=across, ha="center", fontsize=9)
 
 
-def _see_engagement(curves: Sequence[Engagement], cross: float) -> str:
+def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
+    """The error bar [MPa] of the largest pressure, where there is one."""
+    if np.isfinite(bar):
+        top = int(np.nanargmax(curve.max_pressure))
+        place = np.degrees(curve.angle[top]), curve.max_pressure[top]
+        axes.errorbar(*place, yerr=bar, color=INK, linewidth=1.2, capsize=4.0, zorder=5.0)
+
+
+def _see_engagement(curves: Sequence[Engagement], cross: float, bar: float) -> str:
+    """bar: of the largest pressure [MPa], NaN where it is not known."""
     lowest, highest = _lowest(curves), _highest(curves)
     top = int(np.nanargmax(lowest.max_pressure))
     place = signed(float(np.degrees(lowest.angle[top])))
-    peak = f"Largest {lowest.max_pressure[top]:.0f} MPa at {place}° (μ = {lowest.friction:g})"
+    peak = f"Largest {plus_minus(lowest.max_pressure[top], bar, 0)} MPa at {place}° (μ = {lowest.friction:g})"
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))

@@ -17,7 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
+from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements, line_peak
+from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error
 from solver.run_data import RunData, SolvedPosition
 from solver.skips import Skipped
@@ -31,6 +33,7 @@ class Timings:
     assemble: float = 0.0
     factor: float = 0.0
     positions: float = 0.0
+    error_bars: float = 0.0
     output: float = 0.0
     total: float = 0.0
 
@@ -97,15 +100,19 @@ class PositionRow:
 @dataclass(frozen=True)
 class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
-    crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face."""
+    crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
+    mesh_stiffness_N_per_mm_um: mean of the tangential force at the base circle over face width and transmission error
+    (a secant: modifications of the flanks soften it). estimated_error: None where there is none."""
 
     friction: float
     max_pressure_MPa: float
     max_pressure_angle_deg: float
     mean_pressure_MPa: float
     transmission_error_peak_to_peak_um: float
+    mesh_stiffness_N_per_mm_um: float
     loss_percent: float
     crossing_deg: float
+    estimated_error: FigureErrors | None
 
 
 def position_rows(run: RunData) -> list[PositionRow]:
@@ -161,9 +168,19 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         max_pressure_angle_deg=math.degrees(curve.angle[top]),
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
+        mesh_stiffness_N_per_mm_um=float(np.mean(mesh_stiffness(run, index))),
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
+        estimated_error=run.errors.figures[index] if run.errors.figures else None,
     )
+
+
+def mesh_stiffness(run: RunData, index: int) -> Floats:
+    """T_1/(r_b1 b) over the transmission error at each position (k,) [N/(mm·µm)]; c_γ of ISO 6336-1 is their mean."""
+    results = [each[index].result for each in run.positions]
+    force = np.array([result.torques[0] for result in results]) / run.pair.pinion.base_radius
+    error = 1e3 * np.array([result.transmission_error for result in results])
+    return np.asarray(force * run.width / run.pair.face_width / error)
 
 
 def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
@@ -171,6 +188,7 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
     return {
         "scene": run.scene.model_dump(mode="json"),
         **asdict(facts),
+        "estimated_error": {"method": run.errors.method, "missing": run.errors.missing or None},
         "frictions": [asdict(row) for row in friction_rows(run)],
         "positions": [asdict(row) for row in position_rows(run)],
     }

@@ -16,6 +16,8 @@ from mpi4py import MPI
 from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
+from solver.companion import Companion, companion_of
+from solver.error_bars import with_errors
 from solver.fields import write_fields
 from solver.gear_model import GearModel, Preparation, prepare_model
 from solver.gear_results import balance_error
@@ -43,12 +45,14 @@ class Sweep:
     timings: Timings
 
 
-def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
+def run_scene(
+    scene: Scene, out: Path, resume: bool = False, quiet: bool = False, error_bars: bool = True
+) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
     resume: go on after the positions that `out` holds; else what an earlier run left there is removed once the gears
-    are ready. Raises NotConverged, BalanceError, MeshError, ArchiveError, OSError, on all ranks; nothing unconverged is
-    ever written.
+    are ready. error_bars: solve a coarse companion for them. Raises NotConverged, BalanceError, MeshError,
+    ArchiveError, OSError, on all ranks; nothing unconverged is ever written.
     """
     comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
@@ -60,8 +64,9 @@ def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False
         for name in switched_off(scene):
             log.info("not skipped, as asked: %s", name)
         sweep = _swept(scene, archive, start, comm, quiet, log)
+        companion = companion_of(scene, archive, pitch_of(scene), comm) if error_bars else None
         memory = comm.allreduce(peak_memory_MB())
-        on_first(comm, lambda: _write_output(scene, archive, sweep, comm.size, begin, memory, log))
+        on_first(comm, lambda: _write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
 
 
 def _swept(
@@ -137,15 +142,18 @@ def _total(made: list[Sweep], seconds: float) -> Sweep:
 
 
 def _write_output(
-    scene: Scene, archive: Archive, sweep: Sweep, ranks: int, begin: float, memory: float, log: logging.Logger
-) -> None:
+    scene: Scene, archive: Archive, sweep: Sweep, companion: Companion | None, ranks: int, begin: float, memory: float,
+    log: logging.Logger,
+) -> None:  # fmt: skip
     """Fields and pictures; then the tables, whose being there says that the run is complete."""
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    data = with_errors(data, archive, companion)
     write_text(archive.out / "scene.toml", scene.resolved_toml())  # a resumed run may ask for other output
     _draw(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.out, log)
     now = time.perf_counter()
-    timings = replace(sweep.timings, output=now - started, total=now - begin)
+    seconds = 0.0 if companion is None else companion.seconds
+    timings = replace(sweep.timings, error_bars=seconds, output=now - started, total=now - begin)
     write_tables(archive.out, data, _facts(data, sweep.meshes, ranks, timings, memory))
     log.info("done in %.1f s, %.0f MB", timings.total, memory)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import numpy as np
 from meshes.data import Floats
 from meshes.parameters import GearPair, GearParameters
 from solver.archive import Archive, ArchiveError, GearShape
+from solver.estimated_errors import NOT_ESTIMATED, EstimatedErrors, kept_errors
 from solver.gear_position import PositionResult
 from solver.gear_results import Slices, ToothSummary, slices, tooth_summaries
 from solver.gear_sweep import SweptPosition
@@ -51,11 +52,13 @@ class RunData:
     """A scene and its results over one base pitch.
 
     shapes: surfaces of (pinion, wheel). positions: (positions of the pitch, friction coefficients), without warm-up.
+    errors: the figures' error bars.
     """
 
     scene: Scene
     shapes: tuple[GearShape, GearShape]
     positions: tuple[tuple[SolvedPosition, ...], ...]
+    errors: EstimatedErrors = NOT_ESTIMATED
 
     @cached_property
     def pair(self) -> GearPair:
@@ -129,4 +132,5 @@ def read_run(folder: Path) -> RunData:
     """The run that `folder` holds: OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
     scene = load_scene(folder / "scene.toml")
     archive = Archive(folder, scene)
-    return run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    return replace(run, errors=kept_errors(archive) or run.errors)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from meshes.data import Floats, MeshData
 from meshes.flank import nominal_angles
 from meshes.reference import corner_count
+from meshes.section import SectorResolution
 from meshes.sector import sector_mesh
 from solver.resolution import sector_resolutions
 from solver.scene import Scene
 from solver.skips import is_plane
+
+Adaption = Callable[[SectorResolution], SectorResolution]
 
 PLANE_SHAPE = {"hexahedron": "quadrilateral", "tetrahedron": "triangle"}
 FACET_OF = {
@@ -29,11 +34,11 @@ def sector_meshes(scene: Scene, plane: bool | None = None) -> tuple[MeshData, Me
     return gear_mesh(scene, 0, plane), gear_mesh(scene, 1, plane)
 
 
-def gear_mesh(scene: Scene, index: int, plane: bool | None = None) -> MeshData:
-    """One of the `sector_meshes`: the pinion's (index 0) or the wheel's (1)."""
+def gear_mesh(scene: Scene, index: int, plane: bool | None = None, adapted: Adaption = lambda own: own) -> MeshData:
+    """One of the `sector_meshes`: the pinion's (index 0) or the wheel's (1); `adapted` may change its resolution."""
     flat = is_plane(scene) if plane is None else plane
     shape = PLANE_SHAPE[scene.mesh.shape] if flat else scene.mesh.shape
-    mesh = sector_mesh(scene.gear_pair().gears[index], sector_resolutions(scene)[index], shape)
+    mesh = sector_mesh(scene.gear_pair().gears[index], adapted(sector_resolutions(scene)[index]), shape)
     return mesh if scene.mesh.order == 2 else linear(mesh)
 
 

@@ -72,7 +72,7 @@ def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_whole_run(whole: Path) -> None:
     """All files are there, none is half-written, and the log tells the positions."""
     names = {path.name for path in (whole / "results").iterdir()}
-    assert names == {"gears.npz", "state.npz", *(f"position_{k:04d}.npz" for k in range(6))}
+    assert names == {"gears.npz", "state.npz", "errors.npz", *(f"position_{k:04d}.npz" for k in range(6))}
     assert not list(whole.rglob("*.tmp"))
     assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 6
 

@@ -1,1 +1,1 @@
-"""What results cost, measured."""
+"""Run time against error, what each skip saves, and whether error bars hold."""

@@ -102,7 +102,7 @@ def _carries(model: GearModel, own: float) -> bool:
     """Whether a tooth pair carries load at its own rotation [rad]; it is solved within the first pitch."""
     pitch = 2.0 * np.pi / model.pair.pinion.z
     tooth = int(np.floor(own / pitch))
-    found = shared_position(model, own - tooth * pitch, (0.0, 0.0), normal_only=True)
+    found = shared_position(model, own - tooth * pitch, (0.0, 0.0), (0.0,), None)
     pressed = found.smooth.traction[:, 0] > 0.0
     return bool(np.any(pressed & (found.contact.point_tooth == tooth)))
 

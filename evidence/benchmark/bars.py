@@ -1,0 +1,179 @@
+"""Do the error bars hold? Figures of a spur and a helical pair on many meshes, against meshes several times finer.
+
+The reference of a problem is one mesh for all its cases, cells halved, whatever the cases' own cells: the exact answer
+does not depend on them. Its own error is estimated by the same mesh before the cells were halved for the last time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields, replace
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evidence.benchmark.subdivision import halved
+from meshes.data import MeshData
+from meshes.section import SectorResolution
+from solver.companion import companion_mesh, solved_run
+from solver.error_bars import errors_between
+from solver.estimated_errors import FigureErrors
+from solver.results import friction_rows
+from solver.run import pitch_of
+from solver.run_data import RunData
+from solver.scene import Scene, load_scene, scene_from_text
+from solver.sectors import gear_mesh
+
+FIGURES = tuple(field.name for field in fields(FigureErrors))
+DEMOS = Path(__file__).resolve().parents[2] / "demos"
+HELICAL = """
+title = "narrow helical pair 20/24"
+[pair]
+normal_module_mm = 3.0
+normal_pressure_angle_deg = 20.0
+helix_angle_deg = 20.0
+[pinion]
+teeth = 20
+face_width_mm = 6
+bore_diameter_mm = 36
+[wheel]
+teeth = 24
+face_width_mm = 6
+bore_diameter_mm = 44
+[load]
+torque_Nm = 200
+[mesh]
+level = "quick"
+[contact]
+friction = [0.0, 0.2]
+[sweep]
+positions = 6
+warm_up_positions = 2
+"""
+
+
+@dataclass(frozen=True)
+class BarRow:
+    """A figure of one mesh and friction coefficient. error: |value − reference|; reference_error: how far the
+    reference itself may be off. All in the figure's unit."""
+
+    case: str
+    figure: str
+    friction: float
+    value: float
+    bar: float
+    error: float
+    reference_error: float
+
+    @property
+    def inside(self) -> bool:
+        """Whether the bar holds the true error."""
+        return self.error <= self.bar
+
+    @property
+    def decided(self) -> bool:
+        """Whether the reference is good enough to tell."""
+        return abs(self.error - self.bar) > self.reference_error
+
+
+@dataclass(frozen=True)
+class BarProblem:
+    """A scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, cells
+    halved so many times."""
+
+    scene: Scene
+    cases: tuple[tuple[str, ...], ...]
+    reference: tuple[str, ...]
+    halvings: int
+
+    def with_mesh(self, settings: Sequence[str]) -> Scene:
+        """The scene with other values in [mesh]."""
+        return scene_from_text(self.scene.resolved_toml(), [f"mesh.{setting}" for setting in settings])
+
+
+def spur_problem(
+    widths: Sequence[float] = (1.2, 1.7, 2.4, 3.0, 4.2, 6.0, 8.0),
+    positions: int = 20,
+    frictions: Sequence[float] = (0.0, 0.1, 0.3),
+) -> BarProblem:
+    """He's pair in plane strain at several numbers of elements across the contact width, of both orders,
+    quadrilaterals and triangles."""
+    settings = [f"contact.friction={list(frictions)}", f"sweep.positions={positions}"]
+    return BarProblem(load_scene(DEMOS / "he2022.toml", settings), mesh_cases(widths), ("level=fine",), 2)
+
+
+def helical_problem(widths: Sequence[float] = (1.2, 1.7), reference: float = 1.7) -> BarProblem:
+    """A narrow helical pair, hexahedra and tetrahedra of both orders. reference: elements across the contact width
+    before all cells are halved once; at 1.7 it takes 5 GB and ten minutes of one core."""
+    return BarProblem(scene_from_text(HELICAL), mesh_cases(widths), (f"elements_per_contact_width={reference}",), 1)
+
+
+def mesh_cases(widths: Sequence[float]) -> tuple[tuple[str, ...], ...]:
+    """Overrides of [mesh]: orders 2 and 1, both shapes, so many elements across the contact width."""
+    return tuple(
+        (f"order={order}", f"shape={shape}", f"elements_per_contact_width={width}")
+        for order in (2, 1)
+        for shape in ("hexahedron", "tetrahedron")
+        for width in widths
+    )
+
+
+def measure_bars(problem: BarProblem) -> list[BarRow]:
+    """One row a case, figure and friction coefficient; a figure that is exactly zero without friction is left out."""
+    exact, nearly = (_figures(_reference(problem, problem.halvings - last)) for last in (0, 1))
+    rows = []
+    for case in problem.cases:
+        scene = problem.with_mesh(case)
+        run, coarse = _solved(scene), _solved(scene, coarse=True)
+        values, bars = _figures(run), [astuple(errors) for errors in errors_between(run, coarse)]
+        rows += _rows(", ".join(case), run.frictions, values, bars, exact, nearly)
+    return [row for row in rows if not (row.figure == "loss_percent" and row.friction == 0.0)]
+
+
+def hit_rate(rows: Sequence[BarRow]) -> float:
+    """The share of rows whose bar holds the true error."""
+    return sum(row.inside for row in rows) / len(rows)
+
+
+def _rows(
+    case: str, frictions: Sequence[float], values: Sequence[Sequence[float]], bars: Sequence[Sequence[float]],
+    exact: Sequence[Sequence[float]], nearly: Sequence[Sequence[float]],
+) -> list[BarRow]:  # fmt: skip
+    """All figures of a case; the tables are (friction coefficients, figures)."""
+    return [
+        BarRow(case, figure, friction, own, bar, abs(own - best), abs(best - second))
+        for friction, *tables in zip(frictions, values, bars, exact, nearly)
+        for figure, own, bar, best, second in zip(FIGURES, *tables)
+    ]
+
+
+def _solved(scene: Scene, coarse: bool = False) -> RunData:
+    """On this rank alone."""
+    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, companion_mesh if coarse else gear_mesh)
+    assert run is not None
+    return run
+
+
+def _reference(problem: BarProblem, halvings: int) -> RunData:
+    scene = problem.with_mesh(problem.reference)
+
+    def mesh(scene: Scene, index: int) -> MeshData:
+        fine = gear_mesh(scene, index, adapted=_finer_bulk)
+        for _ in range(halvings):
+            fine = halved(fine)
+        return fine
+
+    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
+    assert run is not None
+    return run
+
+
+def _finer_bulk(own: SectorResolution) -> SectorResolution:
+    """Twice the elements where no level refines: halved cells keep the fillet's outline, these follow it closer."""
+    counts = "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements"
+    return replace(own, **{name: 2 * getattr(own, name) for name in counts})
+
+
+def _figures(run: RunData) -> list[list[float]]:
+    """(friction coefficients, figures)."""
+    return [[float(getattr(row, name)) for name in FIGURES] for row in friction_rows(run)]

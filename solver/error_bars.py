@@ -1,0 +1,134 @@
+"""Error bars of a run's figures, from the run and its coarse companion.
+
+Each figure comes from a curve, over the engagement or over the pitch; two such figures may agree by chance, their
+curves do not. So the difference D of a figure is the larger one of |Q_h − Q_2h| and of Q times the relative root mean
+square difference of the curves.
+
+- Transmission error, mesh stiffness and loss: D over 2^p − 1, which is Richardson's estimate, with the lowest rates p
+  that the benchmark pairs have shown; first-order cells bend badly, so theirs is below 1.
+- Pressures converge erratically while the contact is a few elements wide, but a fitted peak has a part that is known
+  without a finer mesh: Hertz for the slice's own line load. The bar is the difference D of peaks and Hertz on the run's
+  own mesh, plus the difference D of Hertz's peaks between the meshes, which is the error of the loads. Where a flank is
+  not Hertz's (a relief sets in, a face ends) it is too wide.
+
+A bar is about the mesh alone: both meshes stand at the same positions, so how finely these sample the pitch is not in
+it, nor is what the scene leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.archive import Archive
+from solver.companion import Companion
+from solver.engagement import engagement
+from solver.estimated_errors import EstimatedErrors, FigureErrors, keep_errors, kept_errors
+from solver.results import loss_percent, mesh_stiffness
+from solver.run_data import RunData, SolvedPosition
+
+Reduction = Callable[[Floats], float]
+
+STIFFNESS_FACTOR = {1: 2.0, 2: 0.5}
+"""1/(2^p − 1) of transmission error and mesh stiffness by the order of the cells: p = 0.6 and 1.6."""
+LOSS_FACTOR = {1: 2.0, 2: 1.0}
+"""The same of the loss, which follows the distribution of pressure and tooth forces: p = 0.6 and 1."""
+METHOD = (
+    "difference to the same scene on meshes of twice the element size; of a pressure: difference to Hertz for the "
+    "slices' own line loads, plus the difference of these loads between the meshes"
+)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What a figure is read from: values (n,) at pinion rotations [rad]; NaN where there is none."""
+
+    at: Floats
+    values: Floats
+
+
+def with_errors(run: RunData, archive: Archive, companion: Companion | None) -> RunData:
+    """The run with its error bars: those in the archive, or the companion's, which are then kept. Raises OSError."""
+    errors = kept_errors(archive)
+    if errors is None and companion is not None:
+        errors = estimated_errors(run, companion)
+        keep_errors(archive, errors)
+    return replace(run, errors=errors or run.errors)
+
+
+def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
+    """The bars of all friction coefficients, or why there are none."""
+    if companion.run is None:
+        return EstimatedErrors(missing=companion.failure)
+    try:
+        return EstimatedErrors(errors_between(run, companion.run), METHOD, "")
+    except (ValueError, IndexError) as error:  # a companion too coarse to have the figures, as without any contact
+        return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
+
+
+def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
+    """The bars of `run`, one per friction coefficient; coarse: the same scene on elements of twice the size."""
+    return tuple(_errors(run, coarse, index) for index in range(len(run.frictions)))
+
+
+def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
+    own, hertz, other = (engagement(each, index) for each in (run, _with_hertz(run), _with_hertz(coarse)))
+    error, stiffness, loss = (
+        [Curve(each.angles, curve(each, index)) for each in (run, coarse)]
+        for curve in (_transmission_error, mesh_stiffness, _loss)
+    )
+    peaks = [Curve(each.angle, each.max_pressure) for each in (own, hertz, other)]
+    means = [Curve(each.angle, each.mean_pressure) for each in (own, hertz, other)]
+    order = run.scene.mesh.order
+    return FigureErrors(
+        max_pressure_MPa=_pressure_error(np.nanmax, *peaks),
+        mean_pressure_MPa=_pressure_error(np.nanmean, *means),
+        transmission_error_peak_to_peak_um=STIFFNESS_FACTOR[order] * difference(np.ptp, *error),
+        mesh_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *stiffness),
+        loss_percent=LOSS_FACTOR[order] * difference(np.mean, *loss),
+    )
+
+
+def _pressure_error(figure: Reduction, own: Curve, hertz: Curve, coarse_hertz: Curve) -> float:
+    """Of the profile at the loads found, plus that of the loads."""
+    return difference(figure, own, hertz) + difference(figure, hertz, coarse_hertz)
+
+
+def difference(figure: Reduction, first: Curve, second: Curve) -> float:
+    """The larger of the difference of a figure between two curves, and of the figure times the curves' relative root
+    mean square difference where both have values; NaN where they have none in common."""
+    value = float(figure(first.values))
+    return max(abs(value - float(figure(second.values))), abs(value) * _relative(first, second))
+
+
+def _relative(first: Curve, second: Curve) -> float:
+    _, i, j = np.intersect1d(np.round(first.at, 9), np.round(second.at, 9), return_indices=True)
+    one, other = first.values[i], second.values[j]
+    known = np.isfinite(one) & np.isfinite(other)
+    if not known.any():
+        return float("nan")
+    size = np.linalg.norm(one[known])
+    return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
+
+
+def _with_hertz(run: RunData) -> RunData:
+    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one."""
+
+    def exact(solved: SolvedPosition) -> SolvedPosition:
+        cut = solved.cut
+        return replace(solved, cut=replace(cut, peak=np.where(cut.edge, np.nan, cut.hertz)))
+
+    return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
+
+
+def _transmission_error(run: RunData, index: int) -> Floats:
+    """[µm] (k,)."""
+    return np.array([1e3 * each[index].result.transmission_error for each in run.positions])
+
+
+def _loss(run: RunData, index: int) -> Floats:
+    """[%] (k,)."""
+    return np.array([loss_percent(each[index]) for each in run.positions])

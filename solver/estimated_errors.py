@@ -1,0 +1,67 @@
+"""Error bars as a run keeps them: one for each engineering figure and friction coefficient, or why there is none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+from solver.archive import Archive, ArchiveError, read_arrays, write_arrays
+
+
+@dataclass(frozen=True)
+class FigureErrors:
+    """Estimated errors, not negative, of the figures of the same names in `results.FrictionRow`; NaN where a figure
+    has none."""
+
+    max_pressure_MPa: float
+    mean_pressure_MPa: float
+    transmission_error_peak_to_peak_um: float
+    mesh_stiffness_N_per_mm_um: float
+    loss_percent: float
+
+
+@dataclass(frozen=True)
+class EstimatedErrors:
+    """figures: one per friction coefficient, in the scene's order; empty where none were estimated, and `missing` says
+    why in a sentence. method: how they were estimated."""
+
+    figures: tuple[FigureErrors, ...] = ()
+    method: str = ""
+    missing: str = "Error bars were not asked for."
+
+    def bar(self, figure: str, index: int) -> float:
+        """Of a figure of `FigureErrors` at friction coefficient number `index`; NaN where there is none."""
+        return float(getattr(self.figures[index], figure)) if self.figures else math.nan
+
+
+NOT_ESTIMATED = EstimatedErrors()
+
+
+def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
+    """Writes OUT/results/errors.npz, if there is something to keep. Raises OSError."""
+    if errors.figures:
+        values = np.array([astuple(row) for row in errors.figures])
+        write_arrays(
+            archive.folder / "errors.npz",
+            {"fingerprint": archive.fingerprint, "method": errors.method, "values": values},
+        )
+
+
+def kept_errors(archive: Archive) -> EstimatedErrors | None:
+    """What `keep_errors` kept of this scene; None where there is nothing, or nothing that can be read."""
+    try:
+        arrays = read_arrays(archive.folder / "errors.npz")
+    except ArchiveError:
+        return None  # a bar is no reason to refuse a run's results
+    if str(arrays["fingerprint"]) != archive.fingerprint:
+        return None
+    return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
+
+
+def plus_minus(value: float, bar: float, digits: int) -> str:
+    """ "2.60 ± 0.08", the bar rounded up; the value alone where it is exact or its bar unknown (NaN)."""
+    if not (math.isfinite(bar) and bar > 0.0):
+        return f"{value:.{digits}f}"
+    return f"{value:.{digits}f} ± {math.ceil(bar * 10**digits) / 10**digits:.{digits}f}"

@@ -137,6 +137,7 @@ def measure() -> Rung:
         "about 2 %.",
         tuple(_claims(cases)),
         lambda figure: _draw(figure, cases),
+        "The disc that sticks shrinks as the push grows, and the ball gives way more than in proportion",
     )
 
 

@@ -66,6 +66,7 @@ def measure() -> Rung:
         "q = μp0[√(1 − x²/b²) − (c/b)√(1 − x²/c²)]. Meshes do not match; cells of b/16 unless said otherwise.",
         (*_claims(loads), _falling(meshes)),
         lambda figure: _draw(figure, loads, meshes),
+        "The middle sticks, the rims slip: the traction leaves the friction limit where Cattaneo says",
     )
 
 

@@ -141,6 +141,7 @@ def measure() -> Rung:
         "counts against a creep of order μb/R.",
         tuple(_claims(cases[-1], cases[0])),
         lambda figure: _draw(figure, cases),
+        "Within three half-widths Cattaneo's traction turns into Carter's: stick at the front, slip at the rear",
     )
 
 

@@ -124,6 +124,7 @@ def measure() -> Rung:
         "to zero.",
         tuple(_claims(model.pair, found, angles)),
         lambda figure: _draw(figure, model.pair, found, angles),
+        "Deflection lengthens the engagement; in double contact the shares differ from the formula's by 0.04 at most",
     )
 
 

@@ -150,6 +150,7 @@ def measure() -> Rung:
         "integral of Flamant's.",
         tuple(_claims(cases)),
         lambda figure: _draw(figure, cases),
+        "Friction pulls at the surface behind the contact: a cusp of 2μp0, which a mesh cuts off by a share of √(h/b)",
     )
 
 

@@ -14,7 +14,7 @@ from meshes.parameters import GearParameters
 from meshes.root_band import LONGEST
 from meshes.section import SectorResolution, section_mesh
 from solver.estimates import HertzEstimate, hertz_estimate
-from solver.skips import skips
+from solver.skips import is_plane, skips
 
 if TYPE_CHECKING:
     from solver.scene import Scene
@@ -38,6 +38,10 @@ LEAST_NECK = 3
 NECK = 0.8
 """Cells from the flank start to the middle of the fillet, and how many modules they cover at most: they grow from the
 thin layers' depth, twofold at most."""
+CORE_AND_RIM = {True: (6, 6), False: (4, 4)}
+"""Coarse columns of a tooth and rows of the rim, by whether the scene is plane. Error of the transmission error of He's
+spur pair at quick, standard and fine, against 12 and 16: 0.04, 0.05, 0.09 % with 6 and 6; 0.16, 0.19, 0.29 % with 4 and
+4; 0.29, 0.40, 0.72 % with 2 and 4. In space the rows of the rim cost most: the cut faces are condensed densely."""
 FORE_LAND = 1.2
 """The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
 
@@ -76,6 +80,7 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> Sect
     depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
     depths *= min(1.0, DEEPEST * gear.normal_module / float(depths.sum()))
     more = _neck_elements(float(depths.sum()) / gear.normal_module) - LEAST_NECK
+    core, rim = CORE_AND_RIM[is_plane(scene)]
     resolution = SectorResolution(
         profile_elements=3 * max(LEAST_ROWS, math.ceil(along / 3)),
         face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][index])),
@@ -85,6 +90,8 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> Sect
         neck_elements=LEAST_NECK + more,
         fillet_elements=SectorResolution.fillet_elements + more,
         back_elements=SectorResolution.back_elements + more,
+        core_elements=core,
+        rim_elements=rim,
     )
     return resolution if skips(scene, "coarse-body") else _fine_everywhere(resolution)
 

@@ -1,7 +1,8 @@
 # make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
 # make test   sets up what is missing, runs the tests
 # make setup  only that;  make lint, make docker, make clean as they say
-.PHONY: demo test setup lint docker clean
+# make stress writes docs/stress.md: settings, random scenes and faults at the edge of what can be asked; an hour
+.PHONY: demo test stress setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -23,6 +24,10 @@ demo: $(ready)
 
 test: $(ready)
 	.venv/bin/python -m pytest $(PYTEST_ARGS)
+
+stress: export OMP_NUM_THREADS ?= 1
+stress: $(ready)
+	.venv/bin/python -m evidence.stress all
 
 setup: $(ready)
 

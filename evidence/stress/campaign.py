@@ -89,13 +89,15 @@ def summary(outcomes: list[Outcome]) -> str:
     rows = [[verdict.value, str(counts[verdict])] for verdict in Verdict]
     solved = [o for o in outcomes if o.verdict is Verdict.CONVERGED]
     flat = [o for o in solved if is_plane(random_scene(o.seed))]
-    words = (
-        f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}. Of those that converged "
-        f"{len(flat)} are plane and {len(solved) - len(flat)} are not; the balance error is at most "
-        f"{max(o.balance for o in solved):.1e} (median {np.median([o.balance for o in solved]):.1e}), and Newton's "
-        f"method took {np.mean([o.iterations for o in solved]):.1f} iterations a position on average (plane "
-        f"{np.mean([o.iterations for o in flat]):.1f}), the frictionless start included."
-    )
+    words = f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}."
+    if solved:
+        means = [float(np.mean([o.iterations for o in some])) if some else 0.0 for some in (solved, flat)]
+        words += (
+            f" Of those that converged {len(flat)} are plane and {len(solved) - len(flat)} are not; the balance error "
+            f"is at most {max(o.balance for o in solved):.1e} (median {np.median([o.balance for o in solved]):.1e}), "
+            f"and Newton's method took {means[0]:.1f} iterations a position on average (plane ones {means[1]:.1f}), "
+            f"the frictionless start included."
+        )
     bad = [[str(o.seed), o.verdict.value, _first_line(o.message)] for o in outcomes if o not in solved]
     parts = [table(["outcome", "scenes"], rows, right={1}), words]
     return "\n\n".join([*parts, table(["seed", "outcome", "message"], bad, right={0})] if bad else parts)

@@ -2,7 +2,8 @@
 # make test   sets up what is missing, runs the tests
 # make verification  solves the verification problems again, writes docs/verification.md and its figures
 # make setup  only that;  make lint, make docker, make clean as they say
-.PHONY: demo test verification setup lint docker clean
+# make stress writes docs/stress.md: settings, random scenes and faults at the edge of what can be asked; an hour
+.PHONY: demo test verification stress setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -27,6 +28,10 @@ test: $(ready)
 
 verification: $(ready)
 	.venv/bin/python -m evidence.ladder --out docs
+
+stress: export OMP_NUM_THREADS ?= 1
+stress: $(ready)
+	.venv/bin/python -m evidence.stress all
 
 setup: $(ready)
 

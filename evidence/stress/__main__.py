@@ -1,0 +1,89 @@
+"""`python -m evidence.stress [all | matrix | scenes | independence]`: measures, and writes docs/stress.md.
+
+Each part keeps its own piece of the page, docs/stress/PART.md, so that one can be measured again alone. `seeds FIRST
+COUNT` is what `scenes` starts in a process of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from evidence import report
+from evidence.claims import Claim
+from evidence.stress.campaign import campaign, solve_seeds, summary, write_outcomes
+from evidence.stress.independence import cylinder_claims, gear_claims, iteration_claims
+from evidence.stress.matrix import SHEETS
+from evidence.stress.sheets import draw, write_csv
+from solver import compat
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+SCENES = 500
+TITLE, COMMAND = "Stability under stress", "make stress"
+INTRODUCTION = """What happens at the edge of what can be asked: every setting over the widest range that makes
+sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
+message and no result; what was refused is listed below its figure."""
+
+
+def matrix() -> list[str]:
+    """Heat maps, their CSVs, and what was refused."""
+    parts = ["## The matrix of settings"]
+    for sheet in (make() for make in SHEETS):
+        write_csv(sheet, DOCS / "stress" / f"{sheet.name}.csv")
+        report.picture(draw(sheet), DOCS / "pictures/stress" / f"{sheet.name}.png")
+        parts += [f"### {sheet.title}", f"![{sheet.title}](pictures/stress/{sheet.name}.png)"]
+        parts += [f"- {row}, {column}: {message}" for row, column, message in sheet.refused]
+        print(f"{sheet.name}: {len(sheet.refused)} refused", flush=True)
+    return parts
+
+
+def scenes() -> list[str]:
+    """Random scenes, counted."""
+    outcomes = []
+    for outcome in campaign(0, SCENES):
+        outcomes.append(outcome)
+        print(outcome.seed, outcome.verdict.value, outcome.message.splitlines()[-1:], flush=True)
+    write_outcomes(outcomes, DOCS / "stress/scenes.csv")
+    return ["## Random scenes", summary(outcomes)]
+
+
+def independence() -> list[str]:
+    """Claims on γ, θ and iterations."""
+    claims = [*gear_claims(), *cylinder_claims(), *iteration_claims()]
+    rows = [_row(claim) for claim in claims]
+    head = ["quantity", "found", "wanted", "error", "allowed", ""]
+    return ["## Independence of γ and θ; iterations", report.table(head, rows, right={1, 2, 3, 4})]
+
+
+def _row(claim: Claim) -> list[str]:
+    numbers = [f"{value:.6g}" for value in (claim.found, claim.wanted)]
+    errors = [f"{value:.2g}" for value in (claim.error, claim.tolerance)]
+    return [claim.quantity, *numbers, *errors, "holds" if claim.holds else "**FAILS**"]
+
+
+PARTS: dict[str, Callable[[], list[str]]] = {"matrix": matrix, "scenes": scenes, "independence": independence}
+
+
+def main(arguments: list[str]) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("part", choices=["all", *PARTS, "seeds"], nargs="?", default="all")
+    parser.add_argument("numbers", type=int, nargs="*", help="of seeds: the first, and how many")
+    given = parser.parse_args(arguments)
+    compat.silence_logs()
+    logging.getLogger("evolvent").setLevel(logging.ERROR)
+    if given.part == "seeds":
+        solve_seeds(*given.numbers)
+        return
+    for name in PARTS if given.part == "all" else (given.part,):
+        report.write(DOCS / "stress" / f"{name}.md", PARTS[name]())
+    pieces = [DOCS / "stress" / f"{name}.md" for name in PARTS]
+    texts = [piece.read_text(encoding="utf-8") for piece in pieces if piece.exists()]
+    report.write(DOCS / "stress.md", [report.header(TITLE, COMMAND), INTRODUCTION, *texts])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

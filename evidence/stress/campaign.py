@@ -1,0 +1,107 @@
+"""Hundreds of random scenes, solved one after the other in a process of their own that may crash or hang.
+
+The process writes one JSON line a scene; whoever watches it kills it when a scene takes too long and starts the next.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from queue import Empty, Queue
+from threading import Thread
+
+import numpy as np
+
+from evidence.report import table
+from evidence.stress.outcomes import Outcome, Verdict, outcome_of
+from evidence.stress.random_scenes import random_scene
+from solver import compat
+from solver.skips import is_plane
+
+PATIENCE = 300.0
+"""Seconds after which a scene has hung; they take one to twenty."""
+
+
+def solve_seeds(first: int, count: int) -> None:
+    """In the process that may die: one JSON line a scene on standard output."""
+    compat.silence_logs()
+    for seed in range(first, first + count):
+        found = asdict(outcome_of(random_scene(seed), seed))
+        print(json.dumps({**found, "verdict": found["verdict"].name}), flush=True)
+
+
+def campaign(first: int, count: int, patience: float = PATIENCE) -> Iterator[Outcome]:
+    """The outcomes of the seeds first, first + 1, ..., whatever their scenes do to the process."""
+    seed = first
+    while seed < first + count:
+        for outcome in _until_it_dies(seed, first + count - seed, patience):
+            yield outcome
+            seed = outcome.seed + 1
+
+
+def _until_it_dies(first: int, count: int, patience: float) -> Iterator[Outcome]:
+    command = [sys.executable, "-m", "evidence.stress", "seeds", str(first), str(count)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout is not None
+        lines: Queue[str] = Queue()
+        Thread(target=_pass_on, args=(process.stdout, lines), daemon=True).start()
+        for seed in range(first, first + count):
+            try:
+                line = lines.get(timeout=patience)
+            except Empty:
+                process.kill()
+                yield Outcome(seed, Verdict.HUNG, f"no result after {patience:g} s")
+                return
+            if not line:
+                yield Outcome(seed, Verdict.CRASHED, f"the process ended with status {process.wait()}")
+                return
+            found = json.loads(line)
+            yield Outcome(**{**found, "verdict": Verdict[found["verdict"]]})
+
+
+def _pass_on(source: Iterable[str], lines: Queue[str]) -> None:
+    """Every line as it comes, and an empty one at the end."""
+    for line in source:
+        lines.put(line)
+    lines.put("")
+
+
+def write_outcomes(outcomes: list[Outcome], path: Path) -> None:
+    """A CSV of all outcomes. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    rows = ["seed,verdict,balance error,mean iterations,most iterations,dofs,message"]
+    rows += [
+        f"{o.seed},{o.verdict.value.split(',')[0]},{o.balance:.1e},{o.iterations:.1f},{o.most},{o.dofs},"
+        f'"{_first_line(o.message)}"'
+        for o in outcomes
+    ]
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+def summary(outcomes: list[Outcome]) -> str:
+    """What became of the scenes, as Markdown."""
+    counts = Counter(o.verdict for o in outcomes)
+    rows = [[verdict.value, str(counts[verdict])] for verdict in Verdict]
+    solved = [o for o in outcomes if o.verdict is Verdict.CONVERGED]
+    flat = [o for o in solved if is_plane(random_scene(o.seed))]
+    words = f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}."
+    if solved:
+        means = [float(np.mean([o.iterations for o in some])) if some else 0.0 for some in (solved, flat)]
+        words += (
+            f" Of those that converged {len(flat)} are plane and {len(solved) - len(flat)} are not; the balance error "
+            f"is at most {max(o.balance for o in solved):.1e} (median {np.median([o.balance for o in solved]):.1e}), "
+            f"and Newton's method took {means[0]:.1f} iterations a position on average (plane ones {means[1]:.1f}), "
+            f"the frictionless start included."
+        )
+    bad = [[str(o.seed), o.verdict.value, _first_line(o.message)] for o in outcomes if o not in solved]
+    parts = [table(["outcome", "scenes"], rows, right={1}), words]
+    return "\n\n".join([*parts, table(["seed", "outcome", "message"], bad, right={0})] if bad else parts)
+
+
+def _first_line(message: str) -> str:
+    return message.strip().splitlines()[-1].replace('"', "'") if message else ""

@@ -78,13 +78,14 @@ class BarRow:
 
 @dataclass(frozen=True)
 class BarProblem:
-    """A scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, cells
-    halved so many times."""
+    """A scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, twice
+    the elements in the body if `fine_body`, then all cells halved so many times."""
 
     scene: Scene
     cases: tuple[tuple[str, ...], ...]
     reference: tuple[str, ...]
     halvings: int
+    fine_body: bool
 
     def with_mesh(self, settings: Sequence[str]) -> Scene:
         """The scene with other values in [mesh]."""
@@ -99,13 +100,15 @@ def spur_problem(
     """He's pair in plane strain at several numbers of elements across the contact width, of both orders,
     quadrilaterals and triangles."""
     settings = [f"contact.friction={list(frictions)}", f"sweep.positions={positions}"]
-    return BarProblem(load_scene(DEMOS / "he2022.toml", settings), mesh_cases(widths), ("level=fine",), 2)
+    return BarProblem(load_scene(DEMOS / "he2022.toml", settings), mesh_cases(widths), ("level=fine",), 2, True)
 
 
 def helical_problem(widths: Sequence[float] = (1.2, 1.7), reference: float = 1.7) -> BarProblem:
     """A narrow helical pair, hexahedra and tetrahedra of both orders. reference: elements across the contact width
-    before all cells are halved once; at 1.7 it takes 5 GB and ten minutes of one core."""
-    return BarProblem(scene_from_text(HELICAL), mesh_cases(widths), (f"elements_per_contact_width={reference}",), 1)
+    before all cells are halved once; that solution takes gigabytes and many minutes of one core."""
+    return BarProblem(
+        scene_from_text(HELICAL), mesh_cases(widths), (f"elements_per_contact_width={reference}",), 1, False
+    )
 
 
 def mesh_cases(widths: Sequence[float]) -> tuple[tuple[str, ...], ...]:
@@ -158,7 +161,7 @@ def _reference(problem: BarProblem, halvings: int) -> RunData:
     scene = problem.with_mesh(problem.reference)
 
     def mesh(scene: Scene, index: int) -> MeshData:
-        fine = gear_mesh(scene, index, adapted=_finer_bulk)
+        fine = gear_mesh(scene, index, adapted=_finer_body) if problem.fine_body else gear_mesh(scene, index)
         for _ in range(halvings):
             fine = halved(fine)
         return fine
@@ -168,7 +171,7 @@ def _reference(problem: BarProblem, halvings: int) -> RunData:
     return run
 
 
-def _finer_bulk(own: SectorResolution) -> SectorResolution:
+def _finer_body(own: SectorResolution) -> SectorResolution:
     """Twice the elements where no level refines: halved cells keep the fillet's outline, these follow it closer."""
     counts = "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements"
     return replace(own, **{name: 2 * getattr(own, name) for name in counts})

@@ -28,7 +28,7 @@ from solver.gear_position import ContactPoints, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 from solver.scene import Scene
-from solver.schema import Output, Skipping
+from solver.schema_output import Output, Skipping
 from solver.skips import OF_OUTPUT
 
 EARLIER = (

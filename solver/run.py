@@ -45,14 +45,12 @@ class Sweep:
     timings: Timings
 
 
-def run_scene(
-    scene: Scene, out: Path, resume: bool = False, quiet: bool = False, error_bars: bool = True
-) -> None:
+def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
     resume: go on after the positions that `out` holds; else what an earlier run left there is removed once the gears
-    are ready. error_bars: solve a coarse companion for them. Raises NotConverged, BalanceError, MeshError,
-    ArchiveError, OSError, on all ranks; nothing unconverged is ever written.
+    are ready. Raises NotConverged, BalanceError, MeshError, ArchiveError, OSError, on all ranks; nothing unconverged is
+    ever written.
     """
     comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
@@ -64,7 +62,7 @@ def run_scene(
         for name in switched_off(scene):
             log.info("not skipped, as asked: %s", name)
         sweep = _swept(scene, archive, start, comm, quiet, log)
-        companion = companion_of(scene, archive, pitch_of(scene), comm) if error_bars else None
+        companion = companion_of(scene, archive, pitch_of(scene), comm) if wanted_output(scene).error_bars else None
         memory = comm.allreduce(peak_memory_MB())
         on_first(comm, lambda: _write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
 

@@ -20,7 +20,8 @@ from solver.estimates import hertz_estimate
 from solver.material import Material
 from solver.scene_errors import Problem, SceneError, problems_of, scene_problem, shown
 from solver.scene_gears import ImpossibleGears, make_pair
-from solver.schema import Contact, Gear, Load, Materials, Mesh, Output, Pair, Section, Skipping, Sweep, key
+from solver.schema import Contact, Gear, Load, Materials, Mesh, Pair, Section, Sweep, key
+from solver.schema_output import Output, Skipping
 
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
 

@@ -5,7 +5,7 @@ A key with a unit has it in its name. `Scene` in scene.py puts the sections toge
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, JsonValue, field_validator, model_validator
 
@@ -199,7 +199,7 @@ class Mesh(Section):
     order: Literal[1, 2] = key("order of the cells and of the displacement", "1 or 2", default=2)
 
 
-def _as_tuple(value: Any) -> Any:
+def as_tuple(value: Any) -> Any:
     """One μ or a list of them."""
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)
 
@@ -210,7 +210,7 @@ Coefficient = Annotated[float, Field(ge=0, le=1)]
 class Contact(Section):
     """[contact]."""
 
-    friction: Annotated[tuple[Coefficient, ...], BeforeValidator(_as_tuple)] = key(
+    friction: Annotated[tuple[Coefficient, ...], BeforeValidator(as_tuple)] = key(
         "Coulomb friction coefficient μ, or a list that is computed one after the other",
         "a number from 0 to 1, or a list of different ones",
         "0 is frictionless, lubricated steel gears 0.03 to 0.12, dry steel up to 0.3",
@@ -266,34 +266,3 @@ class Sweep(Section):
         ge=0,
         le=1000,
     )
-
-
-class Output(Section):
-    """[output]."""
-
-    pictures: bool = key("draw the PNG pictures", "true or false", default=True)
-    animation: bool = key("draw the animation", "true or false", default=True)
-    fields: bool = key("write the fields for ParaView", "true or false", default=True)
-
-
-SkipName = Literal["plane", "friction-terms", "warm-up", "one-pitch", "one-sector", "far-teeth", "window",
-                   "coarse-body", "reuse", "fields", "pictures"]  # fmt: skip
-"""What a run leaves out where a scene does not need it: `solver.skips`."""
-SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
-
-
-class Skipping(Section):
-    """[skip]: for tests and benchmarks."""
-
-    off: Annotated[tuple[SkipName, ...], BeforeValidator(_as_tuple)] = key(
-        "skips that are switched off: what they leave out is computed the long way",
-        f"a list of {', '.join(SKIP_NAMES)}",
-        "give names of this list; `evolvent check` tells which ones apply to the scene",
-        default=(),
-    )
-
-    @field_validator("off")
-    @classmethod
-    def _each_once(cls, names: tuple[SkipName, ...]) -> tuple[SkipName, ...]:
-        """In one order, so that a scene does not depend on theirs."""
-        return tuple(name for name in SKIP_NAMES if name in names)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from solver.scene import Scene
-from solver.schema import Output, SkipName
+from solver.schema_output import Output, SkipName
 
 ROUND_OFF = 1e-8
 """Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
@@ -131,6 +131,12 @@ SKIPS: tuple[Skip, ...] = (
     ),
     Skip("reuse", lambda scene: len(scene.contact.friction) > 1, _reuse_sentence, tolerance=ROUND_OFF),
     Skip(
+        "error-bars",
+        lambda scene: not scene.output.error_bars,
+        lambda _: "Error bars and the coarse companion that they come from, because output.error_bars is false.",
+        tolerance=0.0,
+    ),
+    Skip(
         "fields",
         lambda scene: not scene.output.fields,
         lambda _: "Fields for ParaView, because output.fields is false.",
@@ -143,7 +149,7 @@ SKIPS: tuple[Skip, ...] = (
         tolerance=0.0,
     ),
 )
-OF_OUTPUT: tuple[SkipName, ...] = ("fields", "pictures")
+OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
 """Skips that results do not depend on."""
 
 
@@ -211,5 +217,8 @@ def wanted_output(scene: Scene) -> Output:
     asked = scene.output
     drawn = "pictures" in off
     return Output(
-        pictures=asked.pictures or drawn, animation=asked.animation or drawn, fields=asked.fields or "fields" in off
+        pictures=asked.pictures or drawn,
+        animation=asked.animation or drawn,
+        fields=asked.fields or "fields" in off,
+        error_bars=asked.error_bars or "error-bars" in off,
     )

@@ -15,7 +15,7 @@ from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from solver.scene import Scene, load_scene, scene_from_text
 
 ROOT = Path(__file__).resolve().parents[1]
-QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false")
+QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
 HELICAL = """
 [pair]
 normal_module_mm = 3.0

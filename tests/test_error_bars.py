@@ -29,7 +29,8 @@ from solver.run_data import RunData
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 
-SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4", "sweep.warm_up_positions=1")
+SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4", "sweep.warm_up_positions=1",
+         "output.error_bars=true")  # fmt: skip
 """He's pair, a second or so."""
 OUTPUT = ("output.pictures=false", "output.animation=false", "output.fields=false")
 
@@ -186,7 +187,8 @@ def test_without_a_companion(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     run_scene(scene, tmp_path, quiet=True)
     assert "it rained" in summary(tmp_path)["estimated_error"]["missing"]
     assert [row["estimated_error"] for row in summary(tmp_path)["frictions"]] == [None, None]
-    run_scene(scene, tmp_path, resume=True, quiet=True, error_bars=False)
+    without = spur_scene(*SHORT, "output.error_bars=false")
+    run_scene(without, tmp_path, resume=True, quiet=True)
     assert summary(tmp_path)["estimated_error"]["missing"] == "Error bars were not asked for."
 
 

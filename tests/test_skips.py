@@ -22,7 +22,7 @@ from solver.gear_position import shared_position
 from solver.gear_sweep import initial_state, sweep_pitch
 from solver.run import pitch_of, run_scene
 from solver.scene import Scene, scene_from_text
-from solver.schema import SkipName
+from solver.schema_output import SkipName
 from solver.sectors import sector_meshes
 from solver.skips import SKIPS, contact_teeth, skip_named, skipped, switched_off
 from solver.whole_gear import WholeGear
@@ -57,6 +57,7 @@ ANSWERS = {
     "reuse": Case("reuse", SPUR),
     "fields": Case("fields", (*SPUR, SMOOTH)),
     "pictures": Case("pictures", (*SPUR, SMOOTH)),
+    "error-bars": Case("error-bars", (*SPUR, SMOOTH)),
 }
 
 
@@ -168,7 +169,7 @@ def test_gears_are_condensed_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     assert counts == [2, 4]
 
 
-@pytest.mark.parametrize(("name", "pattern"), [("fields", "fields/*"), ("pictures", "pictures/*.png")])
+@pytest.mark.parametrize(("name", "pattern"), [("fields", "fields/*"), ("pictures", "pictures/*.png"), ("error-bars", "results/errors.npz")])
 def test_output_is_written(name: SkipName, pattern: str, tmp_path: Path) -> None:
     """Nothing unless it is switched on; summary.json still tells the scene that was asked for."""
     for off in (False, True):

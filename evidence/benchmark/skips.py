@@ -16,12 +16,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.schema import SkipName
+from solver.schema_output import SkipName
 from solver.skips import skip_named
 
 ROOT = Path(__file__).resolve().parents[2]
 SPUR, HELICAL = "demos/he2022.toml", "demos/yang2022.toml"
-QUICK = ("mesh.level=quick", "output.pictures=false", "output.animation=false", "output.fields=false")
+QUICK = (
+    "mesh.level=quick", "output.pictures=false", "output.animation=false", "output.fields=false",
+    "output.error_bars=false",
+)  # fmt: skip
 SMOOTH, ROUGH = "contact.friction=0", "contact.friction=[0, 0.1, 0.3]"
 FOUR = "sweep.positions=4"
 Summary = dict[str, Any]

@@ -24,7 +24,7 @@ LARGEST = {True: (9_000, 600), False: (60_000, 3_100)}
 """Degrees of freedom of a sector and rows of its dense part that are allowed, by whether the scene is plane."""
 THINNEST = 0.03
 """Face width of a helical gear over its diameter."""
-QUIET = {"pictures": False, "animation": False, "fields": False}
+QUIET = {"pictures": False, "animation": False, "fields": False, "error_bars": False}
 
 
 @dataclass(frozen=True)

@@ -91,14 +91,13 @@ def test_every_skip_is_tested_and_measured() -> None:
 
 def contact_nodes(scene: Scene) -> int:
     """Pinion flank nodes whose jump is an unknown at φ = 0."""
-    return len(shared_position(model_of(scene), 0.0, (0.0, 0.0), normal_only=True).contact.node)
+    return len(shared_position(model_of(scene), 0.0, (0.0, 0.0), (0.0,), None).contact.node)
 
 
 def components(scene: Scene) -> int:
     """Compliance rows a node at the first position."""
     model = model_of(scene)
-    normal_only = not any(map(model.has_friction_terms, scene.contact.friction))
-    return shared_position(model, 0.0, (0.0, 0.0), normal_only).system.k
+    return shared_position(model, 0.0, (0.0, 0.0), scene.contact.friction, None).system.k
 
 
 def memories(scene: Scene) -> int:
@@ -169,7 +168,10 @@ def test_gears_are_condensed_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     assert counts == [2, 4]
 
 
-@pytest.mark.parametrize(("name", "pattern"), [("fields", "fields/*"), ("pictures", "pictures/*.png"), ("error-bars", "results/errors.npz")])
+@pytest.mark.parametrize(
+    ("name", "pattern"),
+    [("fields", "fields/*"), ("pictures", "pictures/*.png"), ("error-bars", "results/errors.npz")],
+)
 def test_output_is_written(name: SkipName, pattern: str, tmp_path: Path) -> None:
     """Nothing unless it is switched on; summary.json still tells the scene that was asked for."""
     for off in (False, True):

@@ -49,6 +49,7 @@ CASES = (
     Case("window", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("coarse-body", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("reuse", HELICAL, (*QUICK, ROUGH, FOUR)),
+    Case("error-bars", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("fields", SPUR, (*QUICK, SMOOTH)),
     Case("pictures", SPUR, (*QUICK, SMOOTH)),
 )

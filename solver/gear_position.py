@@ -18,9 +18,9 @@ from solver.gear_model import GearModel
 from solver.kinematics import Stand
 from solver.newton import NotConverged
 
-RELOCATE = 5e-4
-"""A free rotation that moves the flanks further [mm] is made exact and searched again; the gap is linear in a smaller
-one but for its square over the curvature radius, 1e-7 mm."""
+RELOCATE = 1.7e-4
+"""A free rotation that moves the flanks further [modules] is made exact and searched again; the gap is linear in a
+smaller one but for its square over the curvature radius, 3e-8 modules."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
@@ -146,7 +146,7 @@ def shared_position(
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width = 1.5 * half_width
-        elif abs(shift) <= RELOCATE:
+        elif abs(shift) <= RELOCATE * model.pair.pinion.normal_module:
             return SharedPosition(contact, system, smooth)
         stand = stand.turned(model.load.on, float(smooth.motion[0]))
     raise NotConverged(

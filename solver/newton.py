@@ -10,6 +10,7 @@ from petsc4py import PETSc
 
 from meshes.data import Floats
 
+NOT_A_NUMBER = (PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN, PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN)
 PATIENCE = 40
 """Full steps that are taken at most before steps are cut."""
 AGAIN = 1e-3
@@ -129,10 +130,11 @@ def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: 
     snes.setTolerances(max_it=limit + 1)
     snes.solve(None, x)
     result = Root(np.array(x.array_r), snes.getIterationNumber(), snes.getFunctionNorm(), snes.getConvergedReason() > 0)
+    lost = snes.getConvergedReason() in NOT_A_NUMBER  # the norm is then zero, or that of the step before
     snes.destroy()
     if tangent.error is not None:
         raise tangent.error
-    if not np.isfinite(result.residual):
+    if lost or not np.isfinite(result.residual):
         raise NotConverged(f"{stage}: the residual is not a number after {result.iterations} iterations")
     return result
 

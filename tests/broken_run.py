@@ -1,7 +1,8 @@
 """`evolvent run` with something going wrong: broken_run.py HOW SCENE.toml --out DIR [...]; run by tests, not a test.
 
 HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive replaced); kill-half-N (half of it
-written); full-N (no space for the N-th); raise-R-N (rank R fails at its N-th position); unbalanced (a position fails
+written); full-N (no space for the N-th); raise-R-N (rank R fails at its N-th position); killrank-R-N (rank
+R is killed there); nan-N (its compliance is no number at the N-th search); unbalanced (a position fails
 its balance); count (prints how many gears this rank condensed and how many positions it searched).
 """
 
@@ -12,13 +13,17 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
+import numpy as np
 from mpi4py import MPI
 
 from solver import archive, gear_model, gear_sweep, run
 from solver.cli import main
+from solver.equilibrium import CondensedSystem
+from solver.gear_contact import GearContact
 
 
 def kill() -> None:
@@ -70,6 +75,23 @@ def failing_rank(rank: int, wanted: int) -> Callable[[int], None]:
     return action
 
 
+def killed_rank(rank: int, wanted: int) -> Callable[[int], None]:
+    return lambda number: kill() if MPI.COMM_WORLD.rank == rank and number == wanted else None
+
+
+def no_number(wanted: int) -> None:
+    """From the N-th position on the flanks' compliance is NaN."""
+    system, numbers = GearContact.system, count(1)
+    at: list[int] = []
+    before_call(gear_sweep, "shared_position", lambda _: at.append(next(numbers)))
+
+    def patched(self: GearContact, *arguments: Any, **options: Any) -> CondensedSystem:
+        found = system(self, *arguments, **options)
+        return replace(found, jump=found.jump * np.nan) if at[-1] >= wanted else found
+
+    setattr(GearContact, "system", patched)  # noqa: B010
+
+
 def break_it(how: str) -> None:
     kind, *numbers = how.split("-")
     if how == "kill-mesh":
@@ -86,6 +108,10 @@ def break_it(how: str) -> None:
         before_call(archive.os, "fsync", disk_full(int(numbers[0])))
     elif kind == "raise":
         before_call(gear_sweep, "shared_position", failing_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "killrank":
+        before_call(gear_sweep, "shared_position", killed_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "nan":
+        no_number(int(numbers[0]))
     elif how == "unbalanced":
         run.BALANCE_LIMIT = 1e-9
 

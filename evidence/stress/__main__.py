@@ -1,4 +1,4 @@
-"""`python -m evidence.stress [all | matrix | scenes | independence]`: measures, and writes docs/stress.md.
+"""`python -m evidence.stress [all | matrix | scenes | independence | faults]`: measures, and writes docs/stress.md.
 
 Each part keeps its own piece of the page, docs/stress/PART.md, so that one can be measured again alone. `seeds FIRST
 COUNT` is what `scenes` starts in a process of its own.
@@ -15,6 +15,7 @@ from pathlib import Path
 from evidence import report
 from evidence.claims import Claim
 from evidence.stress.campaign import campaign, solve_seeds, summary, write_outcomes
+from evidence.stress.faults import fault_claims
 from evidence.stress.independence import cylinder_claims, gear_claims, iteration_claims
 from evidence.stress.matrix import SHEETS
 from evidence.stress.sheets import draw, write_csv
@@ -53,9 +54,17 @@ def scenes() -> list[str]:
 def independence() -> list[str]:
     """Claims on γ, θ and iterations."""
     claims = [*gear_claims(), *cylinder_claims(), *iteration_claims()]
-    rows = [_row(claim) for claim in claims]
+    return ["## Independence of γ and θ; iterations", _claimed(claims)]
+
+
+def faults() -> list[str]:
+    """Killed and resumed."""
+    return ["## Faults", _claimed(fault_claims())]
+
+
+def _claimed(claims: list[Claim]) -> str:
     head = ["quantity", "found", "wanted", "error", "allowed", ""]
-    return ["## Independence of γ and θ; iterations", report.table(head, rows, right={1, 2, 3, 4})]
+    return report.table(head, [_row(claim) for claim in claims], right={1, 2, 3, 4})
 
 
 def _row(claim: Claim) -> list[str]:
@@ -64,7 +73,9 @@ def _row(claim: Claim) -> list[str]:
     return [claim.quantity, *numbers, *errors, "holds" if claim.holds else "**FAILS**"]
 
 
-PARTS: dict[str, Callable[[], list[str]]] = {"matrix": matrix, "scenes": scenes, "independence": independence}
+PARTS: dict[str, Callable[[], list[str]]] = {
+    "matrix": matrix, "scenes": scenes, "independence": independence, "faults": faults,
+}  # fmt: skip
 
 
 def main(arguments: list[str]) -> None:

@@ -1,0 +1,130 @@
+"""A run killed at random times and resumed, until it is complete: what is left must be the undisturbed run."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from evidence.claims import Claim, Reference
+from solver.archive import read_arrays
+
+ROOT = Path(__file__).resolve().parents[2]
+SETTINGS = (
+    "contact.friction=[0.1, 0.3]", "sweep.positions=8", "sweep.warm_up_positions=2", "output.pictures=false",
+    "output.animation=false", "output.fields=false",
+)  # fmt: skip
+KILLS = 20
+AGREEMENT = 1e-7
+PASSING = ("seconds", "residual", "iterations")
+"""What depends on the clock or on rounding."""
+
+
+@dataclass(frozen=True)
+class Struck:
+    """How often a run was killed, and how often of that after it had written a position."""
+
+    kills: int
+    after_a_position: int
+
+
+def arguments(out: Path, *more: str) -> tuple[str, ...]:
+    """He's spur pair with friction, of `evolvent run`."""
+    settings = [word for setting in SETTINGS for word in ("--set", setting)]
+    return ("demos/he2022.toml", "--out", str(out), "--level", "quick", "--quiet", *settings, *more)
+
+
+def environment() -> dict[str, str]:
+    """One thread, and this checkout's solver."""
+    return {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+
+
+def started(out: Path, *more: str, user: int | None = None) -> subprocess.Popen[str]:
+    """`evolvent run` in the background. user: the number of another user, for root."""
+    command = [sys.executable, "-m", "solver", "run", *arguments(out, *more)]
+    return subprocess.Popen(
+        command, cwd=ROOT, env=environment(), user=user, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def run(out: Path, *more: str, user: int | None = None) -> subprocess.CompletedProcess[str]:
+    """`evolvent run` to its end."""
+    with started(out, *more, user=user) as process:
+        output, errors = process.communicate()
+    return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+
+def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
+    """Kills a run at random times, resuming it each time, and lets it end when it was killed so often.
+
+    The times are spread over what a whole run takes here and now, so that kills fall into the start, the meshes, the
+    positions and the writing. A run that ends before it is killed is started anew. Raises RuntimeError where resuming
+    does not end well.
+    """
+    rng, after = np.random.default_rng(seed), 0
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        run(Path(folder) / "out")
+        seconds = time.perf_counter() - begin
+    done = 0
+    while done < kills:
+        fresh = [] if done == 0 or (out / "summary.json").exists() else ["--resume"]
+        with started(out, *fresh) as process:
+            try:
+                process.communicate(timeout=float(rng.uniform(0.2, 0.95)) * seconds)
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGKILL)
+                process.communicate()
+                done += 1
+                after += (out / "results" / "state.npz").exists()
+    last = run(out, "--resume")
+    if last.returncode != 0:
+        raise RuntimeError(f"{out}: wanted a resumed run to end with status 0, found {last.returncode}: {last.stderr}")
+    return Struck(done, after)
+
+
+def differs(found: Path, wanted: Path) -> float:
+    """Largest difference of any number of two runs' archives over the largest of its array; infinite where something is
+    missing."""
+    one, other = (_numbers(out) for out in (found, wanted))
+    if one.keys() != other.keys():
+        return float("inf")
+    return max(_difference(one[name], other[name]) for name in one)
+
+
+def _numbers(out: Path) -> dict[str, np.ndarray]:
+    return {
+        f"{path.name}/{key}": array
+        for path in (out / "results").iterdir()
+        for key, array in read_arrays(path).items()
+        if not key.endswith(PASSING)
+    }
+
+
+def _difference(one: np.ndarray, other: np.ndarray) -> float:
+    if one.shape != other.shape or one.dtype.kind != other.dtype.kind:
+        return float("inf")
+    if one.dtype.kind != "f":
+        return 0.0 if np.array_equal(one, other) else float("inf")
+    return float(np.abs(one - other).max(initial=0.0) / np.abs(other).max(initial=1e-6))
+
+
+def fault_claims(kills: int = KILLS) -> list[Claim]:
+    """20 kills, then the same numbers as undisturbed."""
+    with tempfile.TemporaryDirectory() as folder:
+        whole, out = Path(folder) / "whole", Path(folder) / "out"
+        run(whole)
+        struck = struck_again_and_again(out, kills, seed=0)
+        error = differs(out, whole)
+    what = (
+        f"largest relative difference of any number, spur pair killed {struck.kills} times at random "
+        f"({struck.after_a_position} of them after its first position) and resumed"
+    )
+    return [Claim.bound(what, error, AGREEMENT, Reference.REGRESSION, "the undisturbed run")]

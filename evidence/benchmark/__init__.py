@@ -1,0 +1,1 @@
+"""Run time against error, of Evolvent and of the programs that a user would take instead."""

@@ -1,0 +1,70 @@
+"""Evolvent's side of the benchmark, a process of its own: python -m evidence.benchmark.ours TASK.npz ANSWER.npz"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from evidence.benchmark.task import Answer, Push, Task
+from solver import compat
+from solver.body import Body, Fixed, Freedom, Rigid
+from solver.material import Material
+from solver.position import Position
+from solver.prepared import prepare
+from solver.problem import Contact, Problem
+
+
+def problem_of(task: Task) -> Problem:
+    """The task for the public API. The driven body carries the pressure: its cells are the larger ones."""
+    if not isinstance(task.drive, Push):
+        raise ValueError("a pair of gears has a program of its own: wanted a Push")
+    axis = "xyz"[task.dimension - 1]
+    rigid = Rigid(task.driven, (Freedom(axis, displacement=task.drive.displacement),))
+    bodies = tuple(
+        Body(
+            mesh,
+            Material(*task.materials[i]),
+            tuple(Fixed(group, directions) for body, group, directions in task.held if body == i),
+            rigid=rigid if i == 0 else None,
+            name=f"body {i}",
+        )
+        for i, mesh in enumerate(task.bodies)
+    )
+    contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach=4 * abs(task.drive.displacement))
+    return Problem(bodies, (contact,))
+
+
+def solved(task: Task) -> Answer:
+    """The answer, and what its parts took (CPU seconds)."""
+    problem, marks = problem_of(task), [time.process_time()]
+    prepared = prepare(problem)
+    marks.append(time.process_time())
+    from solver.statement import Step
+
+    solution, _ = Position(problem, prepared, Step()).solve(None)
+    marks.append(time.process_time())
+    found = solution.contacts[0]
+    points = np.pad(found.points, ((0, 0), (0, 3 - found.points.shape[1])))
+    return Answer(
+        body=0,
+        pressure=found.pressure,
+        points=points,
+        weights=found.weights,
+        force=abs(float(found.force[-1])),
+        iterations=solution.iterations,
+        dofs=task.dofs,
+        seconds={"start": marks[0], "condense": marks[1] - marks[0], "solve": marks[2] - marks[1]},
+    )
+
+
+def main() -> None:
+    compat.silence_logs()
+    source, target = sys.argv[1:]
+    solved(Task.read(Path(source))).write(Path(target))
+
+
+if __name__ == "__main__":
+    main()

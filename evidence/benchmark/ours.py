@@ -8,32 +8,35 @@ from pathlib import Path
 
 import numpy as np
 
-from evidence.benchmark.task import Answer, Push, Task
+from evidence.benchmark.task import Answer, Push, Task, Turn
 from solver import compat
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.position import Position
 from solver.prepared import prepare
-from solver.problem import Contact, Problem
+from solver.problem import Contact, Problem, Step
+
+GEAR_REACH = 0.1  # mm, the gap up to which flanks may close
 
 
 def problem_of(task: Task) -> Problem:
     """The task for the public API. The driven body carries the pressure: its cells are the larger ones."""
-    if not isinstance(task.drive, Push):
-        raise ValueError("a pair of gears has a program of its own: wanted a Push")
-    axis = "xyz"[task.dimension - 1]
-    rigid = Rigid(task.driven, (Freedom(axis, displacement=task.drive.displacement),))
+    if isinstance(task.drive, Push):
+        freedom = Freedom("xyz"[task.dimension - 1], displacement=task.drive.displacement)
+        reach = 4 * abs(task.drive.displacement)
+    else:
+        freedom, reach = Freedom("rz", load=task.drive.torque), GEAR_REACH
     bodies = tuple(
         Body(
             mesh,
             Material(*task.materials[i]),
-            tuple(Fixed(group, directions) for body, group, directions in task.held if body == i),
-            rigid=rigid if i == 0 else None,
+            tuple(Fixed(group, directions) for body, group, directions in task.held if (body, group) != (0, task.driven) and body == i),
+            rigid=Rigid(task.driven, (freedom,)) if i == 0 else None,
             name=f"body {i}",
         )
         for i, mesh in enumerate(task.bodies)
     )
-    contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach=4 * abs(task.drive.displacement))
+    contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach)
     return Problem(bodies, (contact,))
 
 
@@ -42,18 +45,17 @@ def solved(task: Task) -> Answer:
     problem, marks = problem_of(task), [time.process_time()]
     prepared = prepare(problem)
     marks.append(time.process_time())
-    from solver.statement import Step
-
     solution, _ = Position(problem, prepared, Step()).solve(None)
     marks.append(time.process_time())
     found = solution.contacts[0]
     points = np.pad(found.points, ((0, 0), (0, 3 - found.points.shape[1])))
+    turned = isinstance(task.drive, Turn)
     return Answer(
         body=0,
+        rotation=float(solution.motions[0][0]) if turned else float("nan"),
         pressure=found.pressure,
         points=points,
         weights=found.weights,
-        force=abs(float(found.force[-1])),
         iterations=solution.iterations,
         dofs=task.dofs,
         seconds={"start": marks[0], "condense": marks[1] - marks[0], "solve": marks[2] - marks[1]},

@@ -102,8 +102,7 @@ class Answer:
 
     body: whose contact surface carries the pressure. nodes (n,), pressure (n,) [MPa]: nodal values on its facets, a
     Lagrange field of the mesh's order; or, where the pressure lives at points, points (n, 3) and weights (n,) [mm or
-    mm²] in their place. force: what the bodies press on each other with along the last axis [N; N/mm in 2D]; torque
-    [N·mm] and rotation [rad] of the driven body about z. seconds: parts of the run, as the program tells them apart.
+    mm²] in their place. rotation: of the driven body about z [rad]. seconds: parts of the run, as the program tells them apart.
     """
 
     body: int
@@ -111,8 +110,6 @@ class Answer:
     nodes: Ints | None = None
     points: Floats | None = None
     weights: Floats | None = None
-    force: float = float("nan")
-    torque: float = float("nan")
     rotation: float = float("nan")
     iterations: int = 0
     dofs: int = 0
@@ -131,4 +128,4 @@ class Answer:
             return Answer(**json.loads(str(file["numbers"])), **arrays)
 
 
-_NUMBERS = ("body", "force", "torque", "rotation", "iterations", "dofs", "seconds")
+_NUMBERS = ("body", "rotation", "iterations", "dofs", "seconds")

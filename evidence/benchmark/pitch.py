@@ -1,0 +1,138 @@
+"""A pitch of the gear pair by Evolvent, a process of its own that says where its time went.
+
+python -m evidence.benchmark.pitch OUT.json ELEMENTS LEVEL POSITIONS MU[,MU...] [key=value ...]
+
+POSITIONS 0: both sectors are only assembled and factored, each once, as a program without condensation begins. All
+ranks write what they took together: seconds are those of the slowest one.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from evidence.benchmark.gears import scene
+from solver import compat
+from solver.body import Body, Fixed, assemble
+from solver.condense import Factor
+from solver.gear_model import prepare_model
+from solver.gear_sweep import SweptPosition
+from solver.run import peak_memory_MB, pitch_of
+from solver.run import _position as position_on_ranks
+from solver.gear_sweep import initial_state
+from solver.scene import Scene
+from solver.sectors import gear_mesh
+
+
+@dataclass(frozen=True)
+class PitchFacts:
+    """What a pitch took. start, mesh, assemble, condense [s]: wall. positions: wall seconds of each, warm-up included;
+    warm_up: how many of them are. cpu: CPU seconds of all ranks, whole processes. iterations: Newton's, of each position.
+    rotation: of the first full position, for the first μ, the pinion's elastic rotation [rad]. error: mm of
+    transmission error (n,) of the counted positions."""
+
+    dofs: int
+    ranks: int
+    start: float
+    mesh: float
+    assemble: float
+    condense: float
+    positions: tuple[float, ...]
+    warm_up: int
+    iterations: tuple[int, ...]
+    transmission_error: tuple[float, ...]
+    memory_MB: float
+    cpu: float
+
+    @property
+    def counted(self) -> int:
+        """Positions of the pitch itself."""
+        return len(self.positions) - self.warm_up
+
+    @property
+    def without_meshing(self) -> float:
+        """Wall seconds of all but meshing, the start of Python included."""
+        return self.start + self.assemble + self.condense + sum(self.positions)
+
+
+def measured(own: Scene, began: float) -> PitchFacts:
+    """The pitch of a scene, solved."""
+    comm = MPI.COMM_WORLD
+    start = time.perf_counter() - began
+    preparation = prepare_model(own, comm)
+    pitch, state = pitch_of(own), initial_state(own.contact.friction)
+    seconds, swept = [], []
+    for k in range(len(pitch.angles)):
+        begin = time.perf_counter()
+        found: SweptPosition = position_on_ranks(preparation.model, pitch, own.contact.friction, state, k, comm)
+        state = found.state
+        seconds.append(time.perf_counter() - begin)
+        swept.append(found)
+    meshes = [body.mesh for body in preparation.model.bodies]
+    assemble_share = preparation.assemble_seconds / (preparation.assemble_seconds + preparation.condense_seconds)
+    return PitchFacts(
+        dofs=sum(len(mesh.points) * mesh.dimension for mesh in meshes),
+        ranks=comm.size,
+        start=start,
+        mesh=preparation.mesh_seconds,
+        assemble=preparation.seconds * assemble_share,
+        condense=preparation.seconds * (1.0 - assemble_share),
+        positions=tuple(seconds),
+        warm_up=pitch.warm_up,
+        iterations=tuple(sum(r.iterations for r in p.results) for p in swept),
+        transmission_error=tuple(p.results[0].transmission_error for p in swept if not p.warm_up),
+        memory_MB=comm.allreduce(peak_memory_MB()),
+        cpu=comm.allreduce(_cpu()),
+    )
+
+
+def factored(own: Scene, began: float) -> PitchFacts:
+    """Both sectors assembled and factored once."""
+    start = time.perf_counter() - began
+    meshes = [gear_mesh(own, index) for index in (0, 1)]
+    meshed = time.perf_counter()
+    assembling = factoring = 0.0
+    for mesh, material in zip(meshes, own.materials()):
+        begin = time.perf_counter()
+        body = assemble(Body(mesh, material, supports=(Fixed("bore"),)))
+        K = body.stiffness[body.free][:, body.free].tocsr()
+        middle = time.perf_counter()
+        Factor(K).solve(np.ones(K.shape[0]))  # the first solution is what makes it factor
+        assembling, factoring = assembling + middle - begin, factoring + time.perf_counter() - middle
+    dofs = sum(len(mesh.points) * mesh.dimension for mesh in meshes)
+    mesh_seconds = meshed - began - start
+    return PitchFacts(
+        dofs, 1, start, mesh_seconds, assembling, factoring, (), 0, (), (), peak_memory_MB(), _cpu()
+    )
+
+
+def _cpu() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def read_facts(path: Path) -> PitchFacts:
+    values = json.loads(path.read_text())
+    return PitchFacts(**{k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
+
+
+def main() -> None:
+    began = time.perf_counter()
+    compat.silence_logs()
+    out, elements, level, positions, frictions, *settings = sys.argv[1:]
+    wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(1, int(positions))}"
+    own = scene(float(elements), *wanted, *settings, level=level)
+    facts = measured(own, began) if int(positions) else factored(own, began)
+    if MPI.COMM_WORLD.rank == 0:
+        Path(out).write_text(json.dumps(asdict(facts)))
+
+
+if __name__ == "__main__":
+    main()

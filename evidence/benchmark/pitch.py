@@ -23,20 +23,19 @@ from solver import compat
 from solver.body import Body, Fixed, assemble
 from solver.condense import Factor
 from solver.gear_model import prepare_model
-from solver.gear_sweep import SweptPosition
-from solver.run import peak_memory_MB, pitch_of
+from solver.gear_sweep import SweptPosition, initial_state
 from solver.run import _position as position_on_ranks
-from solver.gear_sweep import initial_state
+from solver.run import peak_memory_MB, pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 
 
 @dataclass(frozen=True)
 class PitchFacts:
-    """What a pitch took. start, mesh, assemble, condense [s]: wall. positions: wall seconds of each, warm-up included;
-    warm_up: how many of them are. cpu: CPU seconds of all ranks, whole processes. iterations: Newton's, of each position.
-    rotation: of the first full position, for the first μ, the pinion's elastic rotation [rad]. error: mm of
-    transmission error (n,) of the counted positions."""
+    """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
+    wall. positions: wall seconds of each, warm-up included; warm_up: how many of them are. iterations: Newton's, of all
+    friction coefficients together. transmission_error: [mm] at the first one, of the positions that count. memory_MB and
+    cpu [s]: of all ranks together."""
 
     dofs: int
     ranks: int
@@ -62,10 +61,9 @@ class PitchFacts:
         return self.start + self.assemble + self.condense + sum(self.positions)
 
 
-def measured(own: Scene, began: float) -> PitchFacts:
+def measured(own: Scene) -> PitchFacts:
     """The pitch of a scene, solved."""
-    comm = MPI.COMM_WORLD
-    start = time.perf_counter() - began
+    comm, start = MPI.COMM_WORLD, time.process_time()
     preparation = prepare_model(own, comm)
     pitch, state = pitch_of(own), initial_state(own.contact.friction)
     seconds, swept = [], []
@@ -93,9 +91,9 @@ def measured(own: Scene, began: float) -> PitchFacts:
     )
 
 
-def factored(own: Scene, began: float) -> PitchFacts:
+def factored(own: Scene) -> PitchFacts:
     """Both sectors assembled and factored once."""
-    start = time.perf_counter() - began
+    start, began = time.process_time(), time.perf_counter()
     meshes = [gear_mesh(own, index) for index in (0, 1)]
     meshed = time.perf_counter()
     assembling = factoring = 0.0
@@ -107,7 +105,7 @@ def factored(own: Scene, began: float) -> PitchFacts:
         Factor(K).solve(np.ones(K.shape[0]))  # the first solution is what makes it factor
         assembling, factoring = assembling + middle - begin, factoring + time.perf_counter() - middle
     dofs = sum(len(mesh.points) * mesh.dimension for mesh in meshes)
-    mesh_seconds = meshed - began - start
+    mesh_seconds = meshed - began
     return PitchFacts(
         dofs, 1, start, mesh_seconds, assembling, factoring, (), 0, (), (), peak_memory_MB(), _cpu()
     )
@@ -124,12 +122,11 @@ def read_facts(path: Path) -> PitchFacts:
 
 
 def main() -> None:
-    began = time.perf_counter()
     compat.silence_logs()
     out, elements, level, positions, frictions, *settings = sys.argv[1:]
-    wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(1, int(positions))}"
+    wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(2, int(positions))}"
     own = scene(float(elements), *wanted, *settings, level=level)
-    facts = measured(own, began) if int(positions) else factored(own, began)
+    facts = measured(own) if int(positions) else factored(own)
     if MPI.COMM_WORLD.rank == 0:
         Path(out).write_text(json.dumps(asdict(facts)))
 

@@ -1,7 +1,8 @@
 # make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
 # make test   sets up what is missing, runs the tests
+# make bench  run time against error (an hour, on a quiet machine); make bench-peers  the same beside other programs
 # make setup  only that;  make lint, make docker, make clean as they say
-.PHONY: demo test setup lint docker clean
+.PHONY: demo test bench bench-peers setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -23,6 +24,13 @@ demo: $(ready)
 
 test: $(ready)
 	.venv/bin/python -m pytest $(PYTEST_ARGS)
+
+bench: $(ready)
+	.venv/bin/python -m evidence.benchmark all
+
+bench-peers: $(ready)
+	packages/peers build/peers
+	.venv/bin/python -m evidence.benchmark all --peers
 
 setup: $(ready)
 

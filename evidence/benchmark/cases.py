@@ -63,9 +63,9 @@ def sphere(cells: float, order: int, shape: str, edge: float = 1.0) -> Task:
     Hertz' radius; shape "hexahedron" or "tetrahedron"."""
     case, side = point_contact(), 4.0
     a, size = case.half_width, case.half_width / cells
-    sizes = {"order": order, "growth": 1.7, "fine_depth": 0.25 * a}
-    upper = ring_sphere(case.radius, side, side, edge * a, size, 1.25 * a, **sizes)
-    lower = ring_block(side, side, edge * a, size / 1.2, 1.25 * a, **sizes)
+    growth, depth = 1.7, 0.25 * a
+    upper = ring_sphere(case.radius, side, side, edge * a, size, 1.25 * a, order, growth, depth)
+    lower = ring_block(side, side, edge * a, size / 1.2, 1.25 * a, order, growth, depth)
     if shape == "tetrahedron":
         upper, lower = (split_to_simplices(mesh, _columns(mesh.points)) for mesh in (upper, lower))
     bodies = _near(upper, "arc", 1.5 * a), _near(lower, "top", 1.5 * a)

@@ -56,7 +56,7 @@ class GearSizes:
 
 
 FULL = GearSizes((1.0, 1.9), (1.0, 1.3, 1.7), 20, 1, (1.0, 1.3), (2.2, 3.0))
-SMALL = GearSizes((0.7,), (0.7,), 3, 1, (0.5, 0.7), (0.8, 1.0))
+SMALL = GearSizes((0.8,), (0.8,), 3, 1, (0.8, 0.9), (0.8, 1.0))
 
 
 def rows(peers: Sequence[Program], sizes: GearSizes, folder: Path) -> Iterator[GearRow]:

@@ -14,6 +14,7 @@ import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -117,8 +118,9 @@ def _cpu() -> float:
 
 
 def read_facts(path: Path) -> PitchFacts:
-    values = json.loads(path.read_text())
-    return PitchFacts(**{k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
+    """What a run wrote."""
+    values: dict[str, Any] = json.loads(path.read_text())
+    return PitchFacts(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
 
 
 def main() -> None:

@@ -72,6 +72,23 @@ class Overkill:
     peak_error: float
     profile_error: float
 
+    def row(self) -> OverkillRow:
+        return OverkillRow(
+            self.force, self.peak, self.reference.half_width, self.force_error, self.peak_error, self.profile_error
+        )
+
+
+@dataclass(frozen=True)
+class OverkillRow:
+    """An overkill solution as a line of a table: force [N; N/mm], peak [MPa], half-width [mm], own relative errors."""
+
+    force: float
+    peak: float
+    half_width: float
+    force_error: float
+    peak_error: float
+    profile_error: float
+
 
 @dataclass(frozen=True)
 class Row:
@@ -101,7 +118,7 @@ def overkill(case: Case, folder: Path) -> Overkill:
     """Two solutions of Evolvent on meshes finer than any that is compared. Raises RunFailed."""
     coarse, fine = (_solved_pressure(case, mesh, folder) for mesh in case.overkill)
     a = case.hertz.half_width
-    d = 2 if case is HERTZ_2D or case is SMALL_2D else 3
+    d = 2 if case.name == "hertz2d" else 3
     references = [Reference.fitted(p, a, d) for p in (coarse, fine)]
     return Overkill(
         references[1], fine.force, fine.peak(a),

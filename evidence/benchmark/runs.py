@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import statistics
 import subprocess
-import threading
-import time
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +32,7 @@ class Command:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a process and its children took. wall, cpu [s]: of all ranks together; memory_MB: the largest resident
+    """What a process and its children took. wall [s]; cpu [s]: of all of them together; memory_MB: the largest resident
     memory of one process."""
 
     wall: float
@@ -55,22 +55,28 @@ def run(command: Command) -> Cost:
     if command.ranks > 1:
         words = ["mpirun", "-n", str(command.ranks), *words]
     environment = {**os.environ, **ONE_THREAD, **MPI_AS_ROOT, **(command.environment or {})}
-    begin = time.perf_counter()
+    out = command.log.with_suffix(".cost.json")
+    launcher = [sys.executable, "-S", str(Path(__file__).with_name("launch.py")), str(out)]
     with open(command.log, "wb") as log:
         process = subprocess.Popen(
-            words, cwd=command.folder, env=environment, stdout=log, stderr=log, start_new_session=True
+            [*launcher, *words], cwd=command.folder, env=environment, stdout=log, stderr=log, start_new_session=True
         )
-        end = threading.Timer(command.time_limit, os.killpg, (process.pid, signal.SIGKILL))
-        end.start()
         try:
-            _, status, used = os.wait4(process.pid, 0)
+            code = process.wait(command.time_limit)
+        except subprocess.TimeoutExpired:
+            code = -signal.SIGKILL
         finally:
-            end.cancel()
-    process.returncode = os.waitstatus_to_exitcode(status)
-    wall = time.perf_counter() - begin
-    if process.returncode:
-        raise RunFailed(f"{' '.join(words)}: {_reason(command, process.returncode)}")
-    return Cost(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0)
+            _end(process)
+    if code:
+        raise RunFailed(f"{' '.join(words)}: {_reason(command, code)}")
+    return Cost(**json.loads(out.read_text()))
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Ends whatever still runs of a process and its children."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
 
 MPI_AS_ROOT = {
@@ -82,13 +88,7 @@ MPI_AS_ROOT = {
 
 
 def _reason(command: Command, code: int) -> str:
-    if code == -signal.SIGKILL:
+    if code in (-signal.SIGKILL, 128 + signal.SIGKILL):
         return f"ended after {command.time_limit:g} s, or killed for its memory"
     tail = command.log.read_text(errors="replace").strip().splitlines()[-3:]
     return f"exit code {code}: {' | '.join(tail)}"
-
-
-def interleaved(commands: Sequence[Command], repeats: int) -> list[list[Cost]]:
-    """Costs by command: all commands once, then all again, so that a slow minute of the machine hits them all."""
-    rounds = [[run(command) for command in commands] for _ in range(repeats)]
-    return [list(costs) for costs in zip(*rounds)]

@@ -57,7 +57,7 @@ class ScalingSizes:
 
 
 FULL = ScalingSizes((1.0, 1.4, 1.7, 2.2, 2.6, 3.0, 3.5), 1.7, 40, "standard", 3.0, 1)
-SMALL = ScalingSizes((0.6, 0.8), 0.7, 4, "quick", 0.8, 1)
+SMALL = ScalingSizes((0.8, 0.9), 0.8, 4, "quick", 0.8, 1)
 
 
 def size_rows(sizes: ScalingSizes, folder: Path) -> Iterator[SizeRow]:

@@ -19,7 +19,7 @@ from evidence.benchmark.task import Answer, Push, Task
 from meshes.data import MeshData
 
 ELEMENT = {"triangle": "2D3N", "quadrilateral": "2D4N", "tetrahedron": "3D4N", "hexahedron": "3D8N"}
-SLAVE = 1  # the body with the smaller cells
+SLAVE = 0  # with the multiplier on the smaller cells Newton diverges on the sphere
 ITERATIONS = 40
 LAW = {2: "LinearElasticPlaneStrain2DLaw", 3: "LinearElastic3DLaw"}
 SOLVER = {
@@ -161,7 +161,7 @@ def _solved(task: Task, job: Path) -> Answer:
     """Runs the analysis. Raises RuntimeError where it does not converge."""
     import KratosMultiphysics as KM
     import KratosMultiphysics.ContactStructuralMechanicsApplication as CSMA
-    import KratosMultiphysics.LinearSolversApplication  # noqa: F401  # registers its solvers
+    import KratosMultiphysics.LinearSolversApplication  # registers its solvers
     from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import (
         StructuralMechanicsAnalysis,
     )

@@ -43,8 +43,8 @@ def test_a_task_and_an_answer_survive_their_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("task", "d"), [(cylinder(4, 2, "triangle"), 2), (sphere(2, 2, "hexahedron"), 3)])
 def test_nodal_pressure_is_integrated_as_the_field_that_it_is(task: Task, d: int) -> None:
-    """A parabola p = 300 − 100 (r/R)² at the nodes of the flat body, which order 2 represents: over the contact surface,
-    |x| ≤ R or a quarter disc, ∫p = 2R (300 − 100/3) or π R²/4 (300 − 50); off itself by nothing."""
+    """A parabola p = 300 − 100 (r/R)² at the nodes of the flat body, which order 2 represents: over the contact
+    surface, |x| ≤ R or a quarter disc, ∫p = 2R (300 − 100/3) or π R²/4 (300 − 50); off itself by nothing."""
     mesh = task.bodies[1]
     nodes = np.unique(mesh.facets[task.contact[1]])
     radius = np.hypot(*mesh.points[nodes, : d - 1].T) if d == 3 else np.abs(mesh.points[nodes, 0])
@@ -142,7 +142,8 @@ def test_a_run_costs_what_its_process_takes(tmp_path: Path) -> None:
     assert busy.memory_MB > 190 > 60 > idle.memory_MB
     with pytest.raises(RunFailed, match="exit code 3"):
         run(Command((sys.executable, "-c", "raise SystemExit(3)"), tmp_path, tmp_path / "bad.log"))
-    sleeping = Command((sys.executable, "-c", "import time; time.sleep(60)"), tmp_path, tmp_path / "long.log", time_limit=0.5)
+    words = sys.executable, "-c", "import time; time.sleep(60)"
+    sleeping = Command(words, tmp_path, tmp_path / "long.log", time_limit=0.5)
     with pytest.raises(RunFailed, match="ended after"):
         run(sleeping)
 

@@ -60,7 +60,7 @@ def gears(rows: Sequence[GearRow]) -> Figure:
     """Seconds a position over the degrees of freedom."""
     kept = [row for row in rows if not row.note]
     with plots_style.styled():
-        see = "Evolvent condenses the whole gears once for a pitch; the others solve three teeth anew at every position."
+        see = "Evolvent condenses the whole gears once for a pitch; the others solve three teeth anew each time."
         figure = plots_style.sheet("A position of the gear pair, all but meshing", see, (8.4, 5.0))
         axes = figure.subplots()
         for name, colour in COLOURS.items():

@@ -62,7 +62,7 @@ def joined(sector: MeshData, angles: list[float], x: float) -> MeshData:
     Facet groups: flank, all of them; hub, the bores and the two cuts at the ends.
     """
     n, m = len(sector.points), len(angles)
-    points = np.concatenate([sector.points @ turn(angle, 3).T for angle in angles]) + [x, 0.0, 0.0]
+    points = np.concatenate([sector.points @ turn(angle, 3).T for angle in angles]) + np.array([x, 0.0, 0.0])
     keep, number = weld(points, 1e-6)
     copies = [number[sector.cells + n * k] for k in range(m)]
 

@@ -30,7 +30,7 @@ def problem_of(task: Task) -> Problem:
         Body(
             mesh,
             Material(*task.materials[i]),
-            tuple(Fixed(group, directions) for body, group, directions in task.held if (body, group) != (0, task.driven) and body == i),
+            _supports(task, i),
             rigid=Rigid(task.driven, (freedom,)) if i == 0 else None,
             name=f"body {i}",
         )
@@ -38,6 +38,12 @@ def problem_of(task: Task) -> Problem:
     )
     contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach)
     return Problem(bodies, (contact,))
+
+
+def _supports(task: Task, index: int) -> tuple[Fixed, ...]:
+    """Of one body; the driven group is held by its coupling already."""
+    held = [(group, axes) for body, group, axes in task.held if body == index]
+    return tuple(Fixed(group, axes) for group, axes in held if (index, group) != (0, task.driven))
 
 
 def solved(task: Task) -> Answer:

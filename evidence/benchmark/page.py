@@ -19,9 +19,9 @@ FROM = {"hertz2d": (20_000, 1.0), "hertz3d": (30_000, 2.0)}
 """Degrees of freedom from which a bar holds, and the bar: a peer's seconds over Evolvent's at no larger error."""
 GEAR_BARS = {"GetFEM": 10.0, "CalculiX mortar": 40.0}
 COMMAND = "python -m evidence.benchmark all --peers"
-TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and reading
-of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms. Errors are
-relative to the overkill solution of the same problem."""
+TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
+reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
+Errors are relative to the overkill solution of the same problem."""
 
 
 def write_page(out: Path) -> Path:
@@ -57,8 +57,8 @@ def _overkill(known: OverkillRow) -> str:
 
 
 def advantage(rows: Sequence[Row], least_dofs: int) -> list[tuple[Row, Row, float]]:
-    """For every peer's row from `least_dofs` on: that row, Evolvent's fastest row whose profile is at least as good, and
-    the ratio of their seconds; peers that Evolvent did not match anywhere have no line."""
+    """For every peer's row from `least_dofs` on: that row, Evolvent's fastest row whose profile is at least as good,
+    and the ratio of their seconds; a row that Evolvent did not match anywhere has no line."""
     ours = [row for row in rows if row.program == EVOLVENT.name and not row.note]
     found = []
     for row in rows:
@@ -87,9 +87,9 @@ def _verdict(rows: Sequence[Row], least_dofs: int, bar: float) -> str:
     missed = f" {len(better)} of their rows have a smaller error than any of Evolvent's." if better else ""
     met = ratio >= bar and not better
     return (
-        f"From {least_dofs:,} degrees of freedom on, at no larger error of the profile: the fastest other program takes "
-        f"**{ratio:.1f} times** Evolvent's time ({peer.program}, {peer.shape} of order {peer.order}, {peer.dofs:,} dofs, "
-        f"{peer.cpu:.1f} s, against order {own.order}, {own.dofs:,} dofs, {own.cpu:.1f} s). "
+        f"From {least_dofs:,} degrees of freedom on, at no larger error of the profile: the fastest other program "
+        f"takes **{ratio:.1f} times** Evolvent's time ({peer.program}, {peer.shape} of order {peer.order}, "
+        f"{peer.dofs:,} dofs, {peer.cpu:.1f} s, against order {own.order}, {own.dofs:,} dofs, {own.cpu:.1f} s). "
         f"Wanted at least {bar:g}: {'met' if met else 'MISSED'}.{missed}"
     )
 
@@ -122,8 +122,8 @@ def _gear_verdicts(rows: Sequence[GearRow]) -> list[str]:
 
 
 def _gear_table(rows: Sequence[GearRow]) -> str:
-    head = ("program", "model", "order", "dofs", "positions", "s a position", "ratio", "MB", "Newton", "mrad", "error %",
-            "reference's own %")  # fmt: skip
+    head = ("program", "model", "order", "dofs", "positions", "s a position", "ratio", "MB", "Newton", "mrad",
+            "error %", "reference's own %")  # fmt: skip
     lines = [
         [
             r.program, r.model, str(r.order), f"{r.dofs:,}", str(r.positions), *(

@@ -35,8 +35,8 @@ from solver.sectors import gear_mesh
 class PitchFacts:
     """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
     wall. positions: wall seconds of each, warm-up included; warm_up: how many of them are. iterations: Newton's, of all
-    friction coefficients together. transmission_error: [mm] at the first one, of the positions that count. memory_MB and
-    cpu [s]: of all ranks together."""
+    friction coefficients together. transmission_error: [mm] at the first one, of the positions that count.
+    memory_MB and cpu [s]: of all ranks together."""
 
     dofs: int
     ranks: int
@@ -119,8 +119,9 @@ def _cpu() -> float:
 
 def read_facts(path: Path) -> PitchFacts:
     """What a run wrote."""
-    values: dict[str, Any] = json.loads(path.read_text())
-    return PitchFacts(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
+    found = json.loads(path.read_text())
+    values: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in found.items()}
+    return PitchFacts(**values)
 
 
 def main() -> None:

@@ -102,7 +102,8 @@ class Answer:
 
     body: whose contact surface carries the pressure. nodes (n,), pressure (n,) [MPa]: nodal values on its facets, a
     Lagrange field of the mesh's order; or, where the pressure lives at points, points (n, 3) and weights (n,) [mm or
-    mm²] in their place. rotation: of the driven body about z [rad]. seconds: parts of the run, as the program tells them apart.
+    mm²] in their place. rotation: of the driven body about z [rad]. seconds: parts of the run, as
+    the program tells them apart.
     """
 
     body: int

@@ -1,4 +1,4 @@
-"""Kratos' side of the benchmark, a process of its virtual environment: python -m evidence.benchmark.peers.kratos TASK ANSWER
+"""Kratos' side of the benchmark: build/peers/bin/python -m evidence.benchmark.peers.kratos TASK ANSWER
 
 Augmented Lagrangian mortar contact without friction between cells of the first order, the linear systems by AMGCL in
 3D and by a sparse LU in 2D. (With friction its pair of gears does not converge.) Writing its input counts as meshing.

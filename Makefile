@@ -1,9 +1,10 @@
 # make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
 # make test   sets up what is missing, runs the tests
 # make verification  solves the verification problems again, writes docs/verification.md and its figures
+# make bench  run time against error (an hour, on a quiet machine); make bench-peers  the same beside other programs
+# make stress  settings, random scenes and faults at the edge of what can be asked, into docs/stress.md; an hour
 # make setup  only that;  make lint, make docker, make clean as they say
-# make stress writes docs/stress.md: settings, random scenes and faults at the edge of what can be asked; an hour
-.PHONY: demo test verification stress setup lint docker clean
+.PHONY: demo test verification bench bench-peers stress setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -32,6 +33,13 @@ verification: $(ready)
 stress: export OMP_NUM_THREADS ?= 1
 stress: $(ready)
 	.venv/bin/python -m evidence.stress all
+
+bench: $(ready)
+	.venv/bin/python -m evidence.benchmark all
+
+bench-peers: $(ready)
+	packages/peers build/peers
+	.venv/bin/python -m evidence.benchmark all --peers
 
 setup: $(ready)
 

@@ -1,1 +1,1 @@
-"""Run time against error, what each skip saves, and whether error bars hold."""
+"""Run time against error, beside other programs; what each skip saves; whether error bars hold."""

@@ -1,0 +1,89 @@
+"""The problems of the benchmark and their meshes; the same mesh for every program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evidence.benchmark.task import Push, Task
+from meshes.blocks import cylinder_2d, graded_rectangle
+from meshes.data import Floats, MeshData
+from meshes.lattice import split_to_simplices
+from meshes.rings import ring_block, ring_sphere
+from solver import hertz
+
+STEEL, ALUMINIUM = (210e3, 0.3), (70e3, 0.3)
+FINER = 1.37  # how much smaller the cells of the block are: the meshes do not match
+GROWTH = 1.6  # of the cells away from the contact
+
+
+@dataclass(frozen=True)
+class Hertz:
+    """A round contact: radius R of the upper body, half-width (radius) a of contact, both [mm], p0 [MPa]."""
+
+    radius: float
+    half_width: float
+    peak: float
+    approach: float
+
+
+def line_contact() -> Hertz:
+    """The cylinder and block of NAFEMS R0094, benchmark 1, under a load that makes a = R/100.
+
+    At the benchmark's own load a is R/8, and programs that take the normals of one body or the other, before or after
+    deformation, solve problems whose answers lie 0.3 % (peak) to 1 % (profile) apart: no error below that means
+    anything. At R/100 they are the same problem. approach: found for the bodies of this size, whose answer it is.
+    """
+    modulus = hertz.contact_modulus(*STEEL, *ALUMINIUM)
+    a = 0.5
+    return Hertz(50.0, a, modulus * a / (2 * 50.0), 0.0162)
+
+
+def cylinder(cells: float, order: int, shape: str) -> Task:
+    """Cylinder on block with cells of a/`cells` on the cylinder; shape "quadrilateral" or "triangle"."""
+    case = line_contact()
+    size, fine = case.half_width / cells, 1.5 * case.half_width
+    upper = cylinder_2d(case.radius, size, fine, order, shape, growth=GROWTH)
+    lower = graded_rectangle(200.0, 200.0, size / FINER, fine, order, shape, GROWTH)
+    bodies = _near(upper, "arc", 2 * case.half_width), _near(lower, "top", 2 * case.half_width)
+    return Task(
+        bodies, (STEEL, ALUMINIUM), "top", Push(-case.approach), ((1, "bottom", "xy"),), ("contact", "contact")
+    )
+
+
+def point_contact() -> Hertz:
+    """A steel ball of 8 mm radius on a steel block under about 2000 N."""
+    found = hertz.point_contact(2000.0, 8.0, hertz.contact_modulus(*STEEL, *STEEL))
+    return Hertz(8.0, found.radius, found.peak_pressure, 0.026)
+
+
+def sphere(cells: float, order: int, shape: str, edge: float = 1.0) -> Task:
+    """A quarter of ball and block with cells of a/`cells` on the ball, in rings one of which ends at `edge` times
+    Hertz' radius; shape "hexahedron" or "tetrahedron"."""
+    case, side = point_contact(), 4.0
+    a, size = case.half_width, case.half_width / cells
+    growth, depth = 1.7, 0.25 * a
+    upper = ring_sphere(case.radius, side, side, edge * a, size, 1.25 * a, order, growth, depth)
+    lower = ring_block(side, side, edge * a, size / 1.2, 1.25 * a, order, growth, depth)
+    if shape == "tetrahedron":
+        upper, lower = (split_to_simplices(mesh, _columns(mesh.points)) for mesh in (upper, lower))
+    bodies = _near(upper, "arc", 1.5 * a), _near(lower, "top", 1.5 * a)
+    symmetry = [(body, f"symmetry_{axis}", axis) for body in (0, 1) for axis in "xy"]
+    held = (*symmetry, (1, "bottom", "xyz"))
+    return Task(bodies, (STEEL, STEEL), "top", Push(-case.approach), held, ("contact", "contact"))
+
+
+def _near(mesh: MeshData, group: str, distance: float) -> MeshData:
+    """The mesh with a facet group "contact": the facets of `group` that close to the z axis (in 2D: the y axis)."""
+    facets = mesh.facets[group]
+    centre = mesh.points[facets].mean(axis=1)
+    near = np.hypot(*centre[:, : mesh.dimension - 1].T) if mesh.dimension == 3 else np.abs(centre[:, 0])
+    return replace(mesh, facets={**mesh.facets, "contact": facets[near < distance]})
+
+
+def _columns(points: Floats) -> np.ndarray:
+    """A number for each column of nodes above each other, by radius and then angle (n,)."""
+    x, y = points[:, 0], points[:, 1]
+    key = np.round(np.column_stack([np.hypot(x, y), np.arctan2(y, x) * (np.hypot(x, y) > 1e-9)]), 9)
+    return np.unique(key, axis=0, return_inverse=True)[1].ravel()

@@ -1,0 +1,97 @@
+"""The figures of the benchmark."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from evidence.benchmark.gear_rows import GearRow
+from evidence.benchmark.precision import Row
+from evidence.benchmark.programs import EVOLVENT
+from evidence.benchmark.scaling import SizeRow, exponent
+from meshes.data import Floats
+from solver import plots_style
+
+COLOURS = {
+    EVOLVENT.name: "#c0392b", "GetFEM": "#1f5fa8", "CalculiX": "#3b7a57", "CalculiX mortar": "#c98a1b",
+    "Kratos": "#8a5a9e",
+}  # fmt: skip
+SIMPLICES = ("triangle", "tetrahedron")
+
+
+def column(rows: Sequence[Any], name: str) -> Floats:
+    """One field of all rows, (n,)."""
+    return np.array([getattr(row, name) for row in rows], dtype=float)
+
+
+def work_precision(rows: Sequence[Row], title: str) -> Figure:
+    """Seconds over the error of the pressure profile, log-log; a panel a family of cells."""
+    kept = [row for row in rows if not row.note]
+    see = "Down and left is better: less time, smaller error. All programs solve on the same meshes, one thread."
+    with plots_style.styled():
+        figure = plots_style.sheet(f"{title}: run time against error", see, (11.0, 5.2))
+        axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        for panel, simplex in zip(axes, (False, True)):
+            _panel(panel, [row for row in kept if (row.shape in SIMPLICES) == simplex])
+        axes[0].set_ylabel("CPU time of the process [s]")
+        axes[0].legend(fontsize=8, loc="upper right")
+    return figure
+
+
+def _panel(axes: Axes, rows: Sequence[Row]) -> None:
+    for name, colour in COLOURS.items():
+        for order, style in ((1, "o--"), (2, "s-")):
+            own = [row for row in rows if row.program == name and row.order == order]
+            if own:
+                error, seconds = 100 * column(own, "profile_error"), column(own, "cpu")
+                axes.loglog(error, seconds, style, color=colour, ms=4, label=f"{name}, order {order}")
+    axes.set_xlabel("error of the pressure profile (L2) [%]")
+    axes.set_title({row.shape: f"{row.shape}s" for row in rows}.popitem()[1] if rows else "", fontsize=10)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
+
+
+def gears(rows: Sequence[GearRow]) -> Figure:
+    """Seconds a position over the degrees of freedom."""
+    kept = [row for row in rows if not row.note]
+    with plots_style.styled():
+        see = "Evolvent condenses the whole gears once for a pitch; the others solve three teeth anew each time."
+        figure = plots_style.sheet("A position of the gear pair, all but meshing", see, (8.4, 5.0))
+        axes = figure.subplots()
+        for name, colour in COLOURS.items():
+            for model, style in (("whole gears", "s-"), ("three teeth", "o--")):
+                own = [row for row in kept if row.program == name and row.model == model]
+                if own:
+                    label = f"{name}, {'a pitch, whole gears' if model == 'whole gears' else 'three teeth'}"
+                    axes.loglog(column(own, "dofs"), column(own, "seconds"), style, color=colour, ms=5, label=label)
+        axes.set(xlabel="degrees of freedom", ylabel="CPU time a position [s]")
+        axes.legend()
+    return figure
+
+
+def sizes(rows: Sequence[SizeRow]) -> Figure:
+    """Memory, condensing and one more position over the size, with their exponents."""
+    dofs = column(rows, "dofs")
+    with plots_style.styled():
+        see = "Left: what a pitch needs at most. Right: what is done once, and what each further position adds."
+        figure = plots_style.sheet("A pitch of the gear pair, over its size", see, (10.4, 4.8))
+        memory, time = figure.subplots(1, 2)
+        _line(memory, dofs, column(rows, "memory_MB") / 1024.0, "memory", "#1f5fa8")
+        memory.set_ylabel("largest memory [GiB]")
+        _line(time, dofs, column(rows, "condense"), "condensing both gears, once", "#1f5fa8")
+        _line(time, dofs, column(rows, "position"), "one more position", "#c0392b")
+        time.set_ylabel("wall time [s]")
+        for axes in (memory, time):
+            axes.set_xlabel("degrees of freedom of both sectors")
+            axes.legend()
+    return figure
+
+
+def _line(axes: Axes, x: Floats, y: Floats, label: str, colour: str) -> None:
+    power = f" ~ dofs$^{{{exponent(x, y):.2f}}}$" if len(x) > 1 else ""
+    axes.loglog(x, y, "o-", color=colour, ms=4, label=label + power)

@@ -1,0 +1,76 @@
+"""The Yang pair: the scene that Evolvent runs, and three teeth of each gear as one mesh for the programs without rings.
+
+Three teeth are those that touch during the first half of the pitch. The cuts left and right of them are held, as the
+bore is: left free, a sector of the wheel is a slender tower and five times too soft, and the other programs could not
+carry the whole gears at this element size.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from evidence.benchmark.task import Task, Turn
+from meshes.data import Ints, MeshData
+from meshes.flank import nominal_angles
+from meshes.lattice import weld
+from meshes.sector import sector_mesh
+from solver.kinematics import turn
+from solver.resolution import sector_resolutions
+from solver.scene import Scene, load_scene
+from solver.sectors import linear
+
+SCENE = Path(__file__).parents[2] / "demos" / "yang2022.toml"
+TEETH = (-1, 0, 1)
+FRICTION = 0.11
+CLOSING = 1e-3  # rad, by which a program that needs it brings the flanks together; the answer is 2.6e-3
+
+
+def scene(elements: float, *settings: str, level: str = "quick") -> Scene:
+    """The pair at constant pinion torque with so many elements across the Hertz width 2b."""
+    own = f"mesh.elements_per_contact_width={elements}", f'mesh.level="{level}"', f"contact.friction=[{FRICTION}]"
+    output = "output.pictures=false", "output.animation=false", "output.fields=false"
+    return load_scene(SCENE, [*own, *output, *settings])
+
+
+def three_teeth(elements: float, rotation: float = 0.0, order: int = 1, shape: str = "hexahedron") -> Task:
+    """Three teeth of each gear at a pinion rotation φ [rad], standing in space as they mesh; order 1 or 2."""
+    own = scene(elements)
+    pair, bodies = own.gear_pair(), []
+    for i, (gear, resolution) in enumerate(zip(pair.gears, sector_resolutions(own))):
+        mesh = sector_mesh(gear, resolution, shape)
+        mesh = mesh if order == 2 else linear(mesh)
+        angle = float(nominal_angles(pair, rotation)[i])
+        teeth = [angle + (1 - 2 * i) * tooth * 2 * np.pi / gear.z for tooth in TEETH]
+        bodies.append(joined(mesh, teeth, i * pair.centre_distance))
+    first, second = own.materials()
+    return Task(
+        (bodies[0], bodies[1]),
+        ((first.youngs_modulus, first.poissons_ratio), (second.youngs_modulus, second.poissons_ratio)),
+        "hub",
+        Turn(1e3 * own.load.torque_Nm, CLOSING),
+        ((0, "hub", "z"), (1, "hub", "xyz")),
+        ("flank", "flank"),
+        FRICTION,
+    )
+
+
+def joined(sector: MeshData, angles: list[float], x: float) -> MeshData:
+    """Copies of a sector turned about its axis, welded along their cuts, with the axis moved to (x, 0).
+
+    Facet groups: flank, all of them; hub, the bores and the two cuts at the ends.
+    """
+    n, m = len(sector.points), len(angles)
+    points = np.concatenate([sector.points @ turn(angle, 3).T for angle in angles]) + np.array([x, 0.0, 0.0])
+    keep, number = weld(points, 1e-6)
+    copies = [number[sector.cells + n * k] for k in range(m)]
+
+    def everywhere(name: str) -> Ints:
+        return np.concatenate([number[sector.facets[name] + n * k] for k in range(m)])
+
+    first, last = int(np.argmin(angles)), int(np.argmax(angles))
+    ends = number[sector.facets["cut_low"] + n * first], number[sector.facets["cut_high"] + n * last]
+    facets = {"flank": everywhere("flank"), "hub": np.concatenate([everywhere("bore"), *ends])}
+    cells = np.concatenate(copies)
+    return MeshData(points[keep], sector.shape, sector.order, cells, facets, {"body": np.arange(len(cells))})

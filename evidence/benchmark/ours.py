@@ -1,0 +1,78 @@
+"""Evolvent's side of the benchmark, a process of its own: python -m evidence.benchmark.ours TASK.npz ANSWER.npz"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from evidence.benchmark.task import Answer, Push, Task, Turn
+from solver import compat
+from solver.body import Body, Fixed, Freedom, Rigid
+from solver.material import Material
+from solver.position import Position
+from solver.prepared import prepare
+from solver.problem import Contact, Problem, Step
+
+GEAR_REACH = 0.1  # mm, the gap up to which flanks may close
+
+
+def problem_of(task: Task) -> Problem:
+    """The task for the public API. The driven body carries the pressure: its cells are the larger ones."""
+    if isinstance(task.drive, Push):
+        freedom = Freedom("xyz"[task.dimension - 1], displacement=task.drive.displacement)
+        reach = 4 * abs(task.drive.displacement)
+    else:
+        freedom, reach = Freedom("rz", load=task.drive.torque), GEAR_REACH
+    bodies = tuple(
+        Body(
+            mesh,
+            Material(*task.materials[i]),
+            _supports(task, i),
+            rigid=Rigid(task.driven, (freedom,)) if i == 0 else None,
+            name=f"body {i}",
+        )
+        for i, mesh in enumerate(task.bodies)
+    )
+    contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach)
+    return Problem(bodies, (contact,))
+
+
+def _supports(task: Task, index: int) -> tuple[Fixed, ...]:
+    """Of one body; the driven group is held by its coupling already."""
+    held = [(group, axes) for body, group, axes in task.held if body == index]
+    return tuple(Fixed(group, axes) for group, axes in held if (index, group) != (0, task.driven))
+
+
+def solved(task: Task) -> Answer:
+    """The answer, and what its parts took (CPU seconds)."""
+    problem, marks = problem_of(task), [time.process_time()]
+    prepared = prepare(problem)
+    marks.append(time.process_time())
+    solution, _ = Position(problem, prepared, Step()).solve(None)
+    marks.append(time.process_time())
+    found = solution.contacts[0]
+    points = np.pad(found.points, ((0, 0), (0, 3 - found.points.shape[1])))
+    turned = isinstance(task.drive, Turn)
+    return Answer(
+        body=0,
+        rotation=float(solution.motions[0][0]) if turned else float("nan"),
+        pressure=found.pressure,
+        points=points,
+        weights=found.weights,
+        iterations=solution.iterations,
+        dofs=task.dofs,
+        seconds={"start": marks[0], "condense": marks[1] - marks[0], "solve": marks[2] - marks[1]},
+    )
+
+
+def main() -> None:
+    compat.silence_logs()
+    source, target = sys.argv[1:]
+    solved(Task.read(Path(source))).write(Path(target))
+
+
+if __name__ == "__main__":
+    main()

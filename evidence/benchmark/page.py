@@ -1,0 +1,171 @@
+"""docs/benchmark.md: tables and figures from the measured rows; nothing is typed in by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isnan
+from pathlib import Path
+
+from evidence.benchmark import figures
+from evidence.benchmark.gear_rows import GearRow
+from evidence.benchmark.precision import OverkillRow, Row
+from evidence.benchmark.programs import EVOLVENT
+from evidence.benchmark.scaling import RatioRow, SizeRow, exponent
+from evidence.benchmark.tables import read_rows
+from evidence.report import header, picture, table, write
+
+TITLES = {"hertz2d": "Cylinder on block, 2D", "hertz3d": "Sphere on block, 3D"}
+FROM = {"hertz2d": (20_000, 1.0), "hertz3d": (30_000, 2.0)}
+"""Degrees of freedom from which a bar holds, and the bar: a peer's seconds over Evolvent's at no larger error."""
+GEAR_BARS = {"GetFEM": 10.0, "CalculiX mortar": 40.0}
+COMMAND = "python -m evidence.benchmark all --peers"
+TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
+reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
+Errors are relative to the overkill solution of the same problem."""
+
+
+def write_page(out: Path) -> Path:
+    """The page, and its figures below pictures/benchmark/. Parts that were not measured are left out."""
+    parts = [header("Benchmark", COMMAND), TERMS]
+    pictures = out / "pictures" / "benchmark"
+    pictures.mkdir(parents=True, exist_ok=True)
+    for name, title in TITLES.items():
+        if rows := read_rows(out / "benchmark" / f"{name}.csv", Row):
+            known = read_rows(out / "benchmark" / f"{name}_overkill.csv", OverkillRow)[0]
+            picture(figures.work_precision(rows, title), pictures / f"{name}.png")
+            parts += [f"## {title}", _overkill(known), f"![{title}](pictures/benchmark/{name}.png)"]
+            parts += [_verdict(rows, *FROM[name]), _hertz_table(rows)]
+    if gears := read_rows(out / "benchmark" / "gears.csv", GearRow):
+        picture(figures.gears(gears), pictures / "gears.png")
+        parts += ["## Gear pair", "![Seconds a position](pictures/benchmark/gears.png)"]
+        parts += [*_gear_verdicts(gears), _gear_table(gears)]
+    if ratios := read_rows(out / "benchmark" / "ratios.csv", RatioRow):
+        parts += ["## A pitch", _ratio_table(ratios)]
+    sizes = [row for row in read_rows(out / "benchmark" / "sizes.csv", SizeRow)]
+    if [row for row in sizes if not row.note]:
+        picture(figures.sizes([row for row in sizes if not row.note]), pictures / "sizes.png")
+        parts += ["## Size", "![Cost over size](pictures/benchmark/sizes.png)", _size_table(sizes)]
+    return write(out / "benchmark.md", parts)
+
+
+def _overkill(known: OverkillRow) -> str:
+    return (
+        f"Overkill: force {known.force:.5g}, peak {known.peak:.5g} MPa, half-width {known.half_width:.4g} mm. Its own "
+        f"error, the distance to the next coarser one: {_percent(known.force_error)} in the force, "
+        f"{_percent(known.peak_error)} in the peak, {_percent(known.profile_error)} in the profile (L2)."
+    )
+
+
+def advantage(rows: Sequence[Row], least_dofs: int) -> list[tuple[Row, Row, float]]:
+    """For every peer's row from `least_dofs` on: that row, Evolvent's fastest row whose profile is at least as good,
+    and the ratio of their seconds; a row that Evolvent did not match anywhere has no line."""
+    ours = [row for row in rows if row.program == EVOLVENT.name and not row.note]
+    found = []
+    for row in rows:
+        if row.program == EVOLVENT.name or row.note or row.dofs < least_dofs:
+            continue
+        good = [own for own in ours if own.profile_error <= row.profile_error]
+        if good:
+            best = min(good, key=lambda own: own.cpu)
+            found.append((row, best, row.cpu / best.cpu))
+    return found
+
+
+def unmatched(rows: Sequence[Row], least_dofs: int) -> list[Row]:
+    """A peer's rows from `least_dofs` on whose profile is better than any of Evolvent's."""
+    ours = [row.profile_error for row in rows if row.program == EVOLVENT.name and not row.note]
+    peers = [row for row in rows if row.program != EVOLVENT.name and not row.note and row.dofs >= least_dofs]
+    return [row for row in peers if row.profile_error < min(ours)]
+
+
+def _verdict(rows: Sequence[Row], least_dofs: int, bar: float) -> str:
+    found = advantage(rows, least_dofs)
+    if not found:
+        return f"No other program was measured from {least_dofs:,} degrees of freedom on."
+    peer, own, ratio = min(found, key=lambda line: line[2])
+    better = unmatched(rows, least_dofs)
+    missed = f" {len(better)} of their rows have a smaller error than any of Evolvent's." if better else ""
+    met = ratio >= bar and not better
+    return (
+        f"From {least_dofs:,} degrees of freedom on, at no larger error of the profile: the fastest other program "
+        f"takes **{ratio:.1f} times** Evolvent's time ({peer.program}, {peer.shape} of order {peer.order}, "
+        f"{peer.dofs:,} dofs, {peer.cpu:.1f} s, against order {own.order}, {own.dofs:,} dofs, {own.cpu:.1f} s). "
+        f"Wanted at least {bar:g}: {'met' if met else 'MISSED'}.{missed}"
+    )
+
+
+def _hertz_table(rows: Sequence[Row]) -> str:
+    head = ("cells", "order", "dofs", "program", "s", "cold s", "ratio", "MB", "Newton", "force %", "p0 %", "L2 %")
+    lines = [
+        [
+            f"{r.shape} a/{r.cells:g}", str(r.order), f"{r.dofs:,}", r.program, *(
+                (_number(r.cpu), _number(r.cold), _number(r.ratio), f"{r.memory_MB:.0f}", str(r.iterations),
+                 f"{100 * r.force_error:+.2f}", f"{100 * r.peak_error:+.2f}", f"{100 * r.profile_error:.2f}")
+                if not r.note else (r.note, *[""] * 7)
+            ),
+        ]
+        for r in rows
+    ]  # fmt: skip
+    return table(head, lines, right=range(4, 12))
+
+
+def _gear_verdicts(rows: Sequence[GearRow]) -> list[str]:
+    said = []
+    for name, bar in GEAR_BARS.items():
+        large = [r for r in rows if r.program == name and not r.note and r.dofs >= 100_000]
+        if large:
+            r = large[-1]
+            verdict = "met" if r.ratio >= bar else "MISSED"
+            said.append(f"{name} at {r.dofs:,} dofs: **{r.ratio:.1f} times** Evolvent's time a position. "
+                        f"Wanted at least {bar:g}: {verdict}.")  # fmt: skip
+    return said
+
+
+def _gear_table(rows: Sequence[GearRow]) -> str:
+    head = ("program", "model", "order", "dofs", "positions", "s a position", "ratio", "MB", "Newton", "mrad",
+            "error %", "reference's own %")  # fmt: skip
+    lines = [
+        [
+            r.program, r.model, str(r.order), f"{r.dofs:,}", str(r.positions), *(
+                (_number(r.seconds), _number(r.ratio), f"{r.memory_MB:.0f}", f"{r.iterations:.1f}",
+                 f"{r.rotation:.4f}", f"{100 * r.error:+.2f}", f"{100 * r.reference_error:.2f}")
+                if not r.note else (r.note, *[""] * 6)
+            ),
+        ]
+        for r in rows
+    ]  # fmt: skip
+    return table(head, lines, right=range(2, 12))
+
+
+def _ratio_table(rows: Sequence[RatioRow]) -> str:
+    lines = [
+        [r.what, f"{r.dofs:,}", _number(r.above), _number(r.below), f"**{r.ratio:.2f}**", f"{r.bar:g}", f"{r.aim:g}"]
+        for r in rows
+    ]
+    return table(("ratio of", "dofs", "s", "over s", "found", "bar", "aim"), lines, right=range(1, 7))
+
+
+def _size_table(rows: Sequence[SizeRow]) -> str:
+    head = ("elements across 2b", "dofs", "assemble s", "condense s", "s a position", "Newton", "MB")
+    lines = [
+        [f"{r.elements:g}", f"{r.dofs:,}", *(
+            (_number(r.assemble), _number(r.condense), _number(r.position), f"{r.iterations:.0f}", f"{r.memory_MB:.0f}")
+            if not r.note else (r.note, "", "", "", "")
+        )]
+        for r in rows
+    ]  # fmt: skip
+    kept = [r for r in rows if not r.note]
+    said = []
+    if len(kept) > 1:
+        dofs = figures.column(kept, "dofs")
+        names = {"memory_MB": "memory", "condense": "condensing", "position": "one more position"}
+        said = [f"{text} ~ dofs^{exponent(dofs, figures.column(kept, name)):.2f}" for name, text in names.items()]
+    return table(head, lines, right=range(7)) + ("\n\n" + "; ".join(said) + "." if said else "")
+
+
+def _number(value: float) -> str:
+    return "" if isnan(value) else f"{value:.3g}"
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.2g} %"

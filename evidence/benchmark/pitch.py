@@ -1,0 +1,138 @@
+"""A pitch of the gear pair by Evolvent, a process of its own that says where its time went.
+
+python -m evidence.benchmark.pitch OUT.json ELEMENTS LEVEL POSITIONS MU[,MU...] [key=value ...]
+
+POSITIONS 0: both sectors are only assembled and factored, each once, as a program without condensation begins. All
+ranks write what they took together: seconds are those of the slowest one.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from evidence.benchmark.gears import scene
+from solver import compat
+from solver.body import Body, Fixed, assemble
+from solver.condense import Factor
+from solver.gear_model import prepare_model
+from solver.gear_sweep import SweptPosition, initial_state
+from solver.run import _position as position_on_ranks
+from solver.run import peak_memory_MB, pitch_of
+from solver.scene import Scene
+from solver.sectors import gear_mesh
+
+
+@dataclass(frozen=True)
+class PitchFacts:
+    """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
+    wall. positions: wall seconds of each, warm-up included; warm_up: how many of them are. iterations: Newton's, of all
+    friction coefficients together. transmission_error: [mm] at the first one, of the positions that count.
+    memory_MB and cpu [s]: of all ranks together."""
+
+    dofs: int
+    ranks: int
+    start: float
+    mesh: float
+    assemble: float
+    condense: float
+    positions: tuple[float, ...]
+    warm_up: int
+    iterations: tuple[int, ...]
+    transmission_error: tuple[float, ...]
+    memory_MB: float
+    cpu: float
+
+    @property
+    def counted(self) -> int:
+        """Positions of the pitch itself."""
+        return len(self.positions) - self.warm_up
+
+    @property
+    def without_meshing(self) -> float:
+        """Wall seconds of all but meshing, the start of Python included."""
+        return self.start + self.assemble + self.condense + sum(self.positions)
+
+
+def measured(own: Scene) -> PitchFacts:
+    """The pitch of a scene, solved."""
+    comm, start = MPI.COMM_WORLD, time.process_time()
+    preparation = prepare_model(own, comm)
+    pitch, state = pitch_of(own), initial_state(own.contact.friction)
+    seconds, swept = [], []
+    for k in range(len(pitch.angles)):
+        begin = time.perf_counter()
+        found: SweptPosition = position_on_ranks(preparation.model, pitch, own.contact.friction, state, k, comm)
+        state = found.state
+        seconds.append(time.perf_counter() - begin)
+        swept.append(found)
+    meshes = [body.mesh for body in preparation.model.bodies]
+    assemble_share = preparation.assemble_seconds / (preparation.assemble_seconds + preparation.condense_seconds)
+    return PitchFacts(
+        dofs=sum(len(mesh.points) * mesh.dimension for mesh in meshes),
+        ranks=comm.size,
+        start=start,
+        mesh=preparation.mesh_seconds,
+        assemble=preparation.seconds * assemble_share,
+        condense=preparation.seconds * (1.0 - assemble_share),
+        positions=tuple(seconds),
+        warm_up=pitch.warm_up,
+        iterations=tuple(sum(r.iterations for r in p.results) for p in swept),
+        transmission_error=tuple(p.results[0].transmission_error for p in swept if not p.warm_up),
+        memory_MB=comm.allreduce(peak_memory_MB()),
+        cpu=comm.allreduce(_cpu()),
+    )
+
+
+def factored(own: Scene) -> PitchFacts:
+    """Both sectors assembled and factored once."""
+    start, began = time.process_time(), time.perf_counter()
+    meshes = [gear_mesh(own, index) for index in (0, 1)]
+    meshed = time.perf_counter()
+    assembling = factoring = 0.0
+    for mesh, material in zip(meshes, own.materials()):
+        begin = time.perf_counter()
+        body = assemble(Body(mesh, material, supports=(Fixed("bore"),)))
+        K = body.stiffness[body.free][:, body.free].tocsr()
+        middle = time.perf_counter()
+        Factor(K).solve(np.ones(K.shape[0]))  # the first solution is what makes it factor
+        assembling, factoring = assembling + middle - begin, factoring + time.perf_counter() - middle
+    dofs = sum(len(mesh.points) * mesh.dimension for mesh in meshes)
+    mesh_seconds = meshed - began
+    return PitchFacts(
+        dofs, 1, start, mesh_seconds, assembling, factoring, (), 0, (), (), peak_memory_MB(), _cpu()
+    )
+
+
+def _cpu() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def read_facts(path: Path) -> PitchFacts:
+    """What a run wrote."""
+    found = json.loads(path.read_text())
+    values: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in found.items()}
+    return PitchFacts(**values)
+
+
+def main() -> None:
+    compat.silence_logs()
+    out, elements, level, positions, frictions, *settings = sys.argv[1:]
+    wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(2, int(positions))}"
+    own = scene(float(elements), *wanted, *settings, level=level)
+    facts = measured(own) if int(positions) else factored(own)
+    if MPI.COMM_WORLD.rank == 0:
+        Path(out).write_text(json.dumps(asdict(facts)))
+
+
+if __name__ == "__main__":
+    main()

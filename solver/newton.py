@@ -11,8 +11,8 @@ from petsc4py import PETSc
 from meshes.data import Floats
 
 NOT_A_NUMBER = (PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN, PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN)
-PATIENCE = 40
-"""Full steps that are taken at most before steps are cut."""
+PATIENCE = 12
+"""Full steps in which the smallest residual must fall, before steps are cut."""
 AGAIN = 1e-3
 """Residuals as near to each other as this (relative) tell that the same states come again."""
 ENOUGH = 0.9
@@ -77,8 +77,9 @@ class _Tangent:
     def _shortened(self, step: Floats, size: float) -> Floats:
         """The step (n,); where full steps cycle, cut to the length whose residual is smallest. size: of the residual
         here."""
-        self.cycles |= len(self.sizes) >= PATIENCE or bool(np.isclose(self.sizes, size, rtol=AGAIN, atol=0.0).any())
+        again = bool(np.isclose(self.sizes, size, rtol=AGAIN, atol=0.0).any())
         self.sizes.append(size)
+        self.cycles |= again or min(self.sizes[-PATIENCE:]) > min(self.sizes)
         if not self.cycles:
             return step
 

@@ -42,11 +42,14 @@ def matrix() -> list[str]:
 
 
 def scenes() -> list[str]:
-    """Random scenes, counted."""
+    """Random scenes, counted. Control-C ends them early: the page says how many there were."""
     outcomes = []
-    for outcome in campaign(0, SCENES):
-        outcomes.append(outcome)
-        print(outcome.seed, outcome.verdict.value, outcome.message.splitlines()[-1:], flush=True)
+    try:
+        for outcome in campaign(0, SCENES):
+            outcomes.append(outcome)
+            print(outcome.seed, outcome.verdict.value, outcome.message.splitlines()[-1:], flush=True)
+    except KeyboardInterrupt:
+        print(f"interrupted after {len(outcomes)} of {SCENES} scenes", flush=True)
     write_outcomes(outcomes, DOCS / "stress/scenes.csv")
     return ["## Random scenes", summary(outcomes)]
 

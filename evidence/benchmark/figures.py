@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from evidence.benchmark.gear_rows import GearRow
 from evidence.benchmark.precision import Row
@@ -20,6 +21,8 @@ COLOURS = {
     EVOLVENT.name: "#c0392b", "GetFEM": "#1f5fa8", "CalculiX": "#3b7a57", "CalculiX mortar": "#c98a1b",
     "Kratos": "#8a5a9e",
 }  # fmt: skip
+PLURAL = {"quadrilateral": "quadrilaterals", "triangle": "triangles", "hexahedron": "hexahedra",
+          "tetrahedron": "tetrahedra"}  # fmt: skip
 SIMPLICES = ("triangle", "tetrahedron")
 
 
@@ -50,8 +53,9 @@ def _panel(axes: Axes, rows: Sequence[Row]) -> None:
                 error, seconds = 100 * column(own, "profile_error"), column(own, "cpu")
                 axes.loglog(error, seconds, style, color=colour, ms=4, label=f"{name}, order {order}")
     axes.set_xlabel("error of the pressure profile (L2) [%]")
-    axes.set_title({row.shape: f"{row.shape}s" for row in rows}.popitem()[1] if rows else "", fontsize=10)
+    axes.set_title(PLURAL[rows[0].shape] if rows else "", fontsize=10)
     for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
 

@@ -56,8 +56,8 @@ class ScalingSizes:
     repeats: int
 
 
-FULL = ScalingSizes((1.0, 1.4, 1.7, 2.2, 2.6, 3.0, 3.5), 1.7, 40, "standard", 3.0, 1)
-SMALL = ScalingSizes((0.8, 0.9), 0.8, 4, "quick", 0.8, 1)
+FULL = ScalingSizes((1.0, 1.4, 2.0, 2.6, 3.2), 1.7, 40, "standard", 3.0, 1)
+SMALL = ScalingSizes((1.0, 1.2), 1.0, 4, "quick", 1.0, 1)
 
 
 def size_rows(sizes: ScalingSizes, folder: Path) -> Iterator[SizeRow]:

@@ -6,13 +6,14 @@ import sys
 from dataclasses import replace
 
 import pytest
+from conftest import ROOT
 
 from evidence.stress import campaign
 from evidence.stress.campaign import summary
 from evidence.stress.outcomes import Verdict, outcome_of
 from evidence.stress.random_scenes import random_scene
 from solver.newton import NotConverged
-from solver.scene import scene_from_text
+from solver.scene import SceneError, scene_from_text
 
 PLANE, SOLID = range(40, 58), range(1, 5)
 CYCLED = (6, 75, 84)
@@ -89,3 +90,12 @@ def test_summary_counts() -> None:
     good = replace(outcome_of(random_scene(41, plane=True), 41), seed=0)
     text = summary([good, replace(good, seed=1, verdict=Verdict.REFUSED, message="NotConverged: no")])
     assert "| converged | 1 |" in text and "| refused, with a message | 1 |" in text and "NotConverged: no" in text
+
+
+def test_load_that_bends_teeth_too_far_is_refused() -> None:
+    """He's pair: 120 N/mm bend a steel tooth pair of 14 N/(mm µm) by 8.6 µm = 0.0029 modules, a tenth of a module is
+    reached at 35 times the torque, 6.0 kN m with E = 210 instead of 206 GPa; below it the scene is valid."""
+    text = (ROOT / "demos/he2022.toml").read_text(encoding="utf-8")
+    assert scene_from_text(text, ["load.torque_Nm=5700"]).load.torque_Nm == 5700
+    with pytest.raises(SceneError, match=r"bend by about 0\.1\d* modules.*up to 6\.0\de\+03 N·m.*lower the torque"):
+        scene_from_text(text, ["load.torque_Nm=6800"])

@@ -54,9 +54,14 @@ def _panel(axes: Axes, rows: Sequence[Row]) -> None:
                 axes.loglog(error, seconds, style, color=colour, ms=4, label=f"{name}, order {order}")
     axes.set_xlabel("error of the pressure profile (L2) [%]")
     axes.set_title(PLURAL[rows[0].shape] if rows else "", fontsize=10)
+    _plain_ticks(axes)
+
+
+def _plain_ticks(axes: Axes) -> None:
+    """1, 2, 5 of every decade, as plain numbers."""
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter("{x:g}")
+        axis.set_major_formatter("{x:,g}")
         axis.set_minor_formatter("")
 
 
@@ -74,6 +79,7 @@ def gears(rows: Sequence[GearRow]) -> Figure:
                     label = f"{name}, {'a pitch, whole gears' if model == 'whole gears' else 'three teeth'}"
                     axes.loglog(column(own, "dofs"), column(own, "seconds"), style, color=colour, ms=5, label=label)
         axes.set(xlabel="degrees of freedom", ylabel="CPU time a position [s]")
+        _plain_ticks(axes)
         axes.legend()
     return figure
 
@@ -92,6 +98,7 @@ def sizes(rows: Sequence[SizeRow]) -> Figure:
         time.set_ylabel("wall time [s]")
         for axes in (memory, time):
             axes.set_xlabel("degrees of freedom of both sectors")
+            _plain_ticks(axes)
             axes.legend()
     return figure
 

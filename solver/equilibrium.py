@@ -12,6 +12,7 @@ The tangent is in solver/tangent.py.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from solver import newton
 from solver.friction import Law, coulomb, starting_guess
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, LawOf
-from solver.tangent import Tangent
+from solver.tangent import Compliances, Tangent
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 60
@@ -42,6 +43,11 @@ class CondensedSystem:
     jump: Floats
     load: Floats
     lever: Floats
+
+    @cached_property
+    def both_compliances(self) -> Compliances:
+        """A, and rounded for what reads it most."""
+        return Compliances(self.compliance, self.compliance.astype(np.float32))
 
     @property
     def k(self) -> int:
@@ -150,6 +156,7 @@ class _Contact:
     def __init__(self, system: CondensedSystem, law: LawOf, slip: Floats | None = None) -> None:
         self.system, self.law, self.slip = system, law, slip
         self.n, self.k, self.r = len(system.operator.nodes), system.k, len(system.load)
+        self._last: tuple[Floats, tuple[Floats, Floats, Law]] | None = None
 
     def split(self, x: Floats) -> tuple[Floats, Floats]:
         """(f, δ) of x; δ is scaled by the lever so that all residuals are forces."""
@@ -162,10 +169,12 @@ class _Contact:
         return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
 
     def state(self, x: Floats) -> tuple[Floats, Floats, Law]:
-        """Forces, jumps and the law there."""
-        force, motion = self.split(x)
-        jump = self.system.jumps(force, motion)
-        return force, jump, self.law(self.system.operator.trial(jump, self.slip))
+        """Forces, jumps and the law there; kept, as a step asks for the residual and the tangent at the same x."""
+        if self._last is None or not np.array_equal(self._last[0], x):
+            force, motion = self.split(x)
+            jump = self.system.jumps(force, motion)
+            self._last = x.copy(), (force.copy(), jump, self.law(self.system.operator.trial(jump, self.slip)))
+        return self._last[1]
 
     def residual(self, x: Floats) -> Floats:
         force, _, law = self.state(x)
@@ -178,7 +187,7 @@ class _Contact:
 
     def tangent(self, x: Floats) -> Tangent:
         system = self.system
-        return Tangent.of(system.operator, self.state(x)[2], system.compliance, system.motion / system.lever)
+        return Tangent.of(system.operator, self.state(x)[2], system.both_compliances, system.motion / system.lever)
 
 
 def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:

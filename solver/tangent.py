@@ -10,8 +10,9 @@ Only the columns S in which M is not zero couple anything: with z = A_S f − H_
 
 which has |S| + r unknowns. Where a point slides, its traction hardly depends on the tangential jump: ∂τ/∂q is
 μλ/|q| (I − t⊗t), 1e-3 where slip is large beside the elastic displacement. Leaving such columns out makes the system
-a third as large, 27 times cheaper to factor, and the inverse of a nearby tangent: GMRES with the exact one then needs
-about five iterations.
+a third as large, 27 times cheaper to factor, and the inverse of a nearby tangent: GMRES with all columns then needs
+about five iterations. As it need only be nearby, A may be rounded to single precision in it, which halves the memory
+that is read; in the product with T it may not, for its terms nearly cancel.
 """
 
 from __future__ import annotations
@@ -21,88 +22,114 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import lapack, lu_solve
+from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs, lu_solve
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from meshes.data import Floats, Ints
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, Law
 
+Singles = NDArray[np.float32]
+
 LOOSE = 0.05  # a point whose traction follows the tangential jump with less than this share of γ_t slides freely
 KRYLOV = 30  # iterations after which all columns are kept instead
 
 
 @dataclass(frozen=True)
+class Compliances:
+    """A (m, m) in double and in single precision."""
+
+    exact: Floats
+    rounded: Singles
+
+
+@dataclass(frozen=True)
 class Tangent:
-    """T at one state. M: (m, m), A: (m, m), H: (m, r). kept: the columns of M that are not left out at first."""
+    """T at one state. M: (m, m), compliances: A, H: (m, r). kept: the columns of M that are not left out at first;
+    whole: whether these are all."""
 
     M: sp.csr_matrix
-    A: Floats
+    compliances: Compliances
     H: Floats
     kept: Ints
+    whole: bool
 
     @staticmethod
-    def of(operator: ContactOperator, law: Law, A: Floats, H: Floats) -> Tangent:
+    def of(operator: ContactOperator, law: Law, compliances: Compliances, H: Floats) -> Tangent:
         """At the state in which `law` holds at the quadrature points. Raises NotConverged where nothing touches."""
         M = operator.tangent(law)
         k = law.traction.shape[1]
-        normal = np.arange(M.shape[0]) % k == 0
-        kept = _columns(M) & (normal | np.repeat(_held_nodes(operator, law), k))
+        normal, used = np.arange(M.shape[0]) % k == 0, _columns(M)
+        kept = used & (normal | np.repeat(_held_nodes(operator, law), k))
         if not kept.any() and H.shape[1]:
             raise NotConverged(
                 "no node in contact while a motion is free: bring the bodies together, or hold the motion"
             )
-        return Tangent(M, A, H, np.flatnonzero(kept))
+        return Tangent(M, compliances, H, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
 
     def solve(self, right: Floats) -> Floats:
         """T⁻¹ right, (m + r,), to 1e-5 of it where columns are left out. Raises NotConverged where T is singular."""
-        if len(self.kept) == np.count_nonzero(_columns(self.M)):
+        if self.whole:
             return self.nearly(right)
         size = 2 * (len(right),)
-        T, nearby = LinearOperator(size, self.times), LinearOperator(size, self.nearly)
+        T, nearby = LinearOperator(size, self.times, dtype=float), LinearOperator(size, self.nearly, dtype=float)
         # SciPy's default tolerance, 1e-5: a looser one costs Newton steps
         found, failed = gmres(T, right, x0=self.nearly(right), M=nearby, atol=0.0, restart=KRYLOV, maxiter=1)
         return self.complete.nearly(right) if failed else found
 
     def times(self, y: Floats) -> Floats:
         """T y."""
-        force, motion = np.split(y.ravel(), [len(self.A)])
-        return np.concatenate([force + self.M @ (self.A @ force - self.H @ motion), self.H.T @ force])
+        force, motion = np.split(y.ravel(), [self.M.shape[0]])
+        jump = self.H @ motion - self.compliances.exact @ force
+        return np.concatenate([force - self.M @ jump, self.H.T @ force])
 
     def nearly(self, right: Floats) -> Floats:
         """The inverse with the kept columns only, times right."""
-        b, load = np.split(right.ravel(), [len(self.A)])
-        z = lu_solve(self._factor, np.concatenate([self._A_kept @ b, load - self.H.T @ b]), check_finite=False)
-        coupled, motion = np.split(z, [len(self.kept)])
+        b, load = np.split(right.ravel(), [self.M.shape[0]])
+        known = np.concatenate([self._A_kept @ b.astype(self._A.dtype), (load - self.H.T @ b) / self._balance])
+        coupled, motion = np.split(lu_solve(self._factor, known.astype(self._A.dtype)).astype(float), [len(self.kept)])
         return np.concatenate([b - self._M_kept @ coupled, motion])
 
     @property
     def complete(self) -> Tangent:
         """The same with all columns kept."""
-        return Tangent(self.M, self.A, self.H, np.flatnonzero(_columns(self.M)))
+        return Tangent(self.M, self.compliances, self.H, np.flatnonzero(_columns(self.M)), whole=True)
+
+    @property
+    def _A(self) -> Floats | Singles:
+        """The compliance, as exact as `nearly` has to be."""
+        return self.compliances.exact if self.whole else self.compliances.rounded
 
     @cached_property
     def _M_kept(self) -> sp.csr_matrix:
         return self.M[:, self.kept]
 
     @cached_property
-    def _A_kept(self) -> Floats:
-        return self.A[self.kept]
+    def _A_kept(self) -> Floats | Singles:
+        return self._A[self.kept]
 
     @cached_property
-    def _factor(self) -> tuple[Floats, Ints]:
+    def _balance(self) -> float:
+        """What the rows of moments are divided by, to be as large as the others."""
+        return float(np.abs(self._M_kept.data).max(initial=0.0)) or 1.0
+
+    @cached_property
+    def _factor(self) -> tuple[Floats | Singles, Ints]:
         """LU of the system for z and δ. Raises NotConverged where it is singular to rounding."""
         s, r = len(self.kept), self.H.shape[1]
         touched = np.flatnonzero(np.diff(self._M_kept.indptr))
         M = self._M_kept[touched]
-        B = np.zeros((s + r, s + r), order="F")
-        B[:s, :s] = (M.T @ self.A[np.ix_(self.kept, touched)].T).T
+        B = np.zeros((s + r, s + r), order="F", dtype=self._A.dtype)
+        B[:s, :s] = (M.T.astype(self._A.dtype) @ self._A[np.ix_(self.kept, touched)].T).T
         B[np.arange(s), np.arange(s)] += 1.0
         B[:s, s:] = self.H[self.kept]
-        B[s:, :s] = -(M.T @ self.H[touched]).T
+        B[s:, :s] = -(M.T @ self.H[touched]).T / self._balance
+        getrf, gecon = get_lapack_funcs(("getrf", "gecon"), (B,))
         size = np.abs(B).sum(axis=0).max(initial=0.0)
-        lu, pivots, failed = lapack.dgetrf(B, overwrite_a=True)
-        if failed or (s + r and lapack.dgecon(lu, size)[0] < np.finfo(float).eps):
+        lu, pivots, _ = getrf(B, overwrite_a=True)
+        # a rounded factor need not be good: GMRES finds out
+        if self.whole and s + r and not gecon(lu, size)[0] >= np.finfo(float).eps:
             raise NotConverged(
                 "a free rigid motion meets no resistance: wanted a support, or friction that sticks somewhere; "
                 "support the body, prescribe the motion, or lower the load"

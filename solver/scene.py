@@ -29,8 +29,8 @@ EXAMPLE = "demos/yang2022.toml is a complete example"
 WIDEST_CONTACT = 0.2
 """Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
 LARGEST_DEFLECTION = 0.1
-"""Largest deflection of a tooth pair in modules, estimated with one pair carrying all: of 230 random scenes those below
-were solved but for two, of those above every third. Loaded plastic gears come near it, steel stays far below."""
+"""Largest deflection of a tooth pair in modules, estimated with one pair carrying all: of 112 random scenes below
+it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel stays far below."""
 
 
 class Scene(Section):

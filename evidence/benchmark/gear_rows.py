@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evidence.benchmark.gears import FRICTION, scene, three_teeth
+from evidence.benchmark.gears import FRICTION, ROTATION, scene, three_teeth
 from evidence.benchmark.pitch import PitchFacts, read_facts
 from evidence.benchmark.programs import EVOLVENT, ROOT, Program, solve
 from evidence.benchmark.runs import Command, Cost, RunFailed, run
@@ -22,9 +22,9 @@ TIME_LIMIT = 600.0  # s
 @dataclass(frozen=True)
 class GearRow:
     """One program on one model of the gear pair. model: "three teeth" or "whole gears". seconds: CPU, a position, all
-    but meshing. rotation [mrad]: the pinion's elastic rotation at φ = 0. error: relative, of that, against the overkill
-    solution of the same model; reference_error: that solution's own. ratio: of the seconds over those of Evolvent's
-    pitch of 20 positions."""
+    but meshing. stiffness [N·m/mrad]: torque over the pinion's elastic rotation at φ = 0. error: relative, of that,
+    against the overkill solution of the same model; reference_error: that solution's own. ratio: of the seconds over
+    those of Evolvent's largest pitch."""
 
     program: str
     model: str
@@ -36,7 +36,7 @@ class GearRow:
     ratio: float = float("nan")
     memory_MB: float = float("nan")
     iterations: float = float("nan")
-    rotation: float = float("nan")
+    stiffness: float = float("nan")
     error: float = float("nan")
     reference_error: float = float("nan")
     note: str = ""
@@ -62,28 +62,29 @@ SMALL = GearSizes((1.0,), (1.0,), 3, 1, (1.0, 1.2), (1.0, 1.2))
 def rows(peers: Sequence[Program], sizes: GearSizes, folder: Path) -> Iterator[GearRow]:
     """Evolvent's pitches first: what the others are compared with is the largest one."""
     fine = [pitch(folder, n, 2).transmission_error[0] for n in sizes.overkill_gears]
-    base, fast = scene(1.0).gear_pair().pinion.base_radius, float("nan")
+    own, fast = scene(1.0), float("nan")
+    base = own.gear_pair().pinion.base_radius
     for elements in sizes.pitch:
         cost, facts = pitch_cost(folder, elements, sizes.positions)
         fast = (cost.cpu - facts.mesh) / facts.counted
         yield GearRow(
             "Evolvent", "whole gears", 2, elements, facts.dofs, facts.counted, fast, 1.0, cost.memory_MB,
-            float(np.mean(facts.iterations)), 1e3 * facts.transmission_error[0] / base,
-            facts.transmission_error[0] / fine[1] - 1.0, abs(fine[0] / fine[1] - 1.0),
+            float(np.mean(facts.iterations)), 1e-3 * own.load.torque_Nm * base / facts.transmission_error[0],
+            fine[1] / facts.transmission_error[0] - 1.0, abs(fine[1] / fine[0] - 1.0),
         )  # fmt: skip
     yield from _three_teeth(peers, sizes, folder, fast)
 
 
 def _three_teeth(peers: Sequence[Program], sizes: GearSizes, folder: Path, fast: float) -> Iterator[GearRow]:
-    coarse, fine = (_overkill_rotation(folder, n) for n in sizes.overkill_teeth)
+    coarse, fine = (_overkill_torque(folder, n) for n in sizes.overkill_teeth)
     for elements in sizes.elements:
         for program in (EVOLVENT, *peers):
             yield _teeth_row(program, elements, sizes.peer_positions, folder, fast, fine, abs(coarse / fine - 1.0))
 
 
-def _overkill_rotation(folder: Path, elements: float) -> float:
+def _overkill_torque(folder: Path, elements: float) -> float:
     three_teeth(elements, order=2).write(folder / "overkill.npz")
-    return solve(EVOLVENT, folder / "overkill.npz", folder, TIME_LIMIT).answer.rotation
+    return solve(EVOLVENT, folder / "overkill.npz", folder, TIME_LIMIT).answer.torque
 
 
 def _teeth_row(
@@ -113,7 +114,7 @@ def _row_of(
     return GearRow(
         program.name, "three teeth", 1, elements, dofs, len(costs), seconds, seconds / fast,
         max(cost.memory_MB for cost in costs), float(np.mean([a.iterations for a in answers])),
-        1e3 * answers[0].rotation, answers[0].rotation / exact - 1.0, own,
+        1e-6 * answers[0].torque / ROTATION, answers[0].torque / exact - 1.0, own,
     )  # fmt: skip
 
 

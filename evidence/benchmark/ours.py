@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task, Turn
+from meshes.data import Floats
 from solver import compat
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.position import Position
 from solver.prepared import prepare
-from solver.problem import Contact, Problem, Step
+from solver.problem import Contact, ContactResult, Problem, Step
 
 GEAR_REACH = 0.1  # mm, the gap up to which flanks may close
 
@@ -25,7 +26,7 @@ def problem_of(task: Task) -> Problem:
         freedom = Freedom("xyz"[task.dimension - 1], displacement=task.drive.displacement)
         reach = 4 * abs(task.drive.displacement)
     else:
-        freedom, reach = Freedom("rz", load=task.drive.torque), GEAR_REACH
+        freedom, reach = Freedom("rz", displacement=task.drive.rotation), GEAR_REACH
     bodies = tuple(
         Body(
             mesh,
@@ -38,6 +39,11 @@ def problem_of(task: Task) -> Problem:
     )
     contact = Contact((0, task.contact[0]), (1, task.contact[1]), task.friction, reach)
     return Problem(bodies, (contact,))
+
+
+def _torque(points: Floats, found: ContactResult) -> float:
+    """About z, of what the driven body presses on the other one with [N·mm]."""
+    return float(found.weights @ (points[:, 0] * found.traction[:, 1] - points[:, 1] * found.traction[:, 0]))
 
 
 def _supports(task: Task, index: int) -> tuple[Fixed, ...]:
@@ -55,10 +61,9 @@ def solved(task: Task) -> Answer:
     marks.append(time.process_time())
     found = solution.contacts[0]
     points = np.pad(found.points, ((0, 0), (0, 3 - found.points.shape[1])))
-    turned = isinstance(task.drive, Turn)
     return Answer(
         body=0,
-        rotation=float(solution.motions[0][0]) if turned else float("nan"),
+        torque=_torque(points, found) if isinstance(task.drive, Turn) else float("nan"),
         pressure=found.pressure,
         points=points,
         weights=found.weights,

@@ -122,13 +122,13 @@ def _gear_verdicts(rows: Sequence[GearRow]) -> list[str]:
 
 
 def _gear_table(rows: Sequence[GearRow]) -> str:
-    head = ("program", "model", "order", "dofs", "positions", "s a position", "ratio", "MB", "Newton", "mrad",
+    head = ("program", "model", "order", "dofs", "positions", "s a position", "ratio", "MB", "Newton", "N·m/mrad",
             "error %", "reference's own %")  # fmt: skip
     lines = [
         [
             r.program, r.model, str(r.order), f"{r.dofs:,}", str(r.positions), *(
                 (_number(r.seconds), _number(r.ratio), f"{r.memory_MB:.0f}", f"{r.iterations:.1f}",
-                 f"{r.rotation:.4f}", f"{100 * r.error:+.2f}", f"{100 * r.reference_error:.2f}")
+                 f"{r.stiffness:.2f}", f"{100 * r.error:+.2f}", f"{100 * r.reference_error:.2f}")
                 if not r.note else (r.note, *[""] * 6)
             ),
         ]

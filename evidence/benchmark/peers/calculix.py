@@ -35,7 +35,6 @@ FACES = {
 }
 STIFFNESS = {Push: 1e7, Turn: 1e6}  # N/mm³: ten times softer loses 5 % of a peak, ten times stiffer oscillates
 SLAVE = 1  # the body with the smaller cells
-MOTION = 9_999_999  # number of the node whose first displacement is the driven rotation
 
 
 def main() -> None:
@@ -62,11 +61,11 @@ def deck(task: Task, mortar: bool) -> Iterator[str]:
         yield from _mesh_lines(mesh, element, starts[i], first_cells[i], i)
         yield from _surface_lines(mesh, task.contact[i], first_cells[i], f"S{i}")
         yield from _material_lines(task.materials[i], i)
-    yield from _drive_lines(task, element)
+    yield from _drive_lines(task)
     yield "*BOUNDARY"
     yield from _support_lines(task, mortar)
     yield from _contact_lines(task, mortar)
-    yield from _step_lines(task, mortar)
+    yield from _step_lines(task)
 
 
 def _support_lines(task: Task, mortar: bool) -> Iterator[str]:
@@ -82,8 +81,6 @@ def _support_lines(task: Task, mortar: bool) -> Iterator[str]:
                     continue
                 supported.add(node)
             yield from (f"{node + starts[body] + 1},{k},{k}" for k in numbers)
-    if not isinstance(task.drive, Push):
-        yield f"{MOTION},2,3"
 
 
 def _mesh_lines(mesh: MeshData, element: str, start: int, first: int, body: int) -> Iterator[str]:
@@ -133,17 +130,10 @@ def _material_lines(material: tuple[float, float], body: int) -> Iterator[str]:
     yield from (f"*SOLID SECTION, ELSET=E{body}, MATERIAL=M{body}", "1.")
 
 
-def _drive_lines(task: Task, element: str) -> Iterator[str]:
-    """The driven group: its nodes' set, and for a rotation one equation a displacement."""
-    nodes = _used(task.bodies[0], task.driven, element)
+def _drive_lines(task: Task) -> Iterator[str]:
+    """The driven group as a set of nodes."""
     yield "*NSET, NSET=DRIVEN"
-    yield from (str(node + 1) for node in nodes)
-    if isinstance(task.drive, Push):
-        return
-    yield from ("*NODE, NSET=TURN", f"{MOTION},0.,0.,0.")
-    for node, (x, y, _) in zip(nodes + 1, task.bodies[0].points[nodes]):
-        yield from ("*EQUATION", "2", f"{node},1,1.,{MOTION},1,{y:.12g}")
-        yield from ("*EQUATION", "2", f"{node},2,1.,{MOTION},1,{-x:.12g}")
+    yield from (str(node + 1) for node in _driven(task))
 
 
 def _contact_lines(task: Task, mortar: bool) -> Iterator[str]:
@@ -159,20 +149,19 @@ def _contact_lines(task: Task, mortar: bool) -> Iterator[str]:
         yield from ("*FRICTION", f"{task.friction},{stiffness / 10}")
 
 
-def _step_lines(task: Task, mortar: bool) -> Iterator[str]:
-    """One step for a push; for a pair of gears one that closes it, and one under its torque."""
+def _step_lines(task: Task) -> Iterator[str]:
+    """One step from rest to the full drive."""
     d = task.dimension
-    yield from ("*STEP, INC=100", "*STATIC", "1.,1.")
+    yield from ("*STEP, INC=100", "*STATIC", "1.,1.", "*BOUNDARY")
     if isinstance(task.drive, Push):
-        yield from ("*BOUNDARY", f"DRIVEN,1,{d - 1}", f"DRIVEN,{d},{d},{task.drive.displacement}")
+        yield from (f"DRIVEN,1,{d - 1}", f"DRIVEN,{d},{d},{task.drive.displacement}")
     else:
-        yield from ("*BOUNDARY", f"{MOTION},1,1,{task.drive.closing}", "*END STEP")
-        yield from ("*STEP, INC=100", "*STATIC", "1.,1.", "*BOUNDARY, OP=NEW")
-        yield from _support_lines(task, mortar)
-        yield from ("*CLOAD", f"{MOTION},1,{task.drive.torque}")
+        nodes = _driven(task)
+        for node, (x, y, _) in zip(nodes + 1, task.drive.rotation * task.bodies[0].points[nodes]):
+            yield from (f"{node},1,1,{-y:.12g}", f"{node},2,2,{x:.12g}")
     yield from ("*CONTACT FILE, FREQUENCY=100", "CDIS, CSTR")
     yield f"*NODE FILE, FREQUENCY=100{', OUTPUT=2D' if d == 2 else ''}"
-    yield from ("U", "*END STEP")
+    yield from ("RF", "*END STEP")
 
 
 def read_answer(task: Task, job: Path, start: float) -> Answer:
@@ -189,21 +178,25 @@ def read_answer(task: Task, job: Path, start: float) -> Answer:
         body=SLAVE,
         pressure=pressure[nodes],
         nodes=nodes,
-        rotation=_rotation(task, job),
+        torque=_torque(task, job) if isinstance(task.drive, Turn) else float("nan"),
         iterations=_iterations(job.with_suffix(".out")),
         dofs=task.dofs,
         seconds={"start": start},
     )
 
 
-def _rotation(task: Task, job: Path) -> float:
-    """Of the driven body, from the displacement of its group's first node."""
-    if isinstance(task.drive, Push):
-        return float("nan")
-    node = int(_used(task.bodies[0], task.driven, ELEMENT[task.bodies[0].shape, task.bodies[0].order])[0])
-    moved = frd_block(job.with_suffix(".frd"), "DISP")
-    u, (x, y, _) = moved[moved[:, 0] == node + 1][0, 1:4], task.bodies[0].points[node]
-    return float((x * u[1] - y * u[0]) / (x**2 + y**2))
+def _torque(task: Task, job: Path) -> float:
+    """Of the forces that turn the driven group [N·mm]."""
+    nodes = _driven(task)
+    found = frd_block(job.with_suffix(".frd"), "FORC")
+    force = found[np.searchsorted(found[:, 0], nodes + 1), 1:3]
+    x, y, _ = task.bodies[0].points[nodes].T
+    return float(x @ force[:, 1] - y @ force[:, 0])
+
+
+def _driven(task: Task) -> Ints:
+    """Nodes of the driven group that CalculiX has."""
+    return _used(task.bodies[0], task.driven, ELEMENT[task.bodies[0].shape, task.bodies[0].order])
 
 
 def _fill_middles(mesh: MeshData, group: str, pressure: Floats) -> None:

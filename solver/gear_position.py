@@ -138,7 +138,8 @@ def shared_position(
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width, model.whole_flank)
         if not contact.teeth:
             raise NotConverged(
-                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none"
+                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the load "
+                "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
         pressed = _near_line(contact) if before is None else before.at(contact)

@@ -214,7 +214,8 @@ def _certify(position: SweptPosition) -> None:
         if not error <= BALANCE_LIMIT:
             raise BalanceError(
                 f"pinion at {result.stand.angle:.4f} rad, μ = {result.friction}: wanted a balance error of at most "
-                f"{BALANCE_LIMIT}, found {error:.2e}; refine the mesh (mesh.level) or the sweep (sweep.positions)"
+                f"{BALANCE_LIMIT}, found {error:.2e}; where a tip's edge bears relieve it (tip_relief_um) or lower the "
+                "torque, else refine the mesh (mesh.level) or the sweep (sweep.positions)"
             )
 
 

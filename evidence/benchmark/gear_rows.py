@@ -55,7 +55,7 @@ class GearSizes:
     overkill_gears: tuple[float, float]
 
 
-FULL = GearSizes((1.0, 1.9), (1.0, 1.7), 20, 1, (1.0, 1.2), (1.7, 2.2))
+FULL = GearSizes((1.9,), (1.0,), 20, 1, (1.0, 1.2), (1.2, 1.4))
 SMALL = GearSizes((1.0,), (1.0,), 3, 1, (1.0, 1.2), (1.0, 1.2))
 
 

@@ -75,14 +75,13 @@ class JumpMap:
 class GearContact:
     """All tooth pairs at a position.
 
-    bodies: (pinion, wheel), the pinion carries the pressure. half_width: (n,) of the window at the pinion's flank nodes
-    [mm of profile arc].
+    bodies: (pinion, wheel), the pinion carries the pressure. half_width: of the window [mm of profile arc].
     """
 
     bodies: tuple[GearBody, GearBody]
     stand: Stand
     teeth: tuple[ToothContact, ...]
-    half_width: Floats
+    half_width: float
 
     @property
     def d(self) -> int:
@@ -195,7 +194,7 @@ class GearContact:
     def distance(self) -> Floats:
         """(q,) how far the points lie from their contact lines, in half-widths of the window."""
         parts = [
-            arc_distance(self.bodies[0], self.stand, t.tooth, t.operator.nodes) / self.half_width[t.operator.nodes]
+            arc_distance(self.bodies[0], self.stand, t.tooth, t.operator.nodes) / self.half_width
             for t in self.teeth
         ]
         return np.asarray(self.operator.hat @ np.concatenate(parts))
@@ -217,20 +216,20 @@ def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) 
 
 
 def gear_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: Floats, whole_flank: bool = False
+    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float, whole_flank: bool = False
 ) -> GearContact:
-    """Searches all tooth pairs that may touch at this stand. half_width: of the window at the pinion's flank
-    nodes, (n,) [mm of profile arc]; whole_flank: there is none.
+    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc];
+    whole_flank: there is none.
 
     Raises SearchError.
     """
-    width = np.full(len(half_width), np.inf) if whole_flank else half_width
+    width = np.inf if whole_flank else half_width
     found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, width)) is not None]
     return GearContact(bodies, stand, tuple(found), width)
 
 
 def _tooth_operator(
-    bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: Floats
+    bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float
 ) -> ContactOperator | None:
     pinion, wheel = bodies
     assert pinion.traction is not None
@@ -249,10 +248,10 @@ def _tooth_operator(
     return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
 
 
-def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: Floats) -> np.ndarray:
+def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
     """(n,) bool: the flank nodes within the window; all where it has no end."""
     every = np.arange(len(pinion.flank.points))
-    if np.isinf(half_width).all():
+    if np.isinf(half_width):
         return np.ones(len(every), dtype=bool)
     return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
 

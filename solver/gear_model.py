@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import Floats, MeshData
+from meshes.data import MeshData
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
@@ -21,7 +21,7 @@ from solver.scene import Scene
 from solver.sectors import gear_mesh
 from solver.skips import contact_teeth, is_plane, skips, switched_off
 
-WINDOW = 1.6  # half-width of the contact window in Hertz half-widths, plus one element
+WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
 
 
 @dataclass(frozen=True)
@@ -36,16 +36,15 @@ class GearLoad:
 class GearModel:
     """All that positions share.
 
-    teeth: tooth pairs that may touch within the pitch. half_width: (n,) of the window to start with, at the pinion's
-    flank nodes [mm of arc]. whole_flank: search all of the flanks instead of the window. friction_terms: also keep them
-    where μ = 0.
+    teeth: tooth pairs that may touch within the pitch. half_width: of the window to start with [mm of arc].
+    whole_flank: search all of the flanks instead of the window. friction_terms: also keep them where μ = 0.
     """
 
     pair: GearPair
     bodies: tuple[GearBody, GearBody]
     teeth: tuple[int, ...]
     load: GearLoad
-    half_width: Floats
+    half_width: float
     whole_flank: bool = False
     friction_terms: bool = False
 
@@ -93,7 +92,7 @@ def prepare_model(
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
-        pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene, pinion),
+        pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
         whole_flank=not skips(scene, "window"),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
@@ -105,10 +104,9 @@ def _torque(scene: Scene) -> float:
     return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
 
 
-def window_half_width(scene: Scene, pinion: GearBody) -> Floats:
-    """Half-width (n,) [mm of profile arc] of the window about a contact line, at each flank node of the pinion: Hertz's
-    there for the mean line load."""
+def window_half_width(scene: Scene) -> float:
+    """Half-width [mm of profile arc] of the window about a contact line: the same everywhere, for what deflection
+    brings into contact beyond the path of contact lies outside a window as narrow as Hertz's contact is there."""
     estimate = hertz_estimate(scene)
-    start, end = estimate.pair.path_of_contact
-    ξ = pinion.roll_length - estimate.pair.pitch_point_roll_lengths[0]
-    return WINDOW * estimate.half_width(np.clip(ξ, start, end))
+    ξ = np.linspace(*estimate.pair.path_of_contact, 50)
+    return WINDOW * float(np.max(estimate.half_width(ξ)))

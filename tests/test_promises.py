@@ -64,7 +64,7 @@ def fails(check: Callable[[], None]) -> bool:
 
 def forces_cancel(model: GearModel) -> None:
     """The forces on both gears in the common frame, summed over the nodes: Σ F_1 + Σ F_2 = 0."""
-    shared = shared_position(model, 0.02, (0.0, 0.0), normal_only=True)
+    shared = shared_position(model, 0.02, (0.0, 0.0), (0.0,), None)
     contact, force = shared.contact, shared.smooth.force
     ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
     total = np.zeros((2, contact.d))
@@ -255,6 +255,6 @@ def test_nan_is_said(broken: str, monkeypatch: pytest.MonkeyPatch) -> None:
             equilibrium, "coulomb", lambda t, μ: replace(original(t, μ), traction=np.nan * original(t, μ).traction)
         )
     else:
-        monkeypatch.setattr(equilibrium, "_regular_solve", lambda matrix, right: np.full_like(right, np.nan))
+        monkeypatch.setattr(equilibrium.Tangent, "solve", lambda _, right: np.full_like(right, np.nan))
     cell: Cell = attempt(cylinder.cell)
     assert cell.refused and "not a number" in cell.refused

@@ -140,4 +140,4 @@ def _model(mesh: SpurMesh) -> GearModel:
         material, sign = scene.materials()[index], 1 - 2 * index
         bodies.append(condensed_gear(pair.gears[index], cells, material, teeth, sign, carries_pressure=index == 0))
     torque = 1e3 * scene.load.torque_Nm / (1.0 if mesh.layers else pair.face_width)
-    return GearModel(pair, (bodies[0], bodies[1]), tuple(teeth), GearLoad(torque), window_half_width(scene, bodies[0]))
+    return GearModel(pair, (bodies[0], bodies[1]), tuple(teeth), GearLoad(torque), window_half_width(scene))

@@ -63,7 +63,7 @@ class SectorResolution:
     fillet_elements: int = 6
     back_elements: int = 5
     neck_elements: int = 3
-    core_elements: int = 4
+    core_elements: int = 2
     rim_elements: int = 4
     back_alike: bool = False
 

@@ -124,7 +124,7 @@ def test_coarser_halves_all_directions() -> None:
     own = SectorResolution(profile_elements=54, face_elements=12, fillet_elements=8, back_elements=6, neck_elements=4)
     half = coarser(own)
     assert (half.profile_elements, half.face_elements, half.neck_elements) == (27, 6, 2)
-    assert (half.fillet_elements, half.back_elements, half.core_elements, half.rim_elements) == (4, 3, 2, 2)
+    assert (half.fillet_elements, half.back_elements, half.core_elements, half.rim_elements) == (4, 3, 1, 2)
     assert half.layer_depths == pytest.approx([2.0 * depth for depth in own.layer_depths])
 
 

@@ -36,7 +36,8 @@ Singles = NDArray[np.float32]
 LOOSE = 0.05  # a point whose traction follows the tangential jump with less than this share of γ_t slides freely
 ACCURACY = 1e-7  # of a step where columns are left out: a looser one costs Newton steps, and the last digits
 RELATIVE = "rtol" if "rtol" in signature(gmres).parameters else "tol"  # SciPy's name for it until 1.11
-KRYLOV = 30  # iterations after which all columns are kept instead
+KRYLOV = 30  # iterations to a restart
+RESTARTS = 3  # after which all columns are kept instead; SciPy may stop short of its tolerance and needs a second
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Tangent:
             return first + self.nearly(right - self.times(first))  # f = b − M z cancels digits: refined once
         size = 2 * (len(right),)
         T, nearby = LinearOperator(size, self.times, dtype=float), LinearOperator(size, self.nearly, dtype=float)
-        options = {"restart": KRYLOV, "maxiter": 1, "atol": 0.0, RELATIVE: ACCURACY}
+        options = {"restart": KRYLOV, "maxiter": RESTARTS, "atol": 0.0, RELATIVE: ACCURACY}
         found, failed = gmres(T, right, x0=self.nearly(right), M=nearby, **options)
         return self.complete.solve(right) if failed else found
 

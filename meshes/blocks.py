@@ -125,14 +125,19 @@ def sphere_quarter(
 def over_sphere(points: Floats, radius: float, height: float) -> Floats:
     """Points (n, 3) of an upright block, 0 <= z <= height [mm], lifted: its underside comes to lie on the sphere of
     `radius` about (0, 0, radius), its top stays. Raises MeshError unless the sphere rises less than 0.7 height."""
-    x, y, z = points.T
+    x, y, _ = points.T
     reach = float(np.hypot(x, y).max())
     if reach >= radius or radius - np.sqrt(radius**2 - reach**2) > 0.7 * height:
         raise MeshError(
             f"block over a sphere: wanted a sphere that rises less than 0.7 times the height, found radius {radius}, "
             f"height {height}, a block that reaches {reach:g} mm from the axis; take a smaller side or a larger height"
         )
-    sag = radius - np.sqrt(radius**2 - x**2 - y**2)
+    return lifted(points, radius - np.sqrt(radius**2 - x**2 - y**2), height)
+
+
+def lifted(points: Floats, sag: Floats, height: float) -> Floats:
+    """Points (n, 3) of an upright block, 0 <= z <= height [mm]: its underside is raised by sag (n,), its top stays."""
+    x, y, z = points.T
     return np.column_stack([x, y, sag + z * (1 - sag / height)])
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from meshes.blocks import lifted
 from meshes.data import MeshData, MeshError
 from meshes.rings import ring_block
 
@@ -50,14 +51,13 @@ def ellipse_punch(
     """
     block = ellipse_block((half_axes[1], half_axes[1]), side, size, fine, order, growth, fine_depth)
     points = block.points[:, [1, 0, 2]] * (half_axes[0] / half_axes[1], 1.0, -1.0)  # turned upside down about x = y
-    x, y, depth = points.T
+    x, y, _ = points.T
     sag = curvatures[0] * x**2 + curvatures[1] * y**2
     if sag.max() > 0.7 * side:
         raise MeshError(
             f"ellipse punch: wanted a paraboloid that rises less than 0.7 times the height {side} mm, found "
             f"{sag.max():.4g} mm; take smaller curvatures or a smaller side"
         )
-    points[:, 2] = sag + depth * (1 - sag / side)
     names = {"symmetry_x": "symmetry_y", "symmetry_y": "symmetry_x", "top": "arc", "bottom": "top", "side": "side"}
     facets = {names[name]: group for name, group in block.facets.items()}
-    return replace(block, points=points, facets=facets)
+    return replace(block, points=lifted(points, sag, side), facets=facets)

@@ -46,8 +46,8 @@ class CondensedSystem:
 
     @cached_property
     def both_compliances(self) -> Compliances:
-        """A, and rounded for what reads it most."""
-        return Compliances(self.compliance, self.compliance.astype(np.float32))
+        """A, which all friction coefficients may ask for in single precision: kept."""
+        return Compliances(self.compliance)
 
     @property
     def k(self) -> int:

@@ -216,16 +216,15 @@ def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) 
 
 
 def gear_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float, whole_flank: bool = False
+    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float
 ) -> GearContact:
-    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc];
-    whole_flank: there is none.
+    """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc],
+    infinite where the whole flanks are searched.
 
     Raises SearchError.
     """
-    width = np.inf if whole_flank else half_width
-    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, width)) is not None]
-    return GearContact(bodies, stand, tuple(found), width)
+    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, half_width)) is not None]
+    return GearContact(bodies, stand, tuple(found), half_width)
 
 
 def _tooth_operator(

@@ -36,8 +36,8 @@ class GearLoad:
 class GearModel:
     """All that positions share.
 
-    teeth: tooth pairs that may touch within the pitch. half_width: of the window to start with [mm of arc].
-    whole_flank: search all of the flanks instead of the window. friction_terms: also keep them where μ = 0.
+    teeth: tooth pairs that may touch within the pitch. half_width: of the window to start with [mm of arc],
+    infinite where the whole flanks are searched. friction_terms: also keep them where μ = 0.
     """
 
     pair: GearPair
@@ -45,7 +45,6 @@ class GearModel:
     teeth: tuple[int, ...]
     load: GearLoad
     half_width: float
-    whole_flank: bool = False
     friction_terms: bool = False
 
     def has_friction_terms(self, friction: float) -> bool:
@@ -93,7 +92,6 @@ def prepare_model(
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
         pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
-        whole_flank=not skips(scene, "window"),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
     return Preparation(model, meshed - begin, time.perf_counter() - meshed)
@@ -106,7 +104,10 @@ def _torque(scene: Scene) -> float:
 
 def window_half_width(scene: Scene) -> float:
     """Half-width [mm of profile arc] of the window about a contact line: the same everywhere, for what deflection
-    brings into contact beyond the path of contact lies outside a window as narrow as Hertz's contact is there."""
+    brings into contact beyond the path of contact lies outside a window as narrow as Hertz's contact is there.
+    Infinite where the scene does without a window."""
+    if not skips(scene, "window"):
+        return float(np.inf)
     estimate = hertz_estimate(scene)
     ξ = np.linspace(*estimate.pair.path_of_contact, 50)
     return WINDOW * float(np.max(estimate.half_width(ξ)))

@@ -135,18 +135,18 @@ def shared_position(
     tolerance = TOLERANCE if 0.0 in frictions else START_TOLERANCE
     stand, half_width = Stand(model.pair, angle, extra), model.half_width
     for _ in range(ROUNDS):
-        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width, model.whole_flank)
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.teeth:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the load "
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        pressed = _near_line(contact) if before is None else before.at(contact)
+        pressed = _middle(contact) if before is None else before.at(contact)
         smooth = frictionless(system if normal_only else normal_part(system), pressed, tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
-            half_width = 1.5 * half_width
+            half_width *= 1.5
         elif abs(shift) <= RELOCATE * model.pair.pinion.normal_module:
             return SharedPosition(contact, system, smooth)
         stand = stand.turned(model.load.on, float(smooth.motion[0]))
@@ -155,7 +155,7 @@ def shared_position(
     )
 
 
-def _near_line(contact: GearContact) -> np.ndarray:
+def _middle(contact: GearContact) -> np.ndarray:
     """(q,) bool: the points that are taken for pressed where there is no position before."""
     # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
     return contact.distance <= max(FIRST_CONTACT, float(contact.distance.min()))

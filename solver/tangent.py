@@ -42,10 +42,13 @@ RESTARTS = 3  # after which all columns are kept instead; SciPy may stop short o
 
 @dataclass(frozen=True)
 class Compliances:
-    """A (m, m) in double and in single precision."""
+    """A (m, m) in double precision, and in single precision where that is asked for."""
 
     exact: Floats
-    rounded: Singles
+
+    @cached_property
+    def rounded(self) -> Singles:
+        return self.exact.astype(np.float32)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """The contact of a gear pair at one position: tooth pairs within reach, their window, and the condensed system.
 
 Only the nodes of a window about each contact line take part; a solution that touches the window's rim is refused by
-`reaches_rim`, and the caller widens the window. The whole flanks can be searched instead, to show that it changes
-nothing.
+`reaches_rim`, and the caller widens the window; what it leaves out altogether is `gear_overlap`'s. The whole flanks can
+be searched instead, to show that it changes nothing.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from solver.gear_body import GearBody
 from solver.kinematics import Stand, spin
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.search import pair_surfaces
+from solver.surface import Surface
 
 EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
 PENETRATION = 0.2  # how deep [module] undeformed flanks may overlap: far beyond any deflection
@@ -159,6 +160,12 @@ class GearContact:
             result.append(JumpMap(None if gear == 0 else t.projection, axes))
         return result
 
+    def pushed(self, gear: int, contact_forces: Floats) -> Floats:
+        """What contact forces (n, k) do to a gear, (m, d) on its `rows` in its own frame [N]."""
+        parts = np.split(contact_forces, np.cumsum([len(t.operator.nodes) for t in self.teeth])[:-1])
+        maps = self.jump_maps(gear, contact_forces.shape[1])
+        return np.concatenate([-E.forces(f) for E, f in zip(maps, parts)])
+
     def _compliance(self, gear: int, k: int) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
         body, maps = self.bodies[gear], self.jump_maps(gear, k)
@@ -232,19 +239,31 @@ def _tooth_operator(
 ) -> ContactOperator | None:
     pinion, wheel = bodies
     assert pinion.traction is not None
-    near = _near_line(pinion, stand, tooth, half_width)
-    facets = np.flatnonzero(near[pinion.flank.facets].any(axis=1))
+    facets = np.flatnonzero(facets_in_window(pinion, stand, tooth, half_width))
     if len(facets) == 0:
         return None
-    d = pinion.d
-    first = pinion.flank.moved(stand.rotation(0, d, tooth), stand.centre(0, d))
-    second = wheel.flank.moved(stand.rotation(1, d, tooth), stand.centre(1, d))
+    first, second = placed_flanks(bodies, stand, tooth)
     reach = PENETRATION * pinion.gear.normal_module
     pairing = pair_surfaces(first, second, reach, reach, facets)
     if len(pairing.weight) == 0:
         return None
-    frames = pinion.traction.frames @ stand.rotation(0, d, tooth).T
+    frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T
     return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
+
+
+def placed_flanks(bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
+    """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
+    d = bodies[0].d
+    first, second = (
+        body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in enumerate(bodies)
+    )
+    return first, second
+
+
+def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+    """(m,) bool: the pinion's facets that have a node within the window."""
+    near = _near_line(pinion, stand, tooth, half_width)
+    return np.asarray(near[pinion.flank.facets].any(axis=1))
 
 
 def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:

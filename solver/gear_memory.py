@@ -138,15 +138,11 @@ def _row_keys(rows: Ints) -> Ints:
 
 def remembered(model: GearModel, contact: GearContact, found: Equilibrium) -> Memory:
     """The memory of a converged state."""
-    d, k = contact.d, found.force.shape[1]
-    ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
-    split = np.split(found.force, ends)
-    pushed = [
-        np.concatenate([-E.forces(f) for E, f in zip(contact.jump_maps(gear, k), split)]) for gear in (0, 1)
-    ]
+    d = contact.d
+    pushed = contact.pushed(0, found.force), contact.pushed(1, found.force)
     flux = contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(0, d)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
-    return Memory(stand, (contact.rows(0)[0], contact.rows(1)[0]), (pushed[0], pushed[1]), flux)
+    return Memory(stand, (contact.rows(0)[0], contact.rows(1)[0]), pushed, flux)
 
 
 def _with_all_components(values: Floats, d: int) -> Floats:

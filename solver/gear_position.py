@@ -15,6 +15,7 @@ from solver.equilibrium import TOLERANCE, CondensedSystem, Equilibrium, Start, f
 from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
 from solver.gear_model import GearModel
+from solver.gear_overlap import overlap_outside
 from solver.kinematics import Stand
 from solver.newton import NotConverged
 
@@ -125,7 +126,7 @@ class Solved:
 def shared_position(
     model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: Footprint | None
 ) -> SharedPosition:
-    """Search, compliance and frictionless equilibrium; the free rotation is made exact.
+    """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     extra: predicted rotations beyond the nominal ones. frictions: the coefficients that are to come: without one that
     is not 0 only normal components are condensed, without a 0 the frictionless state is a mere start. before: the
@@ -148,7 +149,9 @@ def shared_position(
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
         elif abs(shift) <= RELOCATE * model.pair.pinion.normal_module:
-            return SharedPosition(contact, system, smooth)
+            if overlap_outside(contact, smooth.force, model.teeth) == 0.0:
+                return SharedPosition(contact, system, smooth)
+            half_width = np.inf
         stand = stand.turned(model.load.on, float(smooth.motion[0]))
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"

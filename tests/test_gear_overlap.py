@@ -1,0 +1,64 @@
+"""Contact where the window does not look is found: a tip's edge that deep deflection brings against the other flank."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gear_cases import helical_scene, model_of
+
+from evidence.stress.random_scenes import random_scene
+from solver import gear_position
+from solver.gear_contact import gear_contact
+from solver.gear_model import GearModel
+from solver.gear_overlap import overlap_outside
+from solver.gear_position import SharedPosition, shared_position
+from solver.kinematics import Stand
+
+DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
+
+
+@pytest.fixture(scope="module")
+def deep() -> GearModel:
+    return model_of(random_scene(DEEP))
+
+
+def solved(model: GearModel) -> SharedPosition:
+    return shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
+
+
+def approach(shared: SharedPosition) -> float:
+    """Extra rotation [rad] of the loaded gear."""
+    return sum(shared.contact.stand.extra) + float(shared.smooth.motion[0])
+
+
+def test_contact_outside_the_window_is_found(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: next pair's tip edge overlaps by 70 µm outside its window. Exact: the rotation with whole flanks
+    searched; overlooking it gives another one, more than a tenth larger, as well balanced."""
+    wanted = approach(solved(replace(deep, half_width=np.inf)))
+    found = solved(deep)
+    assert approach(found) == pytest.approx(wanted, rel=1e-4)
+    monkeypatch.setattr(gear_position, "overlap_outside", lambda *_: 0.0)
+    overlooked = solved(deep)
+    assert abs(approach(overlooked)) > 1.1 * abs(wanted)
+    assert overlooked.smooth.residual < 1e-9 * overlooked.system.scale
+    assert overlap_outside(overlooked.contact, overlooked.smooth.force, deep.teeth) > 0.05
+    assert overlap_outside(found.contact, found.smooth.force, deep.teeth) == 0.0
+
+
+def test_nominal_contact_has_nothing_outside() -> None:
+    """A pair at nominal load: the window has all contact, so that it stays as narrow as it was."""
+    model = model_of(helical_scene("contact.friction=0"))
+    found = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
+    assert found.contact.half_width == model.half_width
+
+
+def test_depth_of_an_overlap(deep: GearModel) -> None:
+    """Undeflected flanks (no force) turned into each other by δ: they overlap by up to r_b·δ, the same at every point
+    of an involute's line of action; off the path of contact by no more."""
+    base, δ = deep.bodies[0].gear.base_radius, 2e-3
+    stand = Stand(deep.pair, 0.0, (δ, 0.0))
+    contact = gear_contact(deep.bodies, stand, list(deep.teeth), 0.5 * deep.half_width)
+    depth = overlap_outside(contact, np.zeros((len(contact.node), 1)), deep.teeth)
+    assert 0.0 < depth <= base * δ * (1.0 + 1e-3)

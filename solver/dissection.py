@@ -5,8 +5,7 @@ on to its Cholesky), and holds three copies of the result. Here the domain is fi
 separators are eliminated by dense LAPACK. For a box of 121,000 rows with 5,043 retained ones MUMPS alone needs 50 s
 (CPU time, one thread) and brings the process to 3.1 GB, this 22 s and 1.6 GB, 1.3 GB being there from assembling.
 
-Source: George 1973, doi 10.1137/0710032 (nested dissection); separators are level sets of a breadth-first search
-that starts from a whole end of the domain (George and Liu 1978, doi 10.1137/0715069, there from one vertex).
+Source: George 1973, doi 10.1137/0710032 (nested dissection); the separators are METIS' (`separator`).
 """
 
 from __future__ import annotations
@@ -18,10 +17,11 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.linalg.blas import dsyrk
-from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver import mumps
 from solver.memory import return_free_memory
+from solver.separator import FIRST, SECOND, SEPARATOR, vertex_separator
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,21 +29,16 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class DissectionSettings:
-    """Parts of at most `leaf` rows go to MUMPS; a cut leaves at least the fraction `balance` below and above it,
-    where some level set does.
+    """Parts of at most `leaf` rows go to MUMPS. Raises ValueError unless leaf >= 1."""
 
-    Raises ValueError unless leaf >= 1 and 0 < balance <= 0.5.
-    """
-
-    leaf: int = 12000
-    balance: float = 0.3
+    leaf: int = 6000
     factor: mumps.FactorSettings = mumps.STANDARD
 
     def __post_init__(self) -> None:
-        if self.leaf < 1 or not 0 < self.balance <= 0.5:
+        if self.leaf < 1:
             raise ValueError(
-                f"dissection: wanted a leaf of at least one row and a balance above 0 and up to 0.5, found {self.leaf} "
-                f"and {self.balance}; the defaults are {DissectionSettings.leaf} and {DissectionSettings.balance}"
+                f"dissection: wanted a leaf of at least one row, found {self.leaf}; the default is "
+                f"{DissectionSettings.leaf}"
             )
 
 
@@ -56,8 +51,8 @@ def schur_complement(
     """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (size × size, C order) of the last `size` rows of a symmetric A (both triangles given).
 
     A₁₁ must be positive definite, A₂₂ need not be. `graph` has the pattern that the cuts follow, of the shape of A₁₁
-    and connecting no more than it does (default: A₁₁): level sets of a mesh run straight, those of a matrix in which
-    some rows couple widely run ahead along these rows and leave separators twice as large.
+    and connecting no more than it does (default: A₁₁): cuts of a mesh are thin, those of a matrix in which some rows
+    couple widely are not.
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
@@ -91,7 +86,7 @@ def _update(elimination: _Elimination, inner: Ints, outer: Ints) -> Floats:
     if len(inner) <= elimination.settings.leaf:
         return _leaf(within, rows[:, outer], elimination.settings)
     graph = within if elimination.graph is None else elimination.graph[inner][:, inner]
-    separator, parts = bisect(within, graph, elimination.settings)
+    separator, parts = bisect(within, graph)
     del rows, within, graph
     front = _Front.of(elimination.matrix, inner[separator], outer)
     for part in filter(len, parts):
@@ -160,65 +155,21 @@ class _Front:
         return self.oo
 
 
-def bisect(
-    pattern: sp.csr_matrix, graph: sp.csr_matrix, settings: DissectionSettings = STANDARD
-) -> tuple[Ints, list[Ints]]:
-    """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n), n > 1.
+def bisect(pattern: sp.csr_matrix, graph: sp.csr_matrix) -> tuple[Ints, list[Ints]]:
+    """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n).
 
-    The cut follows the level sets of `graph` (n × n), which connects no more than `pattern` does. The separator is
-    empty where a cut falls between two pieces of the graph that `pattern` does not connect either.
+    The cut is one of `graph` (n × n), which connects no more than `pattern` does; what `pattern` still couples of the
+    two parts is taken into the separator, from one part only. Raises RuntimeError, see `separator`.
     """
-    levels = _levels_piece_by_piece(graph)
-    # below the cut, only what touches the other side has to be in the separator
-    reach = np.maximum.reduceat(levels[pattern.indices], pattern.indptr[:-1])
-    count = levels.max() + 1
-    crossing = np.cumsum(np.bincount(levels, minlength=count) - np.bincount(np.maximum(reach, levels), minlength=count))
-    below = np.cumsum(np.bincount(levels)) / len(levels)
-    allowed = np.flatnonzero((below >= settings.balance) & (below <= 1 - settings.balance))
-    if not len(allowed):
-        allowed = np.array([np.argmin(np.abs(below[:-1] - 0.5))])
-    off_centre = np.abs(below[allowed] - 0.5)
-    level = allowed[np.lexsort((off_centre, crossing[allowed] * (1 + off_centre)))[0]]
-    separator = (levels <= level) & (reach > level)
-    return np.flatnonzero(separator), [
-        np.flatnonzero((levels <= level) & ~separator),
-        np.flatnonzero(levels > level),
-    ]
+    side = vertex_separator(graph)
+    if graph is not pattern:
+        touching = min((_touching(pattern, side, here) for here in (FIRST, SECOND)), key=len)
+        side[touching] = SEPARATOR
+    return np.flatnonzero(side == SEPARATOR), [np.flatnonzero(side == FIRST), np.flatnonzero(side == SECOND)]
 
 
-def _levels_piece_by_piece(graph: sp.csr_matrix) -> Ints:
-    """Level sets (n,) of every connected piece of a symmetric `graph`, from one of its ends to the other.
-
-    The levels of the pieces follow one another, those of the largest piece first: so some cut between two pieces is
-    balanced (to a third at the most), unless the largest one alone is too large for that.
-    """
-    # strongly: the same in a symmetric graph, and takes no copy of it
-    count, piece = connected_components(graph, connection="strong")
-    ends = _levels(graph, np.unique(piece, return_index=True)[1])
-    levels = _levels(graph, np.flatnonzero(ends == _largest(ends, piece, count)[piece]))
-    order = np.argsort(-np.bincount(piece), kind="stable")
-    depth = 1 + _largest(levels, piece, count)[order]
-    start = np.empty(count, dtype=np.int64)
-    start[order] = np.cumsum(depth) - depth
-    return levels + start[piece]
-
-
-def _largest(values: Ints, piece: Ints, count: int) -> Ints:
-    """Largest value (count,) of each piece."""
-    largest = np.full(count, -1)
-    np.maximum.at(largest, piece, values)
-    return largest
-
-
-def _levels(pattern: sp.csr_matrix, start: Ints) -> Ints:
-    """Distance in edges of every row from the rows `start`; −1 where there is no path."""
-    levels = np.full(pattern.shape[0], -1)
-    levels[start] = 0
-    front, distance = start, 0
-    while len(front):
-        distance += 1
-        fresh = np.zeros(len(levels), dtype=bool)
-        fresh[pattern[front].indices] = True
-        front = np.flatnonzero(fresh & (levels < 0))
-        levels[front] = distance
-    return levels
+def _touching(pattern: sp.csr_matrix, side: Ints, here: int) -> Ints:
+    """The rows of one part that `pattern` couples with the other."""
+    own = np.flatnonzero(side == here)
+    there = (side == FIRST + SECOND - here).astype(np.float32)
+    return own[np.asarray(abs(pattern[own]) @ there) > 0.0]

@@ -237,7 +237,7 @@ def gear_contact(
 def _tooth_operator(
     bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float
 ) -> ContactOperator | None:
-    pinion, wheel = bodies
+    pinion = bodies[0]
     assert pinion.traction is not None
     facets = np.flatnonzero(facets_in_window(pinion, stand, tooth, half_width))
     if len(facets) == 0:

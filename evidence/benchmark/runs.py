@@ -15,6 +15,7 @@ from pathlib import Path
 ONE_THREAD = {
     name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER")
 }
+LEFT_OUT = {"OPENBLAS_CORETYPE"}  # a shell's choice of older kernels: every program finds the processor's own
 TIME_LIMIT = 600.0  # s, after which a run is ended and reported as such
 
 
@@ -54,7 +55,8 @@ def run(command: Command) -> Cost:
     words = list(command.words)
     if command.ranks > 1:
         words = ["mpirun", "-n", str(command.ranks), *words]
-    environment = {**os.environ, **ONE_THREAD, **MPI_AS_ROOT, **(command.environment or {})}
+    inherited = {name: value for name, value in os.environ.items() if name not in LEFT_OUT}
+    environment = {**inherited, **ONE_THREAD, **MPI_AS_ROOT, **(command.environment or {})}
     out = command.log.with_suffix(".cost.json")
     launcher = [sys.executable, "-S", str(Path(__file__).with_name("launch.py")), str(out)]
     with open(command.log, "wb") as log:

@@ -21,17 +21,18 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver import mumps
 from solver.memory import return_free_memory
-from solver.separator import FIRST, SECOND, SEPARATOR, vertex_separator
+from solver.separator import Part, planned
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class DissectionSettings:
     """Parts of at most `leaf` rows go to MUMPS. Raises ValueError unless leaf >= 1."""
 
-    leaf: int = 6000
+    leaf: int = 4000
     factor: mumps.FactorSettings = mumps.STANDARD
 
     def __post_init__(self) -> None:
@@ -57,11 +58,11 @@ def schur_complement(
     Raises NotPositiveDefinite and OutOfMemory.
     """
     csr = matrix.tocsr()
-    first = csr.shape[0] - size
-    inner, outer = np.arange(first), np.arange(first, csr.shape[0])
-    elimination = _Elimination(csr, None if graph is None else graph.tocsr(), settings)
-    result = _update(elimination, inner, outer)
-    corner = csr[first:, first:].tocoo()
+    count = csr.shape[0] - size
+    order, whole = planned(csr[:count, :count], graph, settings.leaf)
+    every = np.concatenate([order, np.arange(count, csr.shape[0])])
+    result = _Elimination(csr[every][:, every], settings.factor).update(whole, np.arange(count, csr.shape[0]))
+    corner = csr[count:, count:].tocoo()
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
     return_free_memory()
@@ -71,42 +72,43 @@ def schur_complement(
 
 @dataclass(frozen=True)
 class _Elimination:
-    """What every part of the recursion reads: the matrix, the graph of its rows to eliminate (None: the matrix's own),
-    the settings."""
+    """The matrix in the order of the plan, and how its leaves are factored."""
 
     matrix: sp.csr_matrix
-    graph: sp.csr_matrix | None
-    settings: DissectionSettings
+    factor: mumps.FactorSettings
 
-
-def _update(elimination: _Elimination, inner: Ints, outer: Ints) -> Floats:
-    """−A_oi A_ii⁻¹ A_io, upper triangle (|outer| × |outer|, C order), of `inner` and `outer` rows of A."""
-    rows = elimination.matrix[inner]
-    within = rows[:, inner]
-    if len(inner) <= elimination.settings.leaf:
-        return _leaf(within, rows[:, outer], elimination.settings)
-    graph = within if elimination.graph is None else elimination.graph[inner][:, inner]
-    separator, parts = bisect(within, graph)
-    del rows, within, graph
-    front = _Front.of(elimination.matrix, inner[separator], outer)
-    for part in filter(len, parts):
+    def update(self, part: Part, outer: Ints) -> Floats:
+        """−A_oi A_ii⁻¹ A_io, upper triangle (|outer| × |outer|, C order), of a part's rows i and `outer` rows of A."""
+        if not part.parts and part.separator == part.end:
+            return self._leaf(part, outer)
+        front = _Front.of(self.matrix, np.arange(part.separator, part.end), outer)
+        for inner in part.parts:
+            return_free_memory()
+            places = np.flatnonzero(self._touched(inner)[front.variables])
+            front.add(self.update(inner, front.variables[places]), places)
         return_free_memory()
-        front.add(elimination, inner[part])
-    return_free_memory()
-    return front.eliminated()
+        return front.eliminated()
 
+    def _touched(self, part: Part) -> Bools:
+        """(n,) bool: the columns in which a part's rows have an entry."""
+        touched = np.zeros(self.matrix.shape[0], dtype=bool)
+        ends = self.matrix.indptr[part.begin], self.matrix.indptr[part.end]
+        touched[self.matrix.indices[slice(*ends)]] = True
+        return touched
 
-def _leaf(within: sp.csr_matrix, across: sp.csr_matrix, settings: DissectionSettings) -> Floats:
-    size = across.shape[1]
-    if not size:
-        return np.zeros((0, 0))
-    # MUMPS' minimum degree breaks ties in the order it is given: a third fewer operations
-    order = reverse_cuthill_mckee(within, symmetric_mode=True)
-    within, across = within[order][:, order], across[order]
-    # the stored zeros on the diagonal give every retained row an entry that PETSc can see
-    zeros = sp.csr_matrix((np.zeros(size), (np.arange(size), np.arange(size))), shape=(size, size))
-    upper = sp.bmat([[sp.triu(within), across], [None, zeros]], format="csr")
-    return mumps.schur_complement(upper, size, settings.factor)
+    def _leaf(self, part: Part, outer: Ints) -> Floats:
+        if not len(outer):
+            return np.zeros((0, 0))
+        rows = self.matrix[part.begin : part.end]
+        within, across = rows[:, part.begin : part.end], rows[:, outer]
+        # MUMPS' minimum degree breaks ties in the order it is given: a third fewer operations
+        order = reverse_cuthill_mckee(within, symmetric_mode=True)
+        within, across = within[order][:, order], across[order]
+        # the stored zeros on the diagonal give every retained row an entry that PETSc can see
+        size = len(outer)
+        zeros = sp.csr_matrix((np.zeros(size), (np.arange(size), np.arange(size))), shape=(size, size))
+        upper = sp.bmat([[sp.triu(within), across], [None, zeros]], format="csr")
+        return mumps.schur_complement(upper, size, self.factor)
 
 
 @dataclass
@@ -124,21 +126,14 @@ class _Front:
         blocks = rows[:, separator].toarray(), rows[:, outer].toarray(), np.zeros((len(outer), len(outer)))
         return _Front(np.concatenate([separator, outer]), *blocks)
 
-    def add(self, elimination: _Elimination, part: Ints, chunk: int = 512) -> None:
-        """Eliminate the rows `part` and add their update at the places of the variables that they touch."""
-        touched = np.zeros(elimination.matrix.shape[0], dtype=bool)
-        touched[elimination.matrix[part].indices] = True
-        places = np.flatnonzero(touched[self.variables])
-        update = _update(elimination, part, self.variables[places])
+    def add(self, update: Floats, places: Ints) -> None:
+        """Add the update of an eliminated part at the places (sorted) of the variables that it touches."""
         count = len(self.ss)
-        split = np.searchsorted(places, count)
-        inside, outside = places[:split], places[split:] - count
-        self.ss[np.ix_(inside, inside)] += update[:split, :split]
-        self.so[np.ix_(inside, outside)] += update[:split, split:]
-        for start in range(0, len(outside), chunk):
-            rows = outside[start : start + chunk]
-            # upper triangle only; the places are sorted, so upper stays upper
-            self.oo[np.ix_(rows, outside[start:])] += update[split + start : split + start + chunk, split + start :]
+        split = int(np.searchsorted(places, count))
+        inside, outside = _runs(places[:split]), _runs(places[split:] - count)
+        _add(self.ss, inside, inside, update[:split, :split])
+        _add(self.so, inside, outside, update[:split, split:])
+        _add(self.oo, outside, outside, update[split:, split:], upper=True)
 
     def eliminated(self) -> Floats:
         """oo − soᵀ ss⁻¹ so, in the memory of oo."""
@@ -155,21 +150,20 @@ class _Front:
         return self.oo
 
 
-def bisect(pattern: sp.csr_matrix, graph: sp.csr_matrix) -> tuple[Ints, list[Ints]]:
-    """Separator and the two parts (sorted row numbers) that it leaves of a symmetric `pattern` (n × n).
-
-    The cut is one of `graph` (n × n), which connects no more than `pattern` does; what `pattern` still couples of the
-    two parts is taken into the separator, from one part only. Raises RuntimeError, see `separator`.
-    """
-    side = vertex_separator(graph)
-    if graph is not pattern:
-        touching = min((_touching(pattern, side, here) for here in (FIRST, SECOND)), key=len)
-        side[touching] = SEPARATOR
-    return np.flatnonzero(side == SEPARATOR), [np.flatnonzero(side == FIRST), np.flatnonzero(side == SECOND)]
+def _runs(places: Ints) -> list[tuple[slice, slice]]:
+    """Sorted places as runs without gaps: where each goes, and where it comes from."""
+    starts = np.flatnonzero(np.diff(places, prepend=-2) != 1)
+    ends = np.append(starts[1:], len(places))
+    return [(slice(places[a], places[a] + b - a), slice(a, b)) for a, b in zip(starts.tolist(), ends.tolist())]
 
 
-def _touching(pattern: sp.csr_matrix, side: Ints, here: int) -> Ints:
-    """The rows of one part that `pattern` couples with the other."""
-    own = np.flatnonzero(side == here)
-    there = (side == FIRST + SECOND - here).astype(np.float32)
-    return own[np.asarray(abs(pattern[own]) @ there) > 0.0]
+def _add(
+    target: Floats, rows: list[tuple[slice, slice]], columns: list[tuple[slice, slice]], update: Floats,
+    upper: bool = False,
+) -> None:  # fmt: skip
+    """target[rows, columns] += update, by whole blocks: nodes that are numbered along the mesh come in long runs.
+    upper: nothing left of the diagonal blocks."""
+    for i, (to, origin) in enumerate(rows):
+        strip, added = target[to], update[origin]
+        for column, source in columns[i if upper else 0 :]:
+            strip[:, column] += added[:, source]

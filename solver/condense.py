@@ -193,9 +193,22 @@ def _restricted(stiffness: sp.spmatrix, kept: Ints) -> sp.csr_matrix:
 
 
 def _augmented(stiffness: sp.spmatrix, functionals: sp.spmatrix) -> sp.csr_matrix:
-    """[K Pᵀ; P 0] by stacking rows, without the coordinate lists that `bmat` makes of K on the way."""
+    """[K Pᵀ; P 0] row by row, without the coordinate lists that `bmat` makes of K on the way."""
     size, count = stiffness.shape[0], functionals.shape[0]
     P = functionals.tocsr()
-    upper = sp.vstack([stiffness.tocsr(), P], format="csr").T.tocsr()  # [K Pᵀ], K being symmetric
     lower = sp.csr_matrix((P.data, P.indices, P.indptr), shape=(count, size + count))
-    return sp.vstack([upper, lower], format="csr")
+    return sp.vstack([_beside(stiffness.tocsr(), P.T.tocsr()), lower], format="csr")
+
+
+def _beside(left: sp.csr_matrix, right: sp.csr_matrix) -> sp.csr_matrix:
+    """[left right]."""
+    counts = [np.diff(part.indptr) for part in (left, right)]
+    starts = left.indptr + right.indptr
+    places = [
+        np.arange(len(left.indices)) + np.repeat(right.indptr[:-1], counts[0]),
+        np.arange(len(right.indices)) + np.repeat(left.indptr[1:], counts[1]),
+    ]
+    indices, data = np.empty(starts[-1], dtype=left.indices.dtype), np.empty(starts[-1])
+    for part, place, shift in zip((left, right), places, (0, left.shape[1]), strict=True):
+        indices[place], data[place] = part.indices + shift, part.data
+    return sp.csr_matrix((data, indices, starts), shape=(left.shape[0], left.shape[1] + right.shape[1]))

@@ -60,8 +60,9 @@ def schur_complement(
     csr = matrix.tocsr()
     count = csr.shape[0] - size
     order, whole = planned(csr[:count, :count], graph, settings.leaf)
-    every = np.concatenate([order, np.arange(count, csr.shape[0])])
-    result = _Elimination(csr[every][:, every], settings.factor).update(whole, np.arange(count, csr.shape[0]))
+    rows = _reordered(csr[:count], order)
+    result = _Elimination(rows, settings.factor).update(whole, np.arange(count, csr.shape[0]))
+    del rows
     corner = csr[count:, count:].tocoo()
     corner.sum_duplicates()
     result[corner.row, corner.col] += corner.data
@@ -70,9 +71,17 @@ def schur_complement(
     return result
 
 
+def _reordered(rows: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
+    """Rows (n × n + m) in a new order (n,), and their first n columns alike; indices are not sorted."""
+    rank = np.arange(rows.shape[1], dtype=rows.indices.dtype)
+    rank[order] = np.arange(len(order))
+    taken = rows[order]
+    return sp.csr_matrix((taken.data, rank[taken.indices], taken.indptr), shape=rows.shape)
+
+
 @dataclass(frozen=True)
 class _Elimination:
-    """The matrix in the order of the plan, and how its leaves are factored."""
+    """The rows to eliminate in the order of the plan (n × n + m), and how leaves are factored."""
 
     matrix: sp.csr_matrix
     factor: mumps.FactorSettings
@@ -90,8 +99,8 @@ class _Elimination:
         return front.eliminated()
 
     def _touched(self, part: Part) -> Bools:
-        """(n,) bool: the columns in which a part's rows have an entry."""
-        touched = np.zeros(self.matrix.shape[0], dtype=bool)
+        """(n + m,) bool: the columns in which a part's rows have an entry."""
+        touched = np.zeros(self.matrix.shape[1], dtype=bool)
         ends = self.matrix.indptr[part.begin], self.matrix.indptr[part.end]
         touched[self.matrix.indices[slice(*ends)]] = True
         return touched

@@ -55,11 +55,11 @@ class NitscheTraction:
     def constant_term(self) -> sp.csr_matrix:
         """∫ (γ F_n² + γ_t |F_t|²), (N·d, N·d): what −θ times goes into the body's stiffness."""
         F, d = self._local_flux(), self.frames.shape[1]
-        total = sp.csr_matrix((F.shape[1], F.shape[1]))
-        for component in range(d):
-            own = F[component::d]
-            total = total + own.T @ _weighted_mass(self.surface, self.stabiliser[:, min(component, 1)]) @ own
-        return total.tocsr()
+        normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.eye(d), format="csr") @ F
+                              for γ in self.stabiliser.T)  # fmt: skip
+        own = np.arange(F.shape[0]) % d == 0
+        weighted = sp.diags(own.astype(float)) @ normal + sp.diags((~own).astype(float)) @ tangential
+        return (F.T.tocsr() @ weighted).tocsr()
 
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:

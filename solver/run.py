@@ -113,7 +113,7 @@ def _solved(
     ready(preparation)
     pitch, state = pitch_of(scene), start.state
     for k in range(start.complete, len(pitch.angles)):
-        position = _position(preparation.model, pitch, scene.contact.friction[group], state, k, comm)
+        position = position_on_ranks(preparation.model, pitch, scene.contact.friction[group], state, k, comm)
         _certify(position)
         yield position
         state = position.state
@@ -192,7 +192,7 @@ def pitch_of(scene: Scene) -> Pitch:
     return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene), pitches(scene))
 
 
-def _position(
+def position_on_ranks(
     model: GearModel, pitch: Pitch, frictions: tuple[float, ...], state: SweepState, k: int, comm: MPI.Comm
 ) -> SweptPosition:
     """Position k of the pitch at all friction coefficients, of which i is computed by rank i modulo the ranks."""

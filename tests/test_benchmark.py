@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 from pathlib import Path
 
@@ -10,14 +11,19 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from evidence.benchmark.bars import BarRow
 from evidence.benchmark.cases import cylinder, line_contact, sphere
 from evidence.benchmark.gears import three_teeth
 from evidence.benchmark.ours import solved
-from evidence.benchmark.page import advantage, unmatched
+from evidence.benchmark.page import advantage, unmatched, write_page
+from evidence.benchmark.page_savings import SkipLine, SpurLine
 from evidence.benchmark.peers.calculix import FACES, deck, element_faces
 from evidence.benchmark.peers.surface import nodal_normals
+from evidence.benchmark.pitch import PitchFacts
+from evidence.benchmark.pitches import PitchRow, mean_error, one_position
 from evidence.benchmark.precision import Row
 from evidence.benchmark.pressure import Pressure, Reference
+from evidence.benchmark.profile import PARTS, ProfileRow
 from evidence.benchmark.programs import PEERS, solve
 from evidence.benchmark.runs import Command, RunFailed, run
 from evidence.benchmark.tables import read_rows, write_rows
@@ -161,3 +167,43 @@ def test_an_advantage_counts_only_at_no_larger_error(tmp_path: Path) -> None:
     assert not advantage([row("Evolvent", 1.0, 0.05), row("GetFEM", 6.0, 0.05, 10_000)], 20_000)
     write_rows(tmp_path / "rows.csv", rows)
     assert [r.cpu for r in read_rows(tmp_path / "rows.csv", Row)] == [1.0, 4.0, 6.0, 2.0]
+
+
+def test_a_pitch_is_told_from_one_position() -> None:
+    """Seconds of start 1, meshing 50, assembling 2, condensing 3 and positions 4 (warm-up), 5, 6: one position takes
+    1 + 2 + 3 + 4, the pitch 1 + 2 + 3 + 15; the mean of 7 and 9 mm is 8."""
+    facts = PitchFacts(10, 1, 1.0, 50.0, 2.0, 3.0, (4.0, 5.0, 6.0), 1, (3, 3, 3), (7.0, 9.0), 100.0, 20.0)
+    assert one_position(facts) == 10.0
+    assert facts.without_meshing == 21.0
+    assert facts.counted == 2
+    assert mean_error(facts) == 8.0
+
+
+def test_profiled_functions_are_there() -> None:
+    """The profile looks functions up by file and name: one that was renamed would silently take no time."""
+    solver = Path(__file__).resolve().parents[1] / "solver"
+    for _, file, function in PARTS:
+        tree = ast.parse((solver / file).read_text(encoding="utf-8"))
+        assert function in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}, (file, function)
+
+
+def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
+    """Rows of every kind, in and out of their bars: the page holds ratios of the rows (30/10, 25/1, one of two inside),
+    names the skip beyond its tolerance, and leaves out what was not measured."""
+    nan = float("nan")
+    rows = {
+        "skips": [SkipLine("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
+                  SkipLine("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
+        "spur": [SpurLine(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
+        "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
+        "profile": [ProfileRow("search", 1000, 4, 2.0, 0.25, 4), ProfileRow("everything else", 1000, 4, 6.0, 0.75, 1)],
+        "pitches": [PitchRow("hexahedron", 2, 1, 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
+                    PitchRow("hexahedron", 1, 1, 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
+    }  # fmt: skip
+    for name, own in rows.items():
+        write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
+    text = write_page(tmp_path).read_text(encoding="utf-8")
+    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**50 %** of 2", "75.0", "14", "killed"):
+        assert wanted in text
+    assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
+    assert "Cylinder on block" not in text

@@ -1,4 +1,5 @@
-"""python -m evidence.benchmark [hertz2d|hertz3d|gears|scaling|page|all] [--peers] [--small]
+"""python -m evidence.benchmark [hertz2d|hertz3d|gears|pitches|scaling|profile|skips|spur|bars|page|all] [--peers]
+[--small]
 
 Writes docs/benchmark/*.csv, the figures in docs/pictures/benchmark/ and the page docs/benchmark.md. --small takes sizes
 that show that everything works, into --out.
@@ -12,11 +13,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmark import gear_rows, page, precision, scaling
+from evidence.benchmark import bars, gear_rows, page, page_savings, pitches, precision, profile, scaling, skips
 from evidence.benchmark.programs import PEERS, ROOT, Program
 from evidence.benchmark.tables import write_rows
 
-PARTS = ("hertz2d", "hertz3d", "gears", "scaling")
+PARTS = ("hertz2d", "hertz3d", "gears", "pitches", "scaling", "profile", "skips", "spur", "bars")
 WITHOUT_GEARS = ("Kratos",)  # its mortar contact with friction does not converge there
 
 
@@ -44,6 +45,18 @@ def _measure(part: str, peers: tuple[Program, ...], small: bool, out: Path, fold
         lengths = scaling.SMALL if small else scaling.FULL
         _kept(out / "ratios.csv", scaling.ratio_rows(lengths, folder))
         _kept(out / "sizes.csv", scaling.size_rows(lengths, folder))
+    elif part == "pitches":
+        _kept(out / "pitches.csv", pitches.rows(pitches.SMALL if small else pitches.FULL, folder))
+    elif part == "profile":
+        length = (1.0, 4) if small else (profile.ELEMENTS, profile.POSITIONS)
+        _kept(out / "profile.csv", profile.rows(folder, *length))
+    elif part == "skips":
+        _kept(out / "skips.csv", page_savings.skip_lines(skips.CASES[:1] if small else skips.CASES))
+    elif part == "spur":
+        _kept(out / "spur.csv", page_savings.spur_lines())
+    elif part == "bars":
+        problem = bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)) if small else bars.spur_problem()
+        _kept(out / "bars.csv", bars.measure_bars(problem))
     else:
         case = _case(part, small)
         known = precision.overkill(case, folder)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from evidence.benchmark.gear_rows import GearRow
+from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import Row
 from evidence.benchmark.programs import EVOLVENT
 from evidence.benchmark.scaling import SizeRow, exponent
@@ -23,6 +24,10 @@ COLOURS = {
 }  # fmt: skip
 PLURAL = {"quadrilateral": "quadrilaterals", "triangle": "triangles", "hexahedron": "hexahedra",
           "tetrahedron": "tetrahedra"}  # fmt: skip
+FAMILIES = {
+    ("hexahedron", 1, 1): "o--", ("tetrahedron", 1, 1): "^--", ("hexahedron", 2, 1): "s-", ("tetrahedron", 2, 1): "v-",
+    ("hexahedron", 2, 2): "D:",
+}  # fmt: skip
 SIMPLICES = ("triangle", "tetrahedron")
 
 
@@ -81,6 +86,26 @@ def gears(rows: Sequence[GearRow]) -> Figure:
         axes.set(xlabel="degrees of freedom", ylabel="CPU time a position [s]")
         _plain_ticks(axes)
         axes.legend()
+    return figure
+
+
+def pitches(rows: Sequence[PitchRow]) -> Figure:
+    """Seconds over the error of the transmission error, log-log: of one position, and of the pitch."""
+    kept = [row for row in rows if not row.note]
+    with plots_style.styled():
+        see = "Down and left is better. A pitch costs little more than one position: the gears are condensed once."
+        figure = plots_style.sheet("The gear pair: run time against error", see, (11.0, 5.2))
+        axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        for panel, name, title in zip(axes, ("one", "pitch"), ("one position", f"a pitch of {kept[0].positions}")):
+            for (shape, order, ranks), style in FAMILIES.items():
+                own = [r for r in kept if (r.shape, r.order, r.ranks) == (shape, order, ranks)]
+                label = f"{PLURAL[shape]}, order {order}" + (", two ranks" if ranks > 1 else "")
+                panel.loglog(100 * np.abs(column(own, "error")), column(own, name), style, ms=5, label=label)
+            panel.set_xlabel("error of the mean transmission error [%]")
+            panel.set_title(title, fontsize=10)
+            _plain_ticks(panel)
+        axes[0].set_ylabel("wall time of all but meshing [s]")
+        axes[0].legend(fontsize=8)
     return figure
 
 

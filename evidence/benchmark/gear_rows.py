@@ -125,12 +125,14 @@ def pitch(folder: Path, elements: float, positions: int, *settings: str, level: 
 
 def pitch_cost(
     folder: Path, elements: float, positions: int, *settings: str, level: str = "quick",
-    frictions: str = str(FRICTION), ranks: int = 1,
+    frictions: str = str(FRICTION), ranks: int = 1, cache_folder: Path | None = None,
 ) -> tuple[Cost, PitchFacts]:  # fmt: skip
-    """A pitch in a process of its own, and what it took. Raises RunFailed."""
+    """A pitch in a process of its own, and what it took. cache_folder: for compiled forms, where it's not the usual
+    one. Raises RunFailed."""
     out = folder / "pitch.json"
+    environment = {"PYTHONPATH": str(ROOT), **({"XDG_CACHE_HOME": str(cache_folder)} if cache_folder else {})}
     words = (sys.executable, "-m", "evidence.benchmark.pitch", str(out), str(elements), level, str(positions))
     command = Command(
-        (*words, frictions, *settings), folder, folder / "pitch.log", {"PYTHONPATH": str(ROOT)}, ranks, 3600.0
+        (*words, frictions, *settings), folder, folder / "pitch.log", environment, ranks, 3600.0
     )
     return run(command), read_facts(out)

@@ -7,8 +7,12 @@ from math import isnan
 from pathlib import Path
 
 from evidence.benchmark import figures
+from evidence.benchmark.bars import BarRow
 from evidence.benchmark.gear_rows import GearRow
+from evidence.benchmark.page_savings import SkipLine, SpurLine, bars_section, skip_section, spur_section
+from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import OverkillRow, Row
+from evidence.benchmark.profile import ProfileRow
 from evidence.benchmark.programs import EVOLVENT
 from evidence.benchmark.scaling import RatioRow, SizeRow, exponent
 from evidence.benchmark.tables import read_rows
@@ -22,6 +26,10 @@ COMMAND = "python -m evidence.benchmark all --peers"
 TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
 reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
 Errors are relative to the overkill solution of the same problem."""
+
+PITCHES = """Wall seconds of the whole process without meshing: for a run of one position, for the pitch, and for one
+position with an empty cache of compiled forms (*cold*). Error: of the pitch's mean transmission error, against the
+overkill pitch."""
 
 
 def write_page(out: Path) -> Path:
@@ -39,12 +47,21 @@ def write_page(out: Path) -> Path:
         picture(figures.gears(gears), pictures / "gears.png")
         parts += ["## Gear pair", "![Seconds a position](pictures/benchmark/gears.png)"]
         parts += [*_gear_verdicts(gears), _gear_table(gears)]
+    if pitches := read_rows(out / "benchmark" / "pitches.csv", PitchRow):
+        picture(figures.pitches(pitches), pictures / "pitches.png")
+        parts += ["## A position and a pitch, against the error", "![A pitch](pictures/benchmark/pitches.png)"]
+        parts += [PITCHES, _pitches_table(pitches)]
     if ratios := read_rows(out / "benchmark" / "ratios.csv", RatioRow):
         parts += ["## A pitch", _ratio_table(ratios)]
     sizes = [row for row in read_rows(out / "benchmark" / "sizes.csv", SizeRow)]
     if [row for row in sizes if not row.note]:
         picture(figures.sizes([row for row in sizes if not row.note]), pictures / "sizes.png")
         parts += ["## Size", "![Cost over size](pictures/benchmark/sizes.png)", _size_table(sizes)]
+    if profile := read_rows(out / "benchmark" / "profile.csv", ProfileRow):
+        parts += ["## Where the time goes", _profile_table(profile)]
+    parts += skip_section(read_rows(out / "benchmark" / "skips.csv", SkipLine))
+    parts += spur_section(read_rows(out / "benchmark" / "spur.csv", SpurLine))
+    parts += bars_section(read_rows(out / "benchmark" / "bars.csv", BarRow))
     return write(out / "benchmark.md", parts)
 
 
@@ -161,6 +178,28 @@ def _size_table(rows: Sequence[SizeRow]) -> str:
         names = {"memory_MB": "memory", "condense": "condensing", "position": "one more position"}
         said = [f"{text} ~ dofs^{exponent(dofs, figures.column(kept, name)):.2f}" for name, text in names.items()]
     return table(head, lines, right=range(7)) + ("\n\n" + "; ".join(said) + "." if said else "")
+
+
+def _pitches_table(rows: Sequence[PitchRow]) -> str:
+    head = ("cells", "order", "ranks", "elements", "dofs", "one position s", "cold s", "pitch s", "MB", "error %",
+            "overkill's own %")  # fmt: skip
+    lines = [
+        [r.shape, str(r.order), str(r.ranks), f"{r.elements:g}", f"{r.dofs:,}", *(
+            (_number(r.one), _number(r.cold), _number(r.pitch), f"{r.memory_MB:.0f}", f"{100 * r.error:+.2f}",
+             f"{100 * r.reference_error:.2f}") if not r.note else (r.note, "", "", "", "", "")
+        )]
+        for r in rows
+    ]  # fmt: skip
+    return table(head, lines, right=range(1, 11))
+
+
+def _profile_table(rows: Sequence[ProfileRow]) -> str:
+    words = (
+        f"A pitch of {rows[0].positions} positions at one friction coefficient, {rows[0].dofs:,} dofs, by Python's "
+        "profiler, which slows small functions down."
+    )
+    lines = [[r.part, _number(r.seconds), f"{100 * r.share:.1f}", str(r.calls)] for r in rows]
+    return words + "\n\n" + table(("part", "s", "%", "calls"), lines, right=range(1, 4))
 
 
 def _number(value: float) -> str:

@@ -25,8 +25,7 @@ from solver.body import Body, Fixed, assemble
 from solver.condense import Factor
 from solver.gear_model import prepare_model
 from solver.gear_sweep import SweptPosition, initial_state
-from solver.run import _position as position_on_ranks
-from solver.run import peak_memory_MB, pitch_of
+from solver.run import peak_memory_MB, pitch_of, position_on_ranks
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 

@@ -1,0 +1,99 @@
+"""Where the time of a pitch goes, by Python's profiler, in a process of its own.
+
+python -m evidence.benchmark.profile OUT.json ELEMENTS POSITIONS MU[,MU...]
+"""
+
+from __future__ import annotations
+
+import cProfile
+import json
+import pstats
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evidence.benchmark.gears import FRICTION, scene
+from evidence.benchmark.programs import ROOT
+from evidence.benchmark.runs import Command, run
+from solver import compat
+from solver.gear_model import prepare_model
+from solver.gear_sweep import initial_state, sweep_pitch
+from solver.run import pitch_of
+
+ELEMENTS, POSITIONS = 1.7, 20
+PARTS = (
+    ("meshing", "sectors.py", "gear_mesh"),
+    ("assembling: stiffness", "body.py", "assemble"),
+    ("assembling: Nitsche's constant term", "traction.py", "constant_term"),
+    ("condensing: order of elimination", "separator.py", "planned"),
+    ("condensing: leaves, by MUMPS", "mumps.py", "schur_complement"),
+    ("condensing: adding updates up", "dissection.py", "add"),
+    ("condensing: separators, by LAPACK", "dissection.py", "eliminated"),
+    ("the ring of teeth", "chain.py", "__init__"),
+    ("positions: search", "gear_contact.py", "gear_contact"),
+    ("positions: compliance of the contact", "gear_contact.py", "system"),
+    ("positions: what the window leaves out", "gear_overlap.py", "overlap_outside"),
+    ("positions: without friction", "equilibrium.py", "frictionless"),
+    ("positions: with friction", "equilibrium.py", "frictional"),
+    ("positions: memory of friction", "gear_memory.py", "recalled"),
+)
+"""What is told apart: a name, and the function whose time with all that it calls it is; none calls another."""
+
+
+@dataclass(frozen=True)
+class ProfileRow:
+    """A part of a pitch: seconds with the profiler running, share of the whole, calls."""
+
+    part: str
+    dofs: int
+    positions: int
+    seconds: float
+    share: float
+    calls: int
+
+
+def rows(folder: Path, elements: float = ELEMENTS, positions: int = POSITIONS) -> Iterator[ProfileRow]:
+    """Of a pitch at one friction coefficient. Raises RunFailed."""
+    out = folder / "profile.json"
+    words = sys.executable, "-m", "evidence.benchmark.profile", str(out), str(elements), str(positions), str(FRICTION)
+    run(Command(words, folder, folder / "profile.log", {"PYTHONPATH": str(ROOT)}, time_limit=3600.0))
+    yield from (ProfileRow(**row) for row in json.loads(out.read_text()))
+
+
+def measured(elements: float, positions: int, frictions: str) -> list[ProfileRow]:
+    """In this process."""
+    own = scene(elements, f"contact.friction=[{frictions}]", f"sweep.positions={positions}")
+    profiler = cProfile.Profile()
+    profiler.enable()
+    model = prepare_model(own, MPI.COMM_SELF).model
+    for _ in sweep_pitch(model, pitch_of(own), own.contact.friction, initial_state(own.contact.friction)):
+        pass
+    profiler.disable()
+    dofs = sum(len(body.mesh.points) * body.d for body in model.bodies)
+    return _parts(pstats.Stats(profiler), dofs, positions)
+
+
+def _parts(stats: pstats.Stats, dofs: int, positions: int) -> list[ProfileRow]:
+    timed = stats.stats  # type: ignore[attr-defined]
+    whole = float(stats.total_tt)  # type: ignore[attr-defined]
+    found = []
+    for name, file, function in PARTS:
+        own = [v for (path, _, called), v in timed.items() if path.endswith(f"/solver/{file}") and called == function]
+        calls, seconds = sum(v[1] for v in own), float(sum(v[3] for v in own))
+        found.append(ProfileRow(name, dofs, positions, seconds, seconds / whole, calls))
+    rest = whole - sum(row.seconds for row in found)
+    return [*found, ProfileRow("everything else", dofs, positions, rest, rest / whole, 1)]
+
+
+def main() -> None:
+    compat.silence_logs()
+    out, elements, positions, frictions = sys.argv[1:]
+    found = measured(float(elements), int(positions), frictions)
+    Path(out).write_text(json.dumps([vars(row) for row in found]))
+
+
+if __name__ == "__main__":
+    main()

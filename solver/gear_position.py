@@ -95,10 +95,10 @@ class PositionResult:
         return float(np.sum(c.weights[:, None] * c.traction[:, 1:] * c.rate[:, 1:k]))
 
     @property
-    def energy_imbalance(self) -> float:
-        """|input − output − friction power| / input."""
-        lost = self.torques[0] - self.torques[1] / self.stand.pair.ratio - self.friction_loss
-        return abs(lost) / abs(self.torques[0])
+    def stored_power(self) -> float:
+        """Input − output − friction power per rad/s of pinion speed [N·mm; per mm of width in 2D]: what the deflected
+        teeth take in, or give back where it is negative. Over a whole pitch that is nothing."""
+        return self.torques[0] - self.torques[1] / self.stand.pair.ratio - self.friction_loss
 
 
 @dataclass(frozen=True)
@@ -143,8 +143,7 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only)
-        pressed = _middle(contact) if before is None else before.at(contact)
-        smooth = frictionless(system if normal_only else normal_part(system), pressed, tolerance)
+        smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before), tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
@@ -158,8 +157,12 @@ def shared_position(
     )
 
 
-def _middle(contact: GearContact) -> np.ndarray:
-    """(q,) bool: the points that are taken for pressed where there is no position before."""
+def _foreseen(contact: GearContact, before: Footprint | None) -> np.ndarray:
+    """(q,) bool: the points that are taken for pressed at first: where they were at the last position; without one, or
+    where the contact has moved on altogether, those by the contact lines."""
+    pressed = None if before is None else before.at(contact)
+    if pressed is not None and pressed.any():
+        return pressed
     # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
     return contact.distance <= max(FIRST_CONTACT, float(contact.distance.min()))
 

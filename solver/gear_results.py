@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,5 +109,17 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
 
 
 def balance_error(result: PositionResult) -> float:
-    """The largest of the relative force, moment and energy imbalances."""
-    return max(result.residual, result.energy_imbalance)
+    """The larger of the relative force imbalance of a position, and of the power that its teeth store over the input.
+    The latter is no error by itself: deflected flanks are not conjugate, and where a tip's edge bears the energy of
+    the teeth changes by up to some hundredths of the input. It has to come back within the pitch: `pitch_imbalance`."""
+    return max(result.residual, abs(result.stored_power) / abs(result.torques[0]))
+
+
+def pitch_imbalance(results: Sequence[PositionResult]) -> float:
+    """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
+
+    After a pitch all teeth are as deflected as before it, so that nothing is stored. What remains is the error of the
+    contact's geometry, which takes the flanks' normals before deflection: it falls with the load, not with the mesh
+    (2e-3 where a is 6 % of the radius of curvature and tips bear, a tenth of it at a tenth of the load).
+    """
+    return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)

@@ -113,6 +113,8 @@ def break_it(how: str) -> None:
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":
+        run.STORED_LIMIT = 1e-9
+    elif how == "leaking":
         run.BALANCE_LIMIT = 1e-9
 
 

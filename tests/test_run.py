@@ -148,6 +148,16 @@ def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: 
     assert "failed: pinion at" in (out / "run.log").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+    """A pitch that fails its balance certificate: status 3, the numbers, and no result."""
+    out = tmp_path / "out"
+    done = run_script("tests/broken_run.py", "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 3
+    assert "wanted an energy balance within 1e-09 of the input, found" in done.stderr
+    assert not (out / "summary.json").exists()
+
+
 def test_positions_are_balanced(on_one_rank: list[dict[str, object]]) -> None:
     """Every position is well within the limit."""
     assert max(float(str(row["balance_error"])) for row in on_one_rank) < BALANCE_LIMIT

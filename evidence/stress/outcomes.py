@@ -13,14 +13,14 @@ from mpi4py import MPI
 from meshes.data import MeshError
 from solver.condense import NotPositiveDefinite
 from solver.gear_model import prepare_model
-from solver.gear_results import balance_error
+from solver.gear_results import balance_error, pitch_imbalance
 from solver.gear_sweep import Pitch, initial_state, sweep_pitch
 from solver.newton import NotConverged
-from solver.run import BALANCE_LIMIT
+from solver.run import BALANCE_LIMIT, STORED_LIMIT
 from solver.scene import Scene
 from solver.search import SearchError
 
-POSITIONS = 4
+POSITIONS = 6
 REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)
 """What a run ends with when it tells its user that it found no solution."""
 
@@ -37,7 +37,8 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """A scene's outcome. balance: worst of all results. iterations: mean a position and friction coefficient above 0
+    """A scene's outcome. balance: of the pitch, the worst friction coefficient's. iterations: mean a position and
+    friction coefficient above 0
     (frictionless where all are 0); most: their largest. cpu: processor seconds."""
 
     seed: int
@@ -51,10 +52,10 @@ class Outcome:
 
 
 def some_positions(scene: Scene, seed: int) -> Pitch:
-    """A few of the positions of a pitch one after the other, from a random one on."""
-    step = 2.0 * np.pi / scene.pinion.teeth / scene.sweep.positions
-    begin = int(np.random.default_rng([seed, 1]).integers(scene.sweep.positions))
-    return Pitch(tuple(float(step * k) for k in range(begin, begin + POSITIONS)), 0)
+    """A whole pitch in a few equal steps, from a random position on."""
+    step = 2.0 * np.pi / scene.pinion.teeth / POSITIONS
+    begin = POSITIONS * float(np.random.default_rng([seed, 1]).random())
+    return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)), 0)
 
 
 def outcome_of(scene: Scene, seed: int) -> Outcome:
@@ -72,21 +73,19 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
 def _swept(scene: Scene, seed: int) -> Outcome:
     model = prepare_model(scene, MPI.COMM_SELF).model
     pitch = some_positions(scene, seed)
-    results = [
-        result
-        for position in sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction))
-        for result in position.results
-    ]
+    swept = sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction))
+    by_friction = list(zip(*(position.results for position in swept), strict=True))
+    results = [result for own in by_friction for result in own]
     rubbed = [r for r in results if r.friction > 0.0] or results
-    errors = np.array([balance_error(r) for r in results])
-    balanced = bool(np.all(errors <= BALANCE_LIMIT))
-    worst = int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))
+    errors = np.array([pitch_imbalance(own) for own in by_friction])
+    stored = np.array([balance_error(r) for r in results])
+    balanced = bool(np.all(errors <= BALANCE_LIMIT) and np.all(stored <= STORED_LIMIT))
+    edges = ", at tip edges" if any(r.contact.edge.any() for r in results) else ""
     return Outcome(
         seed,
         Verdict.CONVERGED if balanced else Verdict.UNBALANCED,
-        "" if balanced else f"balance error {errors[worst]:.1e} at {results[worst].stand.angle:.5f} rad, "
-        f"μ = {results[worst].friction}" + (", at a tip edge" if results[worst].contact.edge.any() else ""),
-        float(errors[worst]),
+        "" if balanced else f"balance error {np.max(errors):.1e} of a pitch, {np.max(stored):.1e} of a position{edges}",
+        float(np.max(errors)),
         float(np.mean([r.iterations for r in rubbed])),
         max(r.iterations for r in rubbed),
         sum(body.mesh.points.shape[0] * body.d for body in model.bodies),

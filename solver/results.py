@@ -20,7 +20,7 @@ import numpy as np
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
-from solver.gear_results import ToothSummary, balance_error
+from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
 from solver.run_data import RunData, SolvedPosition
 from solver.skips import Skipped
 
@@ -80,7 +80,7 @@ class PositionRow:
     """One position at one friction coefficient.
 
     max_pressure_MPa: the largest of the teeth's. tip_edge: whether a tooth bears on a tip edge, where pressure is
-    singular. loss_percent: friction power of the input power.
+    singular. loss_percent: friction power of the input power. balance_error: see `gear_results.balance_error`.
     """
 
     pinion_angle_deg: float
@@ -102,7 +102,8 @@ class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
     crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
     mesh_stiffness_N_per_mm_um: mean of the tangential force at the base circle over face width and transmission error
-    (a secant: modifications of the flanks soften it). estimated_error: None where there is none."""
+    (a secant: modifications of the flanks soften it). balance_error: of the pitch's energy, over the input; what
+    positions store in deflected teeth cancels out. estimated_error: None where there is none."""
 
     friction: float
     max_pressure_MPa: float
@@ -112,6 +113,7 @@ class FrictionRow:
     mesh_stiffness_N_per_mm_um: float
     loss_percent: float
     crossing_deg: float
+    balance_error: float
     estimated_error: FigureErrors | None
 
 
@@ -171,6 +173,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         mesh_stiffness_N_per_mm_um=float(np.mean(mesh_stiffness(run, index))),
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
+        balance_error=pitch_imbalance(results),
         estimated_error=run.errors.figures[index] if run.errors.figures else None,
     )
 

@@ -22,13 +22,10 @@ CYCLED = (6, 75, 84)
 
 @pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID)])
 def test_random_scenes_converge(plane: bool, seeds: range | tuple[int, ...]) -> None:
-    """Every scene converges or is refused for its balance; none crashes, hangs, or is not solved. The balance takes
-    flanks for conjugate: heavily loaded ones on a tip edge are not, so a few per cent are refused."""
+    """Every scene converges and balances its energy over the pitch; none crashes, hangs, or is refused."""
     outcomes = [outcome_of(random_scene(seed, plane), seed) for seed in seeds]
-    wrong = [o for o in outcomes if o.verdict not in (Verdict.CONVERGED, Verdict.UNBALANCED)]
+    wrong = [o for o in outcomes if o.verdict is not Verdict.CONVERGED]
     assert not wrong, wrong
-    unbalanced = [o for o in outcomes if o.verdict is Verdict.UNBALANCED]
-    assert len(unbalanced) <= 0.15 * len(outcomes), unbalanced
 
 
 def test_a_seed_is_one_scene() -> None:

@@ -24,6 +24,7 @@ WIDTH, RELIEF = 8.0, 15.0  # mm, µm: of the helical pair
 LIGHT = 0.1  # of the helical pair's torque
 AWAY, AT_EDGE = 1.2e-4, 2.2e-3  # bounds of |T_2 z_1/(T_1 z_2) − 1|
 SOURCE = "virtual work of conjugate flanks"
+STORED = "energy: after a pitch the teeth are as deflected as before"
 JUST = "by less than 0.1 %, with a body that is finer, and bends more, than where the bar comes from"
 BEARS = "the bar is the spur pair's; here up to a fifth of the force lies on tip edges, at every position"
 BENDS = "the bar is the spur pair's; what is left falls with the load, so it is deflection; not traced further"
@@ -91,6 +92,9 @@ def measure() -> Rung:
         (
             Claim.bound("spur, away from tip edges", spur.largest(False), AWAY, Reference.ANALYTICAL, SOURCE),
             Claim.bound("spur, at tip edges", spur.largest(True), AT_EDGE, Reference.ANALYTICAL, SOURCE, JUST),
+            Claim.bound("spur, mean of the pitch", abs(float(spur.off.mean())), AWAY, Reference.ANALYTICAL, STORED),
+            Claim.bound("helical, mean of the pitch", abs(float(helical.off.mean())), AWAY, Reference.ANALYTICAL,
+                        STORED, BENDS),
             Claim.bound("helical, at tip edges", helical.largest(True), AT_EDGE, Reference.ANALYTICAL, SOURCE, BEARS),
             Claim.bound("helical, a tenth of the torque, away from tip edges", light.largest(False), AWAY,
                         Reference.ANALYTICAL, SOURCE, BENDS),

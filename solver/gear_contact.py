@@ -23,7 +23,8 @@ from solver.search import pair_surfaces
 from solver.surface import Surface
 
 EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
-PENETRATION = 0.2  # how deep [module] undeformed flanks may overlap: far beyond any deflection
+GAP = 0.2  # how far apart [module] flanks are looked at
+PENETRATION = 0.5  # how deep [module] undeformed flanks may overlap: far beyond any deflection of small strain
 
 
 @dataclass(frozen=True)
@@ -206,6 +207,12 @@ class GearContact:
         ]
         return np.asarray(self.operator.hat @ np.concatenate(parts))
 
+    @property
+    def too_deep(self) -> bool:
+        """Whether undeflected flanks overlap nearly as deep as the search looks: deeper points would be missing."""
+        deepest = -float(self.operator.gap.min())
+        return deepest > 0.9 * PENETRATION * self.stand.pair.pinion.normal_module
+
     def reaches_rim(self, pressed: np.ndarray) -> bool:
         """Whether a point in contact (q,) bool lies at the window's rim, where the pressure may have been cut off."""
         return bool(np.any(pressed & (self.distance > 1.0)))
@@ -243,8 +250,8 @@ def _tooth_operator(
     if len(facets) == 0:
         return None
     first, second = placed_flanks(bodies, stand, tooth)
-    reach = PENETRATION * pinion.gear.normal_module
-    pairing = pair_surfaces(first, second, reach, reach, facets)
+    module = pinion.gear.normal_module
+    pairing = pair_surfaces(first, second, GAP * module, PENETRATION * module, facets)
     if len(pairing.weight) == 0:
         return None
     frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T

@@ -145,6 +145,11 @@ def shared_position(
         system = contact.system(model.load.on, model.load.torque, normal_only)
         smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before), tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+        if contact.too_deep:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that give way by less than half a module, found "
+                "more, too much for small strain: lower the torque"
+            )
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
         elif abs(shift) <= RELOCATE * model.pair.pinion.normal_module:

@@ -9,14 +9,17 @@ import pytest
 from gear_cases import helical_scene, model_of
 
 from evidence.stress.random_scenes import random_scene
-from solver import gear_position
-from solver.gear_contact import gear_contact
+from solver import gear_contact, gear_position
+from solver.gear_contact import GearContact
 from solver.gear_model import GearModel
 from solver.gear_overlap import overlap_outside
 from solver.gear_position import SharedPosition, shared_position
 from solver.kinematics import Stand
+from solver.newton import NotConverged
 
 DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
+
+TIMES = 5.0  # its torque, so that the teeth give way by a quarter of a module
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +62,28 @@ def test_depth_of_an_overlap(deep: GearModel) -> None:
     of an involute's line of action; off the path of contact by no more."""
     base, δ = deep.bodies[0].gear.base_radius, 2e-3
     stand = Stand(deep.pair, 0.0, (δ, 0.0))
-    contact = gear_contact(deep.bodies, stand, list(deep.teeth), 0.5 * deep.half_width)
+    contact = gear_contact.gear_contact(deep.bodies, stand, list(deep.teeth), 0.5 * deep.half_width)
     depth = overlap_outside(contact, np.zeros((len(contact.node), 1)), deep.teeth)
     assert 0.0 < depth <= base * δ * (1.0 + 1e-3)
+
+
+def test_deep_overlap_is_not_left_out(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: undeflected flanks overlap by a quarter of a module, so far do the teeth give way. Exact: how deep the
+    search looks does not matter as long as it is deeper; looking 0.2 modules deep loses the contact altogether.
+    More than half a module is refused."""
+    module = deep.pair.pinion.normal_module
+
+    def loaded(times: float) -> SharedPosition:
+        return solved(replace(deep, load=replace(deep.load, torque=times * deep.load.torque)))
+
+    found = loaded(TIMES)
+    assert 0.2 * module < -found.contact.operator.gap.min() < 0.4 * module
+    monkeypatch.setattr(gear_contact, "PENETRATION", 1.0)
+    assert approach(loaded(TIMES)) == pytest.approx(approach(found), rel=1e-9)
+    monkeypatch.setattr(gear_contact, "PENETRATION", 0.2)
+    monkeypatch.setattr(GearContact, "too_deep", False)
+    with pytest.raises(NotConverged, match="found none"):
+        loaded(TIMES)
+    monkeypatch.undo()
+    with pytest.raises(NotConverged, match="lower the torque"):
+        loaded(2.0 * TIMES)

@@ -49,11 +49,12 @@ def test_symmetric_method_below_its_limit_is_refused() -> None:
 
 def test_parameters_of_the_method_do_not_matter() -> None:
     """γ from 1.25 to 50 times the inverse-trace constant and θ = 1, −1: p0 of the cylinder is Hertz' within 0.5 %;
-    torque and transmission error of the spur pair change by less than that, and its p0 by less than 0.7 % (the bar,
-    0.5 %, is missed narrowly). With friction at most 8 Newton iterations a position."""
+    torque and transmission error of the spur pair change by less than that, and so does its p0 at 6 elements across the
+    contact; at 3 it is 0.6 %, the error of a fit to so few pressures. With friction at most 8 Newton iterations a
+    position."""
     assert all(claim.holds for claim in cylinder_claims((1.25, 50.0), (1.0, -1.0)))
     for claim in gear_claims((1.25, 50.0)):
-        allowed = 7e-3 if claim.quantity.startswith("p0") else CHANGE
+        allowed = 7e-3 if claim.quantity.startswith("p0") and "standard" in claim.quantity else CHANGE
         assert claim.error <= allowed * abs(claim.wanted), str(claim)
     assert all(claim.holds for claim in iteration_claims()), MOST_ITERATIONS
 

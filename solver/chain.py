@@ -20,8 +20,7 @@ over. Error of the deflection of two or three touching teeth under a tangential 
     helical, 60 × 2.1 mm, bore 60         860 %   370 %   200 %
 
 Measured for the 17-tooth sector of demos/yang2022.toml at level quick (118,080 rows, 6,765 functionals, 2 × 1,230 cut
-dofs; one thread): condensed in 37 s with 2.7 GB at the peak, ring 6 s with tolerance 1e-10; for the 60-tooth wheel, half
-as large, 24 s and 8 s, for a ring costs what its harmonics do.
+dofs; one thread): condensed in 37 s with 2.7 GB at the peak, ring 6 s with tolerance 1e-10.
 """
 
 from __future__ import annotations

@@ -22,7 +22,9 @@ from gear_cases import (
 )
 
 from solver import gear_sweep
+from solver.gear_memory import Footprint
 from solver.gear_model import GearModel
+from solver.gear_position import shared_position
 from solver.gear_results import balance_error, pitch_imbalance, slices
 from solver.newton import NotConverged
 from solver.run import pitch_of
@@ -73,6 +75,15 @@ def test_energy_balances_over_the_pitch(curves: list[Curves]) -> None:
         assert pitch_imbalance(pitch) < 3e-4
         wrong = [replace(r, torques=(r.torques[0], 1.01 * r.torques[1])) for r in pitch]
         assert pitch_imbalance(wrong) == pytest.approx(0.01, rel=0.05)
+
+
+def test_footprint_that_moved_on(spur: GearModel) -> None:
+    """A footprint in which nothing is pressed near the present contact, as after a long step: the same equilibrium as
+    without one."""
+    nothing = Footprint(np.zeros((1, 2)), np.zeros(1, dtype=bool))
+    found, wanted = (shared_position(spur, 0.01, (0.0, 0.0), [0.0], before) for before in (nothing, None))
+    assert found.smooth.motion == pytest.approx(wanted.smooth.motion, abs=1e-14)
+    assert found.contact.stand.extra == pytest.approx(wanted.contact.stand.extra, rel=1e-10)
 
 
 def test_friction_loss_of_sliding_teeth(spur: GearModel, curves: list[Curves]) -> None:

@@ -129,8 +129,11 @@ def frictional(
     """
     law = _Contact(system, lambda t: coulomb(t, friction), slip)
     if near is not None:
-        root = newton.solve(law, law.join(near.force, near.motion), "Coulomb friction", PATIENCE, TOLERANCE)
-        if root.converged:
+        try:
+            root = newton.solve(law, law.join(near.force, near.motion), "Coulomb friction", PATIENCE, TOLERANCE)
+        except NotConverged:  # the guess led out of contact altogether
+            root = None
+        if root is not None and root.converged:
             return _equilibrium(law, root)
     try:
         return _converged(law, _guessed(system, friction, slip, heading, start), "Coulomb friction")

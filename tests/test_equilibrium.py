@@ -7,7 +7,7 @@ import pytest
 
 from meshes.blocks import cylinder_2d, graded_box, graded_rectangle, sphere_quarter
 from solver.body import Body, Fixed, Freedom, Rigid
-from solver.equilibrium import _assumed_contact, _Contact, frictionless, normal_part, stuck
+from solver.equilibrium import Start, _assumed_contact, _Contact, frictional, frictionless, normal_part, stuck
 from solver.friction import coulomb, starting_guess
 from solver.material import Material
 from solver.newton import NotConverged
@@ -147,6 +147,19 @@ def test_start_does_not_matter():
     few[np.argsort(system.operator.gap)[:6]] = True
     a, b = frictionless(system), frictionless(system, few)
     assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
+
+
+def test_bad_guess_is_no_failure():
+    """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
+    without a guess."""
+    position = _position(cylinder())
+    system, slip = position.system(), position.slip(None)
+    unknown, start = np.zeros((len(system.operator.weights), 1)), frictionless(normal_part(system))
+    wanted = frictional(system, FRICTION, slip, unknown, start)
+    for apart in (-1.0, 1.0):
+        guess = Start(np.zeros_like(wanted.force), wanted.motion + apart)
+        found = frictional(system, FRICTION, slip, unknown, start, guess)
+        assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
 
 
 def test_free_sideways_motion_needs_friction():

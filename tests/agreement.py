@@ -56,7 +56,8 @@ def compute(out: Path) -> None:
         name = f"{patch.shape}_{patch.order}_on_{patch.first}_friction_{patch.friction:g}"
         keep(out / "blocks" / f"{name}.npz", solve(patch.problem()))
     keep(out / "hertz" / "cylinder.npz", solve(cylinder_on_block(4, ratio=1.37, friction=0.2)))
-    keep(out / "hertz" / "ball.npz", solve(ball_on_block(2, friction=0.2)))
+    # not in rings: where edges of both bodies coincide, rounding decides how facets are cut, felt at 1e-5
+    keep(out / "hertz" / "ball.npz", solve(ball_on_block(2, friction=0.2, rings=False)))
     for name, profile in zip(("pressed", "pushed"), Slip().profiles(4)):
         write_arrays(out / "hertz" / f"{name}.npz", {"pressure": profile.pressure, "shear": profile.shear})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import resource
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,6 +20,7 @@ from solver.companion import Companion, companion_of
 from solver.error_bars import with_errors
 from solver.fields import write_fields
 from solver.gear_model import GearModel, Preparation, prepare_model
+from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from solver.parallel import on_first, together
@@ -121,7 +122,7 @@ def _solved(
     pitch, state = pitch_of(scene), start.state
     for k in range(start.complete, len(pitch.angles)):
         position = position_on_ranks(preparation.model, pitch, scene.contact.friction[group], state, k, comm)
-        _certify(position)
+        certify(position)
         yield position
         state = position.state
 
@@ -153,7 +154,7 @@ def _write_output(
     """Fields and pictures; then the tables, whose being there says that the run is complete."""
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-    certify_pitch(data)
+    certify_pitch([solved.result for solved in each] for each in data.positions)
     data = with_errors(data, archive, companion)
     write_text(archive.out / "scene.toml", scene.resolved_toml())  # a resumed run may ask for other output
     _draw(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.out, log)
@@ -216,7 +217,8 @@ def position_on_ranks(
     return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
 
 
-def _certify(position: SweptPosition) -> None:
+def certify(position: SweptPosition) -> None:
+    """Raises BalanceError where the forces of a position do not balance, or its teeth store too much."""
     for result in position.results:
         error = balance_error(result)
         if not error <= STORED_LIMIT:
@@ -226,9 +228,10 @@ def _certify(position: SweptPosition) -> None:
             )
 
 
-def certify_pitch(data: RunData) -> None:
-    """Raises BalanceError where the energy of the pitch does not balance."""
-    for results in zip(*([solved.result for solved in each] for each in data.positions)):
+def certify_pitch(positions: Iterable[Sequence[PositionResult]]) -> None:
+    """Of all positions of a pitch, with a result for each friction coefficient. Raises BalanceError where the energy
+    does not balance."""
+    for results in zip(*positions, strict=True):
         error = pitch_imbalance(results)
         if not error <= BALANCE_LIMIT:
             raise BalanceError(

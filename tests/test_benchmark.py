@@ -16,7 +16,6 @@ from evidence.benchmark.cases import cylinder, line_contact, sphere
 from evidence.benchmark.gears import three_teeth
 from evidence.benchmark.ours import solved
 from evidence.benchmark.page import advantage, unmatched, write_page
-from evidence.benchmark.page_savings import SkipLine, SpurLine
 from evidence.benchmark.peers.calculix import FACES, deck, element_faces
 from evidence.benchmark.peers.surface import nodal_normals
 from evidence.benchmark.pitch import PitchFacts
@@ -26,6 +25,8 @@ from evidence.benchmark.pressure import Pressure, Reference
 from evidence.benchmark.profile import PARTS, ProfileRow
 from evidence.benchmark.programs import PEERS, solve
 from evidence.benchmark.runs import Command, RunFailed, run
+from evidence.benchmark.skips import SkipRow
+from evidence.benchmark.spur import SpurRow
 from evidence.benchmark.tables import read_rows, write_rows
 from evidence.benchmark.task import Answer, Task
 
@@ -192,9 +193,9 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     names the skip beyond its tolerance, and leaves out what was not measured."""
     nan = float("nan")
     rows = {
-        "skips": [SkipLine("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
-                  SkipLine("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
-        "spur": [SpurLine(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
+        "skips": [SkipRow("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
+                  SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
+        "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
         "profile": [ProfileRow("search", 1000, 4, 2.0, 0.25, 4), ProfileRow("everything else", 1000, 4, 6.0, 0.75, 1)],
         "pitches": [PitchRow("hexahedron", 2, 1, 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),

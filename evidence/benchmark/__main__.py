@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmark import bars, gear_rows, page, page_savings, pitches, precision, profile, scaling, skips
+from evidence.benchmark import bars, gear_rows, page, pitches, precision, profile, scaling, skips, spur
 from evidence.benchmark.programs import PEERS, ROOT, Program
 from evidence.benchmark.tables import write_rows
 
@@ -51,9 +51,9 @@ def _measure(part: str, peers: tuple[Program, ...], small: bool, out: Path, fold
         length = (1.0, 4) if small else (profile.ELEMENTS, profile.POSITIONS)
         _kept(out / "profile.csv", profile.rows(folder, *length))
     elif part == "skips":
-        _kept(out / "skips.csv", page_savings.skip_lines(skips.CASES[:1] if small else skips.CASES))
+        _kept(out / "skips.csv", skips.rows(skips.CASES[:1] if small else skips.CASES))
     elif part == "spur":
-        _kept(out / "spur.csv", page_savings.spur_lines())
+        _kept(out / "spur.csv", spur.rows())
     elif part == "bars":
         problem = bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)) if small else bars.spur_problem()
         _kept(out / "bars.csv", bars.measure_bars(problem))

@@ -9,12 +9,14 @@ from pathlib import Path
 from evidence.benchmark import figures
 from evidence.benchmark.bars import BarRow
 from evidence.benchmark.gear_rows import GearRow
-from evidence.benchmark.page_savings import SkipLine, SpurLine, bars_section, skip_section, spur_section
+from evidence.benchmark.page_savings import bars_section, skip_section, spur_section
 from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import OverkillRow, Row
 from evidence.benchmark.profile import ProfileRow
 from evidence.benchmark.programs import EVOLVENT
 from evidence.benchmark.scaling import RatioRow, SizeRow, exponent
+from evidence.benchmark.skips import SkipRow
+from evidence.benchmark.spur import SpurRow
 from evidence.benchmark.tables import read_rows
 from evidence.report import header, picture, table, write
 
@@ -59,8 +61,8 @@ def write_page(out: Path) -> Path:
         parts += ["## Size", "![Cost over size](pictures/benchmark/sizes.png)", _size_table(sizes)]
     if profile := read_rows(out / "benchmark" / "profile.csv", ProfileRow):
         parts += ["## Where the time goes", _profile_table(profile)]
-    parts += skip_section(read_rows(out / "benchmark" / "skips.csv", SkipLine))
-    parts += spur_section(read_rows(out / "benchmark" / "spur.csv", SpurLine))
+    parts += skip_section(read_rows(out / "benchmark" / "skips.csv", SkipRow))
+    parts += spur_section(read_rows(out / "benchmark" / "spur.csv", SpurRow))
     parts += bars_section(read_rows(out / "benchmark" / "bars.csv", BarRow))
     return write(out / "benchmark.md", parts)
 

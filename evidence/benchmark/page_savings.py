@@ -1,9 +1,8 @@
-"""What is left out and what it saves, and whether error bars hold: parts of the benchmark's page, and their rows."""
+"""What is left out and what it saves, and whether error bars hold: parts of the benchmark's page."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from evidence.benchmark import bars, skips, spur
 from evidence.report import table
@@ -11,62 +10,7 @@ from evidence.report import table
 SPUR_BAR = 20.0
 
 
-@dataclass(frozen=True)
-class SkipLine:
-    """A scene with a skip and without: wall seconds, memory [MB], largest relative difference of the answers."""
-
-    skip: str
-    scene: str
-    settings: str
-    seconds: float
-    long_seconds: float
-    memory_MB: float
-    long_memory_MB: float
-    difference: float
-    tolerance: float
-
-
-@dataclass(frozen=True)
-class SpurLine:
-    """A 2D mesh and the cheapest 3D mesh that is as right: CPU seconds, memory, error of the transmission error."""
-
-    elements: float
-    fine_body: int
-    seconds: float
-    memory_MB: float
-    error: float
-    volume_elements: float
-    layers: int
-    volume_seconds: float
-    volume_memory_MB: float
-    volume_error: float
-
-
-def skip_lines(cases: Sequence[skips.Case] = skips.CASES) -> Iterator[SkipLine]:
-    """One a skip. Raises CalledProcessError."""
-    for row in skips.rows(cases):
-        yield SkipLine(
-            row.case.skip, row.case.scene, " ".join(row.case.settings), row.short.seconds, row.long.seconds,
-            row.short.memory_MB, row.long.memory_MB, row.differences.largest, row.tolerance,
-        )  # fmt: skip
-
-
-def spur_lines() -> Iterator[SpurLine]:
-    """One a 2D mesh; not a number where no 3D mesh of the list is as right."""
-    nan = float("nan")
-    for row in spur.rows():
-        plane, own = row.plane, row.plane_solved
-        head = (plane.elements, int(plane.fine_body), own.seconds, own.memory_MB, row.plane_error)
-        if row.volume is None or row.volume_solved is None:
-            yield SpurLine(*head, nan, 0, nan, nan, nan)
-        else:
-            other = row.volume_solved
-            yield SpurLine(
-                *head, row.volume.elements, row.volume.layers, other.seconds, other.memory_MB, row.volume_error
-            )
-
-
-def skip_section(rows: Sequence[SkipLine]) -> list[str]:
+def skip_section(rows: Sequence[skips.SkipRow]) -> list[str]:
     """Time and memory with and without every skip."""
     if not rows:
         return []
@@ -85,7 +29,7 @@ def skip_section(rows: Sequence[SkipLine]) -> list[str]:
     return ["## What a scene does not need", words + said, table(head, lines, right=range(2, 10))]
 
 
-def spur_section(rows: Sequence[SpurLine]) -> list[str]:
+def spur_section(rows: Sequence[spur.SpurRow]) -> list[str]:
     """2D against 3D."""
     if not rows:
         return []

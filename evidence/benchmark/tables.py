@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -36,8 +36,3 @@ def read_rows(path: Path, kind: type[T]) -> list[T]:
 
 def _made(kind: type[T], row: dict[str, str]) -> T:
     return kind(**{f.name: _READ[str(f.type)](row[f.name]) for f in fields(kind)})  # type: ignore[arg-type]
-
-
-def best(rows: Iterable[T], key: str) -> T:
-    """The row with the smallest value of a column."""
-    return min(rows, key=lambda row: getattr(row, key))

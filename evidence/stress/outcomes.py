@@ -13,10 +13,10 @@ from mpi4py import MPI
 from meshes.data import MeshError
 from solver.condense import NotPositiveDefinite
 from solver.gear_model import prepare_model
-from solver.gear_results import balance_error, pitch_imbalance
-from solver.gear_sweep import Pitch, initial_state, sweep_pitch
+from solver.gear_results import pitch_imbalance
+from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from solver.newton import NotConverged
-from solver.run import BALANCE_LIMIT, STORED_LIMIT
+from solver.run import BalanceError, certify, certify_pitch
 from solver.scene import Scene
 from solver.search import SearchError
 
@@ -73,20 +73,27 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
 def _swept(scene: Scene, seed: int) -> Outcome:
     model = prepare_model(scene, MPI.COMM_SELF).model
     pitch = some_positions(scene, seed)
-    swept = sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction))
-    by_friction = list(zip(*(position.results for position in swept), strict=True))
-    results = [result for own in by_friction for result in own]
+    swept = list(sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction)))
+    results = [result for position in swept for result in position.results]
     rubbed = [r for r in results if r.friction > 0.0] or results
-    errors = np.array([pitch_imbalance(own) for own in by_friction])
-    stored = np.array([balance_error(r) for r in results])
-    balanced = bool(np.all(errors <= BALANCE_LIMIT) and np.all(stored <= STORED_LIMIT))
-    edges = ", at tip edges" if any(r.contact.edge.any() for r in results) else ""
+    message = _out_of_balance(swept)
     return Outcome(
         seed,
-        Verdict.CONVERGED if balanced else Verdict.UNBALANCED,
-        "" if balanced else f"balance error {np.max(errors):.1e} of a pitch, {np.max(stored):.1e} of a position{edges}",
-        float(np.max(errors)),
+        Verdict.UNBALANCED if message else Verdict.CONVERGED,
+        message,
+        max(map(pitch_imbalance, zip(*(position.results for position in swept), strict=True))),
         float(np.mean([r.iterations for r in rubbed])),
         max(r.iterations for r in rubbed),
         sum(body.mesh.points.shape[0] * body.d for body in model.bodies),
     )
+
+
+def _out_of_balance(swept: list[SweptPosition]) -> str:
+    """Why a run would refuse these positions of a pitch; empty where it would not."""
+    try:
+        for position in swept:
+            certify(position)
+        certify_pitch(position.results for position in swept)
+    except BalanceError as error:
+        return str(error)
+    return ""

@@ -19,7 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from solver.dissection import STANDARD, DissectionSettings, schur_complement
+from solver.dissection import STANDARD, DissectionSettings, Planned
 from solver.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky
 
 Floats = NDArray[np.float64]
@@ -44,15 +44,14 @@ def compliance(
     """C = P K⁻¹ Pᵀ (m × m, symmetric, one array; mm/N for displacements).
 
     `stiffness` K (n × n), `functionals` P (m × n); `free` picks the degrees of freedom that are not fixed (default:
-    all). `graph` (n × n) has the pattern that cuts follow, see `dissection.schur_complement`. Peak memory above K and
+    all). `graph` (n × n) has the pattern that cuts follow, see `dissection.Planned`. Peak memory above K and
     P is about twice C.
 
     Raises NotPositiveDefinite and OutOfMemory.
     """
-    if free is not None:
-        stiffness, functionals = _restricted(stiffness, free), functionals.tocsc()[:, free]
-        graph = None if graph is None else _restricted(graph, free)
-    result = schur_complement(_augmented(stiffness, functionals), functionals.shape[0], settings, graph)
+    count, kept = functionals.shape[0], np.arange(stiffness.shape[0]) if free is None else free
+    nothing = sp.coo_matrix((count, count))
+    result = _planned(stiffness, functionals, kept, kept[:0], nothing, settings, graph).schur_complement()
     return np.negative(result, out=result)
 
 
@@ -66,7 +65,7 @@ class Factor:
         self, stiffness: sp.spmatrix, free: Ints | None = None, settings: DissectionSettings = STANDARD
     ) -> None:
         self._free: Ints | slice = slice(None) if free is None else free
-        kept = stiffness if free is None else _restricted(stiffness, free)
+        kept = stiffness if free is None else _restricted(stiffness, free, free)
         self._cholesky = SparseCholesky(sp.triu(kept, format="csr"), settings.factor)
 
     def solve(self, right: Floats) -> Floats:
@@ -110,50 +109,32 @@ class SectorCondensation:
 
 @dataclass(frozen=True)
 class SectorSystem:
-    """[K Pᵀ; P 0] of a sector, ready for elimination: interior rows first, then the cut faces, then the functionals.
+    """[K Pᵀ; P 0] of a sector, ready for elimination: interior rows first, then the 2c = `cut` of the cut faces, then
+    the m = `surface` functionals."""
 
-    matrix: (n + m)², graph: pattern (interior rows)² that the cuts of the dissection follow, or None for the matrix's
-    own; cut: 2c; surface: m.
-    """
-
-    matrix: sp.csr_matrix
-    graph: sp.csr_matrix | None
+    matrix: Planned
     cut: int
     surface: int
 
     @staticmethod
     def of(
-        stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None
-    ) -> SectorSystem:
-        """From K (n × n, fixed rows already gone), P (m × n), the dofs `low`, `high` (c each) of the cut faces and a
-        pattern (n × n). Raises ValueError where the faces do not match."""
-        interior, cut = _split(stiffness.shape[0], low, high)
-        order = np.concatenate([interior, cut])
-        matrix = _augmented(_restricted(stiffness, order), functionals.tocsc()[:, order])
-        inner = None if graph is None else _restricted(graph, interior)
-        return SectorSystem(matrix, inner, len(cut), functionals.shape[0])
+        stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None,
+        free: Ints | None = None, settings: DissectionSettings = STANDARD,
+    ) -> SectorSystem:  # fmt: skip
+        """From K (n × n), P (m × n), the dofs `low`, `high` (c each) of the cut faces, the pattern (n × n) that cuts
+        follow (default: K's) and the dofs that are not fixed (default: all; the faces' are not). Raises ValueError
+        where the faces do not match."""
+        interior, cut = _split(stiffness.shape[0], low, high, free)
+        across = functionals.tocsc()[:, cut]
+        corner = sp.bmat([[_restricted(stiffness, cut, cut), across.T], [across, None]], format="coo")
+        planned = _planned(stiffness, functionals, interior, cut, corner, settings, graph)
+        return SectorSystem(planned, len(cut), functionals.shape[0])
 
-    def condensed(self, settings: DissectionSettings = STANDARD) -> SectorCondensation:
+    def condensed(self) -> SectorCondensation:
         """Onto the cut faces and the functionals. Raises NotPositiveDefinite and OutOfMemory."""
-        schur = schur_complement(self.matrix, self.cut + self.surface, settings, self.graph)
+        schur = self.matrix.schur_complement()
         faces, surface = slice(0, self.cut), slice(self.cut, None)
-        stiffness, transfer = schur[faces, faces].copy(), schur[surface, faces].copy()
-        compliance = _corner(schur, self.cut)
-        return SectorCondensation(stiffness, transfer, np.negative(compliance, out=compliance))
-
-
-def _corner(matrix: Floats, first: int) -> Floats:
-    """matrix[first:, first:], moved to the front of the same memory: it is the largest array of a run, and a copy would
-    be there twice. `matrix` is in C order, and used up."""
-    size = len(matrix) - first
-    flat = matrix.reshape(-1)
-    for row in range(size):
-        flat[row * size : (row + 1) * size] = matrix[first + row, first:]
-    if matrix.flags.owndata:
-        del flat
-        matrix.resize((size, size), refcheck=False)
-        return matrix
-    return flat[: size * size].reshape(size, size)
+        return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), -schur[surface, surface])
 
 
 class SectorRecovery:
@@ -165,50 +146,59 @@ class SectorRecovery:
     ) -> None:  # fmt: skip
         self._interior, self._cut = _split(stiffness.shape[0], low, high)
         self._loads = functionals.tocsc()[:, self._interior].T.tocsr()
-        self._coupling = stiffness.tocsr()[self._interior][:, self._cut]
-        self._factor = Factor(_restricted(stiffness, self._interior), settings=settings)
+        self._coupling = _restricted(stiffness, self._interior, self._cut)
+        self._factor = Factor(stiffness, self._interior, settings)
 
     def displacement(self, forces: Floats, cut: Floats) -> Floats:
         """Field u (n) of the sector in its own frame: forces f (m), cut-face displacements u_c (2c)."""
         field = np.empty(len(self._interior) + len(self._cut))
         field[self._cut] = cut
-        field[self._interior] = self._factor.solve(self._loads @ forces - self._coupling @ cut)
+        load = np.zeros(len(field))
+        load[self._interior] = self._loads @ forces - self._coupling @ cut
+        field[self._interior] = self._factor.solve(load)[self._interior]
         return field
 
 
-def _split(size: int, low: Ints, high: Ints) -> tuple[Ints, Ints]:
+def _split(size: int, low: Ints, high: Ints, free: Ints | None = None) -> tuple[Ints, Ints]:
     cut = np.concatenate([low, high])
     if len(low) != len(high) or len(np.unique(cut)) != len(cut):
         raise ValueError(
             f"two cut faces with equally many degrees of freedom and none in common are wanted, found {len(low)} and "
             f"{len(high)}, {len(np.unique(cut))} different: give both faces in matching order, without fixed ones"
         )
-    interior = np.ones(size, dtype=bool)
+    interior = np.zeros(size, dtype=bool)
+    interior[slice(None) if free is None else free] = True
     interior[cut] = False
     return np.flatnonzero(interior), cut
 
 
-def _restricted(stiffness: sp.spmatrix, kept: Ints) -> sp.csr_matrix:
-    return stiffness.tocsr()[kept][:, kept]
-
-
-def _augmented(stiffness: sp.spmatrix, functionals: sp.spmatrix) -> sp.csr_matrix:
-    """[K Pᵀ; P 0] row by row, without the coordinate lists that `bmat` makes of K on the way."""
+def _planned(
+    stiffness: sp.spmatrix, functionals: sp.spmatrix, interior: Ints, cut: Ints, corner: sp.coo_matrix,
+    settings: DissectionSettings, graph: sp.spmatrix | None,
+) -> Planned:  # fmt: skip
+    """[K Pᵀ] of the interior rows, its columns the interior, the cut faces and the functionals."""
     size, count = stiffness.shape[0], functionals.shape[0]
-    P = functionals.tocsr()
-    lower = sp.csr_matrix((P.data, P.indices, P.indptr), shape=(count, size + count))
-    return sp.vstack([_beside(stiffness.tocsr(), P.T.tocsr()), lower], format="csr")
+    columns = np.concatenate([interior, cut, size + np.arange(count)])
+    rows = _restricted(_beside(stiffness.tocsr(), functionals.T.tocsr()), interior, columns)
+    inner = None if graph is None else _restricted(graph, interior, interior)
+    return Planned.of(rows, corner, settings, inner)
+
+
+def _restricted(matrix: sp.spmatrix, rows: Ints, columns: Ints) -> sp.csr_matrix:
+    """Some rows and columns of a matrix, in any order; SciPy's own matrix[rows][:, columns] takes several times longer.
+    Indices are not sorted."""
+    taken = matrix.tocsr()[rows]
+    place = np.full(matrix.shape[1], -1, dtype=taken.indices.dtype)
+    place[columns] = np.arange(len(columns))
+    indices = place[taken.indices]
+    kept = indices >= 0
+    ends = np.concatenate([[0], np.cumsum(kept, dtype=taken.indptr.dtype)])[taken.indptr]
+    return sp.csr_matrix((taken.data[kept], indices[kept], ends), shape=(len(rows), len(columns)))
 
 
 def _beside(left: sp.csr_matrix, right: sp.csr_matrix) -> sp.csr_matrix:
-    """[left right]."""
-    counts = [np.diff(part.indptr) for part in (left, right)]
-    starts = left.indptr + right.indptr
-    places = [
-        np.arange(len(left.indices)) + np.repeat(right.indptr[:-1], counts[0]),
-        np.arange(len(right.indices)) + np.repeat(left.indptr[1:], counts[1]),
-    ]
-    indices, data = np.empty(starts[-1], dtype=left.indices.dtype), np.empty(starts[-1])
-    for part, place, shift in zip((left, right), places, (0, left.shape[1]), strict=True):
-        indices[place], data[place] = part.indices + shift, part.data
-    return sp.csr_matrix((data, indices, starts), shape=(left.shape[0], left.shape[1] + right.shape[1]))
+    """[left right], a sum of two wide matrices: SciPy's `hstack` makes lists of coordinates on the way."""
+    shape = left.shape[0], left.shape[1] + right.shape[1]
+    moved = right.indices + right.indices.dtype.type(left.shape[1])
+    wide = sp.csr_matrix((left.data, left.indices, left.indptr), shape=shape)
+    return wide + sp.csr_matrix((right.data, moved, right.indptr), shape=shape)

@@ -15,13 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.linalg.blas import dsyrk
+from scipy.linalg import LinAlgError, cholesky
+from scipy.linalg.blas import dtrsm
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver import mumps
-from solver.memory import return_free_memory
+from solver.memory import Stack, return_free_memory, untouched_square
 from solver.separator import Part, planned
+from solver.triangle import Triangle
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -46,57 +47,83 @@ class DissectionSettings:
 STANDARD = DissectionSettings()
 
 
-def schur_complement(
-    matrix: sp.spmatrix, size: int, settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None
-) -> Floats:
-    """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (size × size, C order) of the last `size` rows of a symmetric A (both triangles given).
+@dataclass(frozen=True)
+class Planned:
+    """A symmetric matrix in the order of its elimination.
 
-    A₁₁ must be positive definite, A₂₂ need not be. `graph` has the pattern that the cuts follow, of the shape of A₁₁
-    and connecting no more than it does (default: A₁₁): cuts of a mesh are thin, those of a matrix in which some rows
-    couple widely are not.
-
-    Raises NotPositiveDefinite and OutOfMemory.
+    rows: (n × n + m) those to eliminate, the m retained columns last. corner: (m × m) of the retained rows. whole: the
+    plan.
     """
-    csr = matrix.tocsr()
-    count = csr.shape[0] - size
-    order, whole = planned(csr[:count, :count], graph, settings.leaf)
-    rows = _reordered(csr[:count], order)
-    result = _Elimination(rows, settings.factor).update(whole, np.arange(count, csr.shape[0]))
-    del rows
-    corner = csr[count:, count:].tocoo()
-    corner.sum_duplicates()
-    result[corner.row, corner.col] += corner.data
-    return_free_memory()
-    mumps.fill_symmetric(result)
-    return result
+
+    rows: sp.csr_matrix
+    corner: sp.coo_matrix
+    whole: Part
+    factor: mumps.FactorSettings
+
+    @staticmethod
+    def of(
+        rows: sp.csr_matrix, corner: sp.coo_matrix, settings: DissectionSettings = STANDARD,
+        graph: sp.spmatrix | None = None,
+    ) -> Planned:  # fmt: skip
+        """Of a symmetric A, [A₁₁ A₁₂] (n × n + m) the rows to eliminate and A₂₂ (m × m) the corner, both triangles.
+
+        A₁₁ must be positive definite, A₂₂ need not be. `graph` has the pattern that the cuts follow, of the shape of
+        A₁₁ and connecting no more than it does (default: A₁₁): cuts of a mesh are thin, those of a matrix in which some
+        rows couple widely are not.
+        """
+        count = rows.shape[0]
+        order, whole = planned(rows[:, :count], graph, settings.leaf)
+        corner.sum_duplicates()
+        return Planned(_reordered(rows, order), corner, whole, settings.factor)
+
+    def schur_complement(self) -> Floats:
+        """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order). Raises NotPositiveDefinite and OutOfMemory."""
+        return_free_memory()
+        (count, columns), corner = self.rows.shape, self.corner
+        result = untouched_square(columns - count)  # half of it stays so until the end
+        retained = np.arange(count, columns)
+        _Elimination(self.rows, self.factor, Stack()).subtract(self.whole, retained, Triangle.within(result))
+        return_free_memory()
+        result[corner.row, corner.col] += corner.data
+        mumps.fill_symmetric(result)
+        return result
 
 
-def _reordered(rows: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
-    """Rows (n × n + m) in a new order (n,), and their first n columns alike; indices are not sorted."""
-    rank = np.arange(rows.shape[1], dtype=rows.indices.dtype)
+def _reordered(matrix: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
+    """Rows (n × n + m) in the order (n,), and their first n columns alike; indices are not sorted."""
+    rank = np.arange(matrix.shape[1], dtype=matrix.indices.dtype)
     rank[order] = np.arange(len(order))
-    taken = rows[order]
-    return sp.csr_matrix((taken.data, rank[taken.indices], taken.indptr), shape=rows.shape)
+    taken = matrix[order]
+    return sp.csr_matrix((taken.data, rank[taken.indices], taken.indptr), shape=taken.shape)
 
 
 @dataclass(frozen=True)
 class _Elimination:
-    """The rows to eliminate in the order of the plan (n × n + m), and how leaves are factored."""
+    """The rows to eliminate in the order of the plan (n × n + m), how leaves are factored, and where the fronts are."""
 
     matrix: sp.csr_matrix
     factor: mumps.FactorSettings
+    stack: Stack
 
-    def update(self, part: Part, outer: Ints) -> Floats:
-        """−A_oi A_ii⁻¹ A_io, upper triangle (|outer| × |outer|, C order), of a part's rows i and `outer` rows of A."""
-        if not part.parts and part.separator == part.end:
-            return self._leaf(part, outer)
-        front = _Front.of(self.matrix, np.arange(part.separator, part.end), outer)
-        for inner in part.parts:
-            return_free_memory()
-            places = np.flatnonzero(self._touched(inner)[front.variables])
-            front.add(self.update(inner, front.variables[places]), places)
-        return_free_memory()
-        return front.eliminated()
+    def subtract(self, part: Part, outer: Ints, oo: Triangle) -> None:
+        """oo −= A_oi A_ii⁻¹ A_io of a part's rows i and `outer` rows of A."""
+        with self.stack.given_up_after():
+            front = _Front.of(self.matrix, slice(part.separator, part.end), outer, oo, self.stack)
+            for inner in (part,) if part.is_leaf else part.parts:
+                self._absorb(front, inner)
+            front.eliminate()
+
+    def _absorb(self, front: _Front, inner: Part) -> None:
+        """Eliminates a part within a front."""
+        places = np.flatnonzero(self._touched(inner)[front.variables])
+        outer = front.variables[places]
+        if inner.is_leaf:
+            front.add(Triangle.within(self._leaf(inner, outer)), places)
+        else:
+            with self.stack.given_up_after():
+                update = Triangle.zeros(len(outer), self.stack.empty)
+                self.subtract(inner, outer, update)
+                front.add(update, places)
 
     def _touched(self, part: Part) -> Bools:
         """(n + m,) bool: the columns in which a part's rows have an entry."""
@@ -122,57 +149,35 @@ class _Elimination:
 
 @dataclass
 class _Front:
-    """A separator and what is retained around it: dense blocks ss, so and oo (upper triangles of ss and oo)."""
+    """A separator and what is retained around it: dense blocks ss (upper triangle), so and oo."""
 
     variables: Ints
     ss: Floats
     so: Floats
-    oo: Floats
+    oo: Triangle
 
     @staticmethod
-    def of(matrix: sp.csr_matrix, separator: Ints, outer: Ints) -> _Front:
-        rows = matrix[separator]
-        blocks = rows[:, separator].toarray(), rows[:, outer].toarray(), np.zeros((len(outer), len(outer)))
-        return _Front(np.concatenate([separator, outer]), *blocks)
+    def of(matrix: sp.csr_matrix, separator: slice, outer: Ints, oo: Triangle, stack: Stack) -> _Front:
+        rows, size = matrix[separator], separator.stop - separator.start
+        ss = rows[:, separator].toarray(out=stack.empty(size, size))
+        so = rows[:, outer].toarray(out=stack.empty(size, len(outer)))
+        return _Front(np.concatenate([np.arange(separator.start, separator.stop), outer]), ss, so, oo)
 
-    def add(self, update: Floats, places: Ints) -> None:
+    def add(self, update: Triangle, places: Ints) -> None:
         """Add the update of an eliminated part at the places (sorted) of the variables that it touches."""
         count = len(self.ss)
-        split = int(np.searchsorted(places, count))
-        inside, outside = _runs(places[:split]), _runs(places[split:] - count)
-        _add(self.ss, inside, inside, update[:split, :split])
-        _add(self.so, inside, outside, update[:split, split:])
-        _add(self.oo, outside, outside, update[split:, split:], upper=True)
+        inside, outside = np.split(places, [int(np.searchsorted(places, count))])
+        update.add_first(self.ss, self.so, inside, outside - count)
+        update.add_last(self.oo, outside - count)
 
-    def eliminated(self) -> Floats:
-        """oo − soᵀ ss⁻¹ so, in the memory of oo."""
+    def eliminate(self) -> None:
+        """oo −= soᵀ ss⁻¹ so, with ss and so used up: what is C order here is Fortran's, transposed, so nothing is
+        copied."""
         if not len(self.ss):
-            return self.oo
+            return
         try:
-            factor = cholesky(self.ss, lower=False, overwrite_a=True)
+            factor = cholesky(self.ss.T, lower=True, overwrite_a=True)
         except LinAlgError:
             raise mumps.not_positive_definite(len(self.ss), 1) from None
-        # columns of soᵀ as LAPACK wants them: no copy of the largest blocks
-        if len(self.oo):
-            half = solve_triangular(factor, self.so, trans="T", overwrite_b=True)
-            dsyrk(-1.0, half, beta=1.0, c=self.oo.T, trans=1, lower=1, overwrite_c=1)
-        return self.oo
-
-
-def _runs(places: Ints) -> list[tuple[slice, slice]]:
-    """Sorted places as runs without gaps: where each goes, and where it comes from."""
-    starts = np.flatnonzero(np.diff(places, prepend=-2) != 1)
-    ends = np.append(starts[1:], len(places))
-    return [(slice(places[a], places[a] + b - a), slice(a, b)) for a, b in zip(starts.tolist(), ends.tolist())]
-
-
-def _add(
-    target: Floats, rows: list[tuple[slice, slice]], columns: list[tuple[slice, slice]], update: Floats,
-    upper: bool = False,
-) -> None:  # fmt: skip
-    """target[rows, columns] += update, by whole blocks: nodes that are numbered along the mesh come in long runs.
-    upper: nothing left of the diagonal blocks."""
-    for i, (to, origin) in enumerate(rows):
-        strip, added = target[to], update[origin]
-        for column, source in columns[i if upper else 0 :]:
-            strip[:, column] += added[:, source]
+        if self.oo.size:
+            self.oo.subtract_product(dtrsm(1.0, factor, self.so.T, side=1, lower=1, trans_a=1, overwrite_b=1).T)

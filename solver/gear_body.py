@@ -112,17 +112,14 @@ def _sector_system(
     """The sector with Nitsche's constant term, seen through its flank. A function of its own so that
     the full matrices are gone when the elimination starts."""
     assembled = assemble(body)
-    free, d = assembled.free, assembled.d
-    P = trace_functionals(flank, assembled.stiffness.shape[0])
-    K = assembled.stiffness[free][:, free].tocsr()
+    K, d = assembled.stiffness, assembled.d
+    P = trace_functionals(flank, K.shape[0])
     graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
     if traction is not None:
-        K, P = (K - traction.constant_term()[free][:, free]).tocsr(), P - traction.flux()
-    place = np.full(len(assembled.held), -1)
-    place[free] = np.arange(len(free))
-    cut = [place[(d * nodes[:, None] + np.arange(d)).ravel()] for nodes in matching_cuts(body.mesh, pitch)]
-    low, high = (dofs[dofs >= 0] for dofs in cut)
-    return SectorSystem.of(K, P.tocsr()[:, free], low, high, graph)
+        K, P = K - traction.constant_term(), P - traction.flux()
+    cut = [(d * nodes[:, None] + np.arange(d)).ravel() for nodes in matching_cuts(body.mesh, pitch)]
+    low, high = (dofs[~assembled.held[dofs]] for dofs in cut)
+    return SectorSystem.of(K, P, low, high, graph, assembled.free)
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:

@@ -31,6 +31,11 @@ class Part:
     end: int
     parts: tuple[Part, ...] = ()
 
+    @property
+    def is_leaf(self) -> bool:
+        """Whether MUMPS takes all its rows."""
+        return not self.parts and self.separator == self.end
+
 
 @dataclass(frozen=True)
 class Vertices:

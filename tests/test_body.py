@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
@@ -13,23 +11,6 @@ from solver.body import DIRECTIONS, Body, Fixed, Freedom, Rigid, Traction, assem
 from solver.material import Material
 from solver.traction import rigid_modes
 
-MAPPED = """
-import ctypes
-import numpy as np
-from meshes.blocks import rectangle
-from solver.body import Body, assemble
-
-class Info(ctypes.Structure):  # of glibc's malloc.h
-    _fields_ = [(name, ctypes.c_size_t) for name in (
-        "arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")]
-
-mallinfo2 = ctypes.CDLL(None).mallinfo2
-mallinfo2.restype = Info
-assemble(Body(rectangle(1.0, 1.0, 1, 1)))
-before = mallinfo2().hblkhd
-array = np.ones(1 << 23)
-print(mallinfo2().hblkhd - before)
-"""
 CASES = [(s, o) for s in ("triangle", "quadrilateral", "tetrahedron", "hexahedron") for o in (1, 2)]
 
 
@@ -152,12 +133,3 @@ def test_bad_input(make, message):
     """Each mistake is a ValueError that names what was found."""
     with pytest.raises(ValueError, match=message):
         make(_block("quadrilateral", 1))
-
-
-@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallinfo2"), reason="a measure of glibc")
-def test_large_arrays_have_pages_of_their_own(run_script):
-    """In a new process, once a stiffness is assembled, an array of 64 MB is mapped apart from the heap, to go back to
-    the system when it is freed; with petsc4py imported glibc alone does not do that."""
-    done = run_script("-c", MAPPED)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert int(done.stdout) >= 8 << 23

@@ -77,10 +77,11 @@ class JumpMap:
 class GearContact:
     """All tooth pairs at a position.
 
-    bodies: (pinion, wheel), the pinion carries the pressure. half_width: of the window [mm of profile arc].
+    bodies: (pinion, wheel), the pinion carries the pressure; none on the way to another rank. half_width: of the window
+    [mm of profile arc].
     """
 
-    bodies: tuple[GearBody, GearBody]
+    bodies: tuple[GearBody, ...]
     stand: Stand
     teeth: tuple[ToothContact, ...]
     half_width: float
@@ -258,7 +259,7 @@ def _tooth_operator(
     return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
 
 
-def placed_flanks(bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
+def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
     """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
     d = bodies[0].d
     first, second = (

@@ -67,24 +67,28 @@ def initial_state(frictions: Sequence[float]) -> SweepState:
 
 
 def sweep_pitch(
-    model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0
-) -> Iterator[SweptPosition]:
+    model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0,
+    common: SharedPosition | None = None,
+) -> Iterator[SweptPosition]:  # fmt: skip
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
+
+    common: what the coefficients share of the first position, if it is there already.
 
     Raises NotConverged, with the angle and the friction coefficient.
     """
     span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
     for k in range(begin, len(pitch.angles)):
-        position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS)
-        state = position.state
+        position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
+        state, common = position.state, None
         yield replace(position, warm_up=k < pitch.warm_up)
 
 
 def _advance(
-    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int
-) -> SweptPosition:
+    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int,
+    common: SharedPosition | None = None,
+) -> SweptPosition:  # fmt: skip
     try:
-        return _position(model, frictions, state, angle, span)
+        return _position(model, frictions, state, angle, span, common)
     except NotConverged as failure:
         last = next((m.stand.angle for m in state.memories if m is not None), angle - span)
         if halvings == 0:
@@ -97,12 +101,15 @@ def _advance(
 
 
 def _position(
-    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float
-) -> SweptPosition:
+    model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
+    common: SharedPosition | None,
+) -> SweptPosition:  # fmt: skip
     begin = time.perf_counter()
-    shared = shared_position(model, angle, state.extra, frictions, state.footprint)
+    shared = common
+    if shared is None:
+        shared = shared_position(model, angle, state.extra, frictions, state.footprint)
     pasts, span = _pasts(model, shared, frictions, state, span)
-    common = time.perf_counter() - begin
+    spent = time.perf_counter() - begin
     results: list[PositionResult] = []
     memories: list[Memory | None] = []
     solved: list[Solved] = []
@@ -111,7 +118,7 @@ def _position(
         result, found = solve_position(model, shared, μ, past, span, solved)
         solved.append(found)
         memories.append(remembered(model, shared.contact, found.state) if past is not None else None)
-        seconds = common / len(frictions) + time.perf_counter() - begin
+        seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
     return SweptPosition(angle, False, tuple(results), after)

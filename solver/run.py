@@ -19,12 +19,13 @@ from solver.archive import Archive
 from solver.companion import Companion, companion_of
 from solver.error_bars import with_errors
 from solver.fields import write_fields
-from solver.gear_model import GearModel, Preparation, prepare_model
+from solver.gear_model import Preparation, prepare_model
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
-from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch, uniform_pitch
-from solver.parallel import on_first, together
+from solver.gear_sweep import Pitch, SweptPosition, initial_state, uniform_pitch
+from solver.parallel import on_first
 from solver.progress import Progress
+from solver.rank_sweep import sweep_on_ranks
 from solver.results import MeshFacts, RunFacts, Timings, write_tables, write_text
 from solver.run_data import RunData, run_data
 from solver.run_start import Meshes, Start, kept_start, logged, open_archive, same_meshes
@@ -119,12 +120,12 @@ def _solved(
     """Condenses the gears and solves the positions of some friction coefficients, each certified."""
     preparation = prepare_model(scene, comm)
     ready(preparation)
-    pitch, state = pitch_of(scene), start.state
-    for k in range(start.complete, len(pitch.angles)):
-        position = position_on_ranks(preparation.model, pitch, scene.contact.friction[group], state, k, comm)
+    frictions = scene.contact.friction[group]
+    for position in sweep_on_ranks(
+        preparation.model, pitch_of(scene), frictions, start.state, comm, start.complete
+    ):
         certify(position)
         yield position
-        state = position.state
 
 
 def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
@@ -199,22 +200,6 @@ def _cells_across(data: RunData) -> float:
 def pitch_of(scene: Scene) -> Pitch:
     """The pinion rotations that a scene asks for."""
     return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene), pitches(scene))
-
-
-def position_on_ranks(
-    model: GearModel, pitch: Pitch, frictions: tuple[float, ...], state: SweepState, k: int, comm: MPI.Comm
-) -> SweptPosition:
-    """Position k of the pitch at all friction coefficients, of which i is computed by rank i modulo the ranks."""
-    own = range(comm.rank, len(frictions), comm.size)
-
-    def part() -> SweptPosition | None:
-        mine = replace(state, memories=tuple(state.memories[i] for i in own))
-        return next(sweep_pitch(model, pitch, [frictions[i] for i in own], mine, k)) if own else None
-
-    parts: list[SweptPosition] = comm.allgather(together(comm, part))
-    results = tuple(parts[i % comm.size].results[i // comm.size] for i in range(len(frictions)))
-    memories = tuple(parts[i % comm.size].state.memories[i // comm.size] for i in range(len(frictions)))
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
 
 
 def certify(position: SweptPosition) -> None:

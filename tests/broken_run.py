@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from solver import archive, gear_model, gear_sweep, run
+from solver import archive, gear_model, gear_sweep, rank_sweep, run
 from solver.cli import main
 from solver.equilibrium import CondensedSystem
 from solver.gear_contact import GearContact
@@ -107,9 +107,9 @@ def break_it(how: str) -> None:
     elif kind == "full":
         before_call(archive.os, "fsync", disk_full(int(numbers[0])))
     elif kind == "raise":
-        before_call(gear_sweep, "shared_position", failing_rank(int(numbers[0]), int(numbers[1])))
+        before_call(rank_sweep._Crew, "_work", failing_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "killrank":
-        before_call(gear_sweep, "shared_position", killed_rank(int(numbers[0]), int(numbers[1])))
+        before_call(rank_sweep._Crew, "_work", killed_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":
@@ -123,7 +123,8 @@ if __name__ == "__main__":
     condensed, searched = [], []
     if how == "count":
         before_call(gear_model, "condensed_gear", condensed.append)
-        before_call(gear_sweep, "shared_position", searched.append)
+        for module in (gear_sweep, rank_sweep):
+            before_call(module, "shared_position", searched.append)
     break_it(how)
     status = main(["run", *sys.argv[2:]])
     if how == "count":

@@ -25,7 +25,8 @@ from solver.body import Body, Fixed, assemble
 from solver.condense import Factor
 from solver.gear_model import prepare_model
 from solver.gear_sweep import SweptPosition, initial_state
-from solver.run import peak_memory_MB, pitch_of, position_on_ranks
+from solver.rank_sweep import sweep_on_ranks
+from solver.run import peak_memory_MB, pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 
@@ -66,13 +67,13 @@ def measured(own: Scene) -> PitchFacts:
     comm, start = MPI.COMM_WORLD, time.process_time()
     preparation = prepare_model(own, comm)
     pitch, state = pitch_of(own), initial_state(own.contact.friction)
-    seconds, swept = [], []
-    for k in range(len(pitch.angles)):
-        begin = time.perf_counter()
-        found: SweptPosition = position_on_ranks(preparation.model, pitch, own.contact.friction, state, k, comm)
-        state = found.state
+    seconds: list[float] = []
+    swept: list[SweptPosition] = []
+    begin = time.perf_counter()
+    for found in sweep_on_ranks(preparation.model, pitch, own.contact.friction, state, comm):
         seconds.append(time.perf_counter() - begin)
         swept.append(found)
+        begin = time.perf_counter()
     meshes = [body.mesh for body in preparation.model.bodies]
     assemble_share = preparation.assemble_seconds / (preparation.assemble_seconds + preparation.condense_seconds)
     return PitchFacts(

@@ -7,8 +7,8 @@ by R v_{s+1}, and
 
     y_s = C f_s + T [v_s; v_{s+1}],   A v = Σ_s E_sᵀ Tᵀ f_s,
 
-so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from the flank): T = U B with U orthonormal and of
-fewer columns, and what a pair of teeth needs of all the rest is one small matrix B G_st Bᵀ.
+so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from the flank), and what a pair of teeth needs of
+all the rest is one small matrix between a few modes (`coupling`).
 
 The ring is closed by default. A few teeth with free outer cuts are a wedge that is held at a narrow bore and leans
 over. Error of the deflection of two or three touching teeth under a tangential load, against the closed ring:
@@ -20,7 +20,7 @@ over. Error of the deflection of two or three touching teeth under a tangential 
     helical, 60 × 2.1 mm, bore 60         860 %   370 %   200 %
 
 Measured for the 17-tooth sector of demos/yang2022.toml at level quick (118,080 rows, 6,765 functionals, 2 × 1,230 cut
-dofs; one thread): condensed in 37 s with 2.7 GB at the peak, ring 6 s with tolerance 1e-10.
+dofs; one thread): condensed in 37 s with 2.7 GB at the peak, ring 2 s with tolerance 1e-10.
 """
 
 from __future__ import annotations
@@ -30,10 +30,12 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from solver.condense import SectorCondensation
-from solver.interfaces import Interfaces, OpenChain, Ring, compressed
+from solver.coupling import coupling
+from solver.interfaces import Interfaces, OpenChain, Ring
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -79,7 +81,7 @@ class ChainSettings:
     `first` is the number of the lowest tooth (tooth s is tooth 0 turned by +s pitches), `count` how many there are.
     `ends`: "closed" joins all 2π/`pitch` sectors of the gear, whatever `count`; "free" and "clamped" model only the
     `count` sectors, and leave the two outermost cut faces free or hold them.
-    `tolerance` is the relative error (Frobenius) of the compressed transfer T: 1e-13 is rounding.
+    `tolerance` is the relative error (Frobenius) of the coupling T G Tᵀ: 1e-13 is rounding.
     """
 
     pitch: float
@@ -107,26 +109,22 @@ class ChainedCompliance:
         self.node_count = _node_count(sector.compliance, settings.dimension)
         self.teeth = range(settings.first, settings.first + settings.count)
         self._pitch = settings.pitch
-        self._sector = sector.compliance
-        turned = _with_turned_high_face(sector, settings.pitch, settings.dimension)
-        self._basis, self._reduced = compressed(turned.transfer, settings.tolerance)
-        self._interfaces = _joined(turned.stiffness, self._reduced, settings)
-        # what goes in and out through the interfaces is smoother than what one of them can do: a quarter of the columns
-        modes, _ = compressed(self._interfaces.couplings(), settings.tolerance, step=16)
-        self._smooth = self._basis @ modes
-        places = range(settings.count)
-        self._couplings = {(i, j): modes.T @ self._interfaces.coupling(i, j) @ modes for i in places for j in places}
+        self._settings = settings
+        self._sector = sector
+        self._frames = _frames_of_faces(len(sector.stiffness), settings)
+        self._coupling = coupling(sector, self._frames, self._joined, settings.tolerance)
+        self._modes = self._coupling.modes
 
     def block(self, parts: Sequence[Part]) -> Floats:
         """See `Compliance.block`. The maps see the few modes in which teeth feel each other, and whole compliances of
         their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
-        modes = [part.map(self._turned(part.tooth, self._smooth[_dofs(part.nodes, self.dimension)])) for part in parts]
+        modes = [part.map(self._turned(part.tooth, self._modes[_dofs(part.nodes, self.dimension)])) for part in parts]
         ends = np.cumsum([0] + [len(mode) for mode in modes])
         result = np.empty((ends[-1], ends[-1]))
         for i, (part, mode) in enumerate(zip(parts, modes)):
             for j in range(i, len(parts)):
-                block = mode @ self._coupling(part.tooth, parts[j].tooth) @ modes[j].T
+                block = mode @ self._between(part.tooth, parts[j].tooth) @ modes[j].T
                 if j == i:
                     block += part.map(part.map(self._turned_sector(part)).T)
                 result[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
@@ -139,26 +137,30 @@ class ChainedCompliance:
         result = np.empty((*forces.shape[:-2], len(rows_out), self.dimension))
         for tooth, (places, nodes) in self._groups(rows_out).items():
             dofs = _dofs(nodes, self.dimension)
-            modes = sum(amplitude @ self._coupling(other, tooth) for other, (_, _, amplitude) in loaded.items())
-            local = modes @ self._smooth[dofs].T
+            modes = sum(amplitude @ self._between(other, tooth) for other, (_, _, amplitude) in loaded.items())
+            local = modes @ self._modes[dofs].T
             if tooth in loaded:
                 sources, values, _ = loaded[tooth]
-                local += values @ self._sector[np.ix_(sources, dofs)]  # C is symmetric
+                local += values @ self._sector.compliance[np.ix_(sources, dofs)]  # C is symmetric
             result[..., places, :] = local.reshape(*local.shape[:-1], -1, self.dimension) @ self._turn(tooth).T
         return result
 
     def cut_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
-        """Displacements (2c: low, high face; sector's own frame) of each tooth's cut faces, for `SectorRecovery`."""
-        loaded = self._loads(rows_in, forces)
+        """Displacements (2c: low, high face; sector's own frame; mm) of each tooth's cut faces under `forces`
+        (k_in, d; N), or (n, 2c) under (n, k_in, d), for `SectorRecovery`. Exact, whatever the tolerance."""
         sources = {
-            self._place(tooth): self._reduced.T @ (self._basis[dofs].T @ values)
-            for tooth, (dofs, values, _) in loaded.items()
+            self._place(tooth): self._frames.T @ (values @ self._sector.transfer[dofs]).T
+            for tooth, (dofs, values, _) in self._loads(rows_in, forces).items()
         }
-        low_faces = self._interfaces.displacements(sources)
-        turn = _turn_by(self._pitch, self.dimension)
-        highs = [(face.reshape(-1, self.dimension) @ turn.T).ravel() for face in low_faces[1:]]
+        low_faces = self._joined(self._frames.T @ self._sector.stiffness @ self._frames).displacements(sources)
         # a closed ring has more sectors than the named teeth
-        return {tooth: np.concatenate([low_faces[i], highs[i]]) for i, tooth in enumerate(self.teeth)}
+        return {tooth: (self._frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
+
+    def _joined(self, stiffness: Floats) -> Interfaces:
+        settings = self._settings
+        if settings.ends == "closed":
+            return Ring(stiffness, round(2 * np.pi / settings.pitch), settings.count)
+        return OpenChain(stiffness, settings.count, settings.ends == "clamped")
 
     def _loads(self, rows: Ints, forces: Floats) -> dict[int, tuple[Ints, Floats, Floats]]:
         """Tooth -> dofs, forces in the sector's frame, amplitudes of the modes."""
@@ -167,7 +169,7 @@ class ChainedCompliance:
             dofs = _dofs(nodes, self.dimension)
             values = forces[..., places, :] @ self._turn(tooth)
             values = values.reshape(*values.shape[:-2], -1)
-            loaded[tooth] = (dofs, values, values @ self._smooth[dofs])
+            loaded[tooth] = (dofs, values, values @ self._modes[dofs])
         return loaded
 
     def _groups(self, rows: Ints) -> dict[int, tuple[Ints, Ints]]:
@@ -190,8 +192,8 @@ class ChainedCompliance:
     def _place(self, tooth: int) -> int:
         return tooth - self.teeth.start
 
-    def _coupling(self, tooth: int, other: int) -> Floats:
-        return self._couplings[self._place(tooth), self._place(other)]
+    def _between(self, tooth: int, other: int) -> Floats:
+        return self._coupling.between(self._place(tooth), self._place(other))
 
     def _turn(self, tooth: int) -> Floats:
         return _turn_by(tooth * self._pitch, self.dimension)
@@ -201,26 +203,15 @@ class ChainedCompliance:
 
     def _turned_sector(self, part: Part) -> Floats:
         dofs = _dofs(part.nodes, self.dimension)
-        local = self._sector[np.ix_(dofs, dofs)]
+        local = self._sector.compliance[np.ix_(dofs, dofs)]
         return self._turned(part.tooth, self._turned(part.tooth, local).T)
 
 
-def _joined(stiffness: Floats, reduced: Floats, settings: ChainSettings) -> Interfaces:
-    if settings.ends == "closed":
-        return Ring(stiffness, reduced, round(2 * np.pi / settings.pitch), settings.count)
-    return OpenChain(stiffness, reduced, settings.count, settings.ends == "clamped")
-
-
-def _with_turned_high_face(sector: SectorCondensation, pitch: float, dimension: int) -> SectorCondensation:
-    """The same sector, its high face in the frame of the next sector (copies of S and T, C shared)."""
-    faces = len(sector.stiffness)
-    turn = _turn_by(pitch, dimension).T
-    high = slice(faces // 2, None)
-    transfer, stiffness = sector.transfer.copy(), sector.stiffness.copy()
-    transfer[:, high] = _turn_rows(turn, transfer[:, high].T).T
-    stiffness[:, high] = _turn_rows(turn, stiffness[:, high].T).T
-    stiffness[high] = _turn_rows(turn, stiffness[high])
-    return SectorCondensation(stiffness, transfer, sector.compliance)
+def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
+    """From face displacements (2c = `size`: low; high in the frame of the next sector) to those in the own frame."""
+    turn = _turn_by(settings.pitch, settings.dimension)
+    low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), turn)
+    return sp.csr_array(sp.block_diag([low, high]))
 
 
 def _turn_by(angle: float, dimension: int) -> Floats:

@@ -9,7 +9,6 @@ from q1_elasticity import Ring, ring
 
 from solver.chain import ChainedCompliance, ChainSettings, Part
 from solver.condense import Factor, SectorCondensation, SectorRecovery, SectorSystem, compliance
-from solver.interfaces import compressed
 
 PITCH = 2 * np.pi / 17
 SHAPES = {"2D": (4, 6), "3D": (3, 4, 3)}
@@ -162,6 +161,18 @@ def test_cut_faces_of_a_closed_ring(sectors: int) -> None:
         assert np.abs(cut - wanted.ravel()).max() < 1e-12 * np.abs(field).max()
 
 
+@pytest.mark.parametrize("ends", ["closed", "free"])
+def test_cut_faces_under_several_loads(ends: str) -> None:
+    """Two loads at once on the same rows move the cut faces as each of them alone."""
+    pitch = 2 * np.pi / 7
+    gear = ChainedCompliance(sector_of("2D", pitch), ChainSettings(pitch, 4, -2, dimension=2, ends=ends))
+    rows, forces = np.array([(-2, 1), (1, 3)]), np.random.default_rng(4).normal(size=(3, 2, 2))
+    together = gear.cut_displacements(rows, forces)
+    for i, load in enumerate(forces):
+        for tooth, cut in gear.cut_displacements(rows, load).items():
+            np.testing.assert_allclose(together[tooth][i], cut, rtol=0, atol=1e-13 * np.abs(cut).max())
+
+
 def test_window_of_a_ring() -> None:
     """Naming three of the seven teeth gives the same compliance as naming all: the others are still there."""
     pitch = 2 * np.pi / 7
@@ -209,17 +220,6 @@ def test_one_tooth_is_a_free_sector() -> None:
     third = ChainedCompliance(sector, ChainSettings(PITCH, 1, 3, dimension=2, ends="free"))
     there = rows + np.array([3, 0])
     np.testing.assert_allclose(third.apply(there, forces @ turn.T, there[:2]), moved @ turn.T, rtol=1e-11)
-
-
-def test_compression_error() -> None:
-    """A matrix with singular values 10^-k is met to the asked tolerance with few columns, U orthonormal."""
-    random = np.random.default_rng(0)
-    left, right = (np.linalg.qr(random.normal(size=(n, 60)))[0] for n in (200, 150))
-    matrix = left * 10.0 ** -np.arange(60) @ right.T
-    basis, reduced = compressed(matrix.copy(), 1e-6, step=4)
-    assert basis.shape[1] <= 12
-    assert np.linalg.norm(basis @ reduced - matrix) < 1e-6 * np.linalg.norm(matrix)
-    np.testing.assert_allclose(basis.T @ basis, np.eye(basis.shape[1]), atol=1e-13)
 
 
 def test_unknown_rows_are_refused() -> None:

@@ -89,9 +89,8 @@ class Start:
 def normal_part(system: CondensedSystem) -> CondensedSystem:
     """The frictionless system: normal components only."""
     k = system.k
-    return CondensedSystem(
-        system.operator, system.compliance[::k, ::k], system.motion[::k], system.jump[::k], system.load, system.lever
-    )
+    A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS takes no product with every third column
+    return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
 def frictionless(

@@ -6,7 +6,7 @@ Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 witho
     Hᵀ f = F                                         (balance of the free rigid motions)
 
 The bodies are eliminated exactly (A is their compliance), so this is the finite element system and not a model of it.
-The tangent is in solver/tangent.py.
+The tangent is in solver/tangent.py, its inverse in solver/newton_steps.py.
 """
 
 from __future__ import annotations
@@ -20,11 +20,15 @@ from meshes.data import Floats
 from solver import newton
 from solver.friction import Law, coulomb, starting_guess
 from solver.newton import NotConverged
+from solver.newton_steps import NewtonSteps
 from solver.nitsche import ContactOperator, LawOf
-from solver.tangent import Compliances, Tangent
+from solver.tangent import Tangent
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 60
+BEND = 30.0  # residual after an exact Newton step over the square of the one before (200 to 1000 were seen), with room
+ROUGH, FINEST = 1e-2, 1e-7  # accuracies of a step at most and at least asked for
+SPARE = 1e-2  # of the tolerance may be left of the last step's own residual
 PATIENCE = 10  # iterations that a start from a neighbouring solution is given
 
 
@@ -45,9 +49,9 @@ class CondensedSystem:
     lever: Floats
 
     @cached_property
-    def both_compliances(self) -> Compliances:
-        """A, which all friction coefficients may ask for in single precision: kept."""
-        return Compliances(self.compliance)
+    def steps(self) -> NewtonSteps:
+        """Newton steps of all friction coefficients, which share much."""
+        return NewtonSteps(self.compliance, self.motion / self.lever)
 
     @property
     def k(self) -> int:
@@ -89,9 +93,8 @@ class Start:
 def normal_part(system: CondensedSystem) -> CondensedSystem:
     """The frictionless system: normal components only."""
     k = system.k
-    return CondensedSystem(
-        system.operator, system.compliance[::k, ::k], system.motion[::k], system.jump[::k], system.load, system.lever
-    )
+    A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS takes no product with every third column
+    return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
 def frictionless(
@@ -186,11 +189,19 @@ class _Contact:
         return np.concatenate([contact.ravel(), balance])
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        return self.tangent(x).solve(right)
+        accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))
+        return self.system.steps.solve(self.tangent(x), right, accuracy)
 
     def tangent(self, x: Floats) -> Tangent:
-        system = self.system
-        return Tangent.of(system.operator, self.state(x)[2], system.both_compliances, system.motion / system.lever)
+        steps = self.system.steps
+        return Tangent.of(self.system.operator, self.state(x)[2], steps.A, steps.H)
+
+
+def _accuracy(residual: float, scale: float) -> float:
+    """To which share of the residual a Newton step's equations are solved: well below what the bend of the contact law
+    leaves anyway, and not further below the tolerance than results show."""
+    share = residual / scale if scale > 0.0 else 1.0
+    return max(min(BEND * share, ROUGH), SPARE * TOLERANCE / max(share, TOLERANCE), FINEST)
 
 
 def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:
@@ -201,7 +212,7 @@ def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats |
 
     problem = _Contact(system, law, slip)
     zero = np.zeros(problem.n * problem.k + problem.r)
-    return -problem.tangent(zero).solve(problem.residual(zero))
+    return -problem.solve(zero, problem.residual(zero))
 
 
 def _converged(problem: _Contact, start: Floats, stage: str, tolerance: float = TOLERANCE) -> Equilibrium:

@@ -7,7 +7,17 @@ import pytest
 
 from meshes.blocks import cylinder_2d, graded_box, graded_rectangle, sphere_quarter
 from solver.body import Body, Fixed, Freedom, Rigid
-from solver.equilibrium import Start, _assumed_contact, _Contact, frictional, frictionless, normal_part, stuck
+from solver.equilibrium import (
+    TOLERANCE,
+    Start,
+    _accuracy,
+    _assumed_contact,
+    _Contact,
+    frictional,
+    frictionless,
+    normal_part,
+    stuck,
+)
 from solver.friction import coulomb, starting_guess
 from solver.material import Material
 from solver.newton import NotConverged
@@ -48,7 +58,7 @@ def _position(problem: Problem) -> Position:
 @pytest.mark.parametrize("law", ["coulomb", "starting guess"])
 def test_tangent(make, law):
     """The residual's derivative [I + MA, −MH; Hᵀ, 0] against central differences, 1e-6 relative, near the solution with
-    open, stuck and sliding points; and `solve` is its inverse."""
+    open, stuck and sliding points; and a Newton step is its inverse, as accurate as asked for."""
     position = _position(make())
     system = position.system()
     start = stuck(system, position.slip(None))
@@ -69,8 +79,21 @@ def test_tangent(make, law):
         tangent = _tangent(problem, x)
         difference = (problem.residual(ahead) - problem.residual(behind)) / (2.0 * step)
         assert np.linalg.norm(tangent @ direction - difference) < 1e-6 * np.linalg.norm(difference)
-        assert np.linalg.norm(tangent @ problem.solve(x, difference) - difference) < 1e-10 * np.linalg.norm(difference)
+        for accuracy in (1e-3, 1e-10):
+            solved = system.steps.solve(problem.tangent(x), difference, accuracy)
+            assert np.linalg.norm(tangent @ solved - difference) < accuracy * np.linalg.norm(difference)
     assert compared >= 3
+
+
+def test_accuracy_of_a_step():
+    """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
+    leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
+    hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
+    for share in 10.0 ** np.arange(-9, 1):
+        left = _accuracy(share * 5e3, 5e3) * share
+        assert left <= max(0.2 * 200.0 * share**2, 1e-2 * TOLERANCE, 1e-7 * share) * (1.0 + 1e-9)
+        assert 1e-7 * share * (1.0 - 1e-9) <= left <= 1e-2 * share * (1.0 + 1e-9)
+    assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
 
 
 def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ from solver.body import Body, Fixed, Freedom, Rigid
 from solver.friction import coulomb
 from solver.full import FullContact
 from solver.material import Material
+from solver.nitsche import sandwiched
 from solver.problem import Contact, Nitsche, Position, Problem, Step, prepare
 from solver.surface import surface_of
 from solver.traction import nitsche_traction
@@ -183,6 +184,21 @@ def test_residual_and_tangent(merged, θ):
     λ, τ = np.vstack(seen)[:, 0], np.linalg.norm(np.vstack(seen)[:, 1:], axis=1)
     slides = τ > 0.999 * FRICTION * λ
     assert all(state.any() for state in (λ == 0.0, (λ > 0.0) & slides, (λ > 0.0) & ~slides)), "a state was not met"
+
+
+def test_sandwiched():
+    """Σ_q N_qi D_q N_qj for points of three facets, of two and of three nodes, one of them visited twice, against the
+    same sum in dense arrays, exact but for rounding; and no points at all: zero."""
+    rng = np.random.default_rng(1)
+    nodes = [[4, 1]] * 3 + [[1, 2, 0]] * 2 + [[0, 3]] * 4 + [[4, 1]]
+    values = [rng.normal(size=len(row)) for row in nodes]
+    ends = np.cumsum([0] + [len(row) for row in nodes])
+    N = sp.csr_matrix((np.concatenate(values), np.concatenate(nodes), ends), (len(nodes), 6))
+    for k in (1, 2, 3):
+        D = rng.normal(size=(len(nodes), k, k))
+        wanted = np.einsum("qi,qab,qj->iajb", N.toarray(), D, N.toarray()).reshape(6 * k, 6 * k)
+        assert np.abs(sandwiched(N, D).toarray() - wanted).max() < 1e-14 * np.abs(wanted).max()
+        assert sandwiched(N[:0], D[:0]).shape == wanted.shape and sandwiched(N[:0], D[:0]).nnz == 0
 
 
 def _unknowns(position: Position, size: int) -> np.ndarray:

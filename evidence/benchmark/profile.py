@@ -31,7 +31,7 @@ PARTS = (
     ("condensing: order of elimination", "separator.py", "planned"),
     ("condensing: leaves, by MUMPS", "mumps.py", "schur_complement"),
     ("condensing: adding updates up", "dissection.py", "add"),
-    ("condensing: separators, by LAPACK", "dissection.py", "eliminated"),
+    ("condensing: separators, by LAPACK", "dissection.py", "eliminate"),
     ("the ring of teeth", "chain.py", "__init__"),
     ("positions: search", "gear_contact.py", "gear_contact"),
     ("positions: compliance of the contact", "gear_contact.py", "system"),

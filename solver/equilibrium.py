@@ -11,6 +11,7 @@ The tangent is in solver/tangent.py, its inverse in solver/newton_steps.py.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -138,22 +139,29 @@ def frictional(
             root = None
         if root is not None and root.converged:
             return _equilibrium(law, root)
-    try:
-        return _converged(law, _guessed(system, friction, slip, heading, start), "Coulomb friction")
-    except NotConverged:
-        if not heading.any():
-            raise
-    return _converged(law, _guessed(system, friction, slip, np.zeros_like(heading), start), "Coulomb friction")
+    failure = NotConverged("Coulomb friction: no start")
+    for x in _starts(system, friction, slip, heading, start):
+        try:
+            return _converged(law, x, "Coulomb friction")
+        except NotConverged as error:
+            failure = error
+    raise failure
 
 
-def _guessed(
+def _starts(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
-) -> Floats:
-    """x after one iteration with the known directions of slip, all else stuck."""
+) -> Iterator[Floats]:
+    """Where to start from, the best x first. The state without friction is the last: where all is taken for stuck that
+    has slipped a hundred times what the flanks can follow (near the pitch point of a coarse sweep), tractions of a
+    hundred times the load tear them apart in the first iteration."""
     force = np.zeros((len(system.operator.nodes), system.k))
     force[:, : start.force.shape[1]] = start.force
-    guess = _Contact(system, lambda t: starting_guess(t, friction, heading), slip)
-    return newton.solve(guess, guess.join(force, start.motion), "first guess of slip", 1, TOLERANCE).x
+    headings = [heading, np.zeros_like(heading)] if heading.any() else [heading]
+    for known in headings:
+        guess = _Contact(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
+        x = guess.join(force, start.motion)
+        yield newton.solve(guess, x, "first guess of slip", 1, TOLERANCE).x
+    yield _Contact(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
 
 
 class _Contact:
@@ -187,6 +195,21 @@ class _Contact:
         contact = force - self.system.operator.forces(law.traction)
         balance = (self.system.motion.T @ force.ravel() - self.system.load) / self.system.lever
         return np.concatenate([contact.ravel(), balance])
+
+    def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
+        """See `newton.Nonlinear.work`. With the bodies under nodal forces f, whatever these are, the energy
+        ½fᵀAf + ∫(contact) − Fᵀδ has the slopes A(f − F(J)) and Hᵀ F(J) − load."""
+        system, (df, dδ) = self.system, self.split(step)
+        f, jump, _ = self.state(x)
+        change = jump - self.state(x - step)[1]  # kept: it is the next state where the step is taken whole
+        given = (system.motion @ dδ).reshape(change.shape) - change  # A df
+
+        def along(α: float) -> float:
+            contact = system.operator.forces(self.law(system.operator.trial(jump - α * change, self.slip)).traction)
+            moved = system.motion.T @ contact.ravel() - system.load
+            return -float(np.sum(given * (f - α * df - contact)) + dδ @ moved)
+
+        return along
 
     def solve(self, x: Floats, right: Floats) -> Floats:
         accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
@@ -59,6 +61,10 @@ class FullContact:
     def solve(self, x: Floats, right: Floats) -> Floats:
         """tangent⁻¹ right."""
         return spla.splu(self.tangent(x)).solve(right)
+
+    def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
+        """See `newton.Nonlinear.work`: the residual is the energy's gradient itself."""
+        return lambda α: -float(step @ self.residual(x - α * step))
 
     def scale(self, x: Floats) -> float:
         """The contact force [N]."""

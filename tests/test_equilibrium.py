@@ -96,6 +96,33 @@ def test_accuracy_of_a_step():
     assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
 
 
+@pytest.mark.parametrize("make", [cylinder, ball])
+def test_work_is_the_slope_of_the_energy(make):
+    """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
+    relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
+    and Newton's step begins with a negative one."""
+    system = normal_part(_position(make()).system())
+    problem = _Contact(system, lambda t: coulomb(t, 0.0))
+    solution = frictionless(system)
+    op = system.operator
+
+    def energy(x: np.ndarray) -> float:
+        force, motion = problem.split(x)
+        f = force.ravel()
+        p = np.maximum(op.trial(system.jumps(force, motion))[:, 0], 0.0)
+        return 0.5 * f @ system.compliance @ f + 0.5 * op.weights @ (p**2 / op.stabiliser[:, 0]) - system.load @ motion
+
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        x = problem.join(solution.force * (1.0 + 0.3 * rng.normal(size=(problem.n, 1))), 1.2 * solution.motion)
+        step = problem.solve(x, problem.residual(x))
+        work, h = problem.work(x, step), 1e-5
+        slopes = [work(α) for α in (0.0, 0.3, 1.0)]
+        differences = [(energy(x - (α + h) * step) - energy(x - (α - h) * step)) / (2.0 * h) for α in (0.0, 0.3, 1.0)]
+        assert np.abs(np.subtract(slopes, differences)).max() < 1e-6 * np.abs(slopes).max()
+        assert slopes[0] < 0.0 and np.all(np.diff(slopes) >= 0.0)
+
+
 def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:
     M = problem.system.operator.tangent(problem.state(x)[2])
     H = problem.system.motion / problem.system.lever

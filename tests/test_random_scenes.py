@@ -18,10 +18,13 @@ from solver.scene import SceneError, scene_from_text
 PLANE, SOLID = range(40, 58), range(1, 5)
 CYCLED = (6, 75, 84)
 """Plane seeds with friction on which SNES' l2 line search, without the cut of steps that cycle, did not converge."""
+HARD = (102, 450)
+"""102: μ = 0.73 and moduli as 200 to 1, on which lengths of steps chosen by the residual cycled. 450: near the pitch
+point, slip of a hundred times the flanks' displacements, which taken for stuck at first tears them apart."""
 
 
-@pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID)])
-def test_random_scenes_converge(plane: bool, seeds: range | tuple[int, ...]) -> None:
+@pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID), (None, HARD)])
+def test_random_scenes_converge(plane: bool | None, seeds: range | tuple[int, ...]) -> None:
     """Every scene converges and balances its energy over the pitch; none crashes, hangs, or is refused."""
     outcomes = [outcome_of(random_scene(seed, plane), seed) for seed in seeds]
     wrong = [o for o in outcomes if o.verdict is not Verdict.CONVERGED]

@@ -13,12 +13,14 @@ served by one more row Lᵀ of P: its column of C is then the response P K⁻¹ 
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from solver.cores import Threads
 from solver.dissection import STANDARD, DissectionSettings, Planned
 from solver.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky
 
@@ -130,9 +132,9 @@ class SectorSystem:
         planned = _planned(stiffness, functionals, interior, cut, corner, settings, graph)
         return SectorSystem(planned, len(cut), functionals.shape[0])
 
-    def condensed(self) -> SectorCondensation:
+    def condensed(self, threads: Threads = nullcontext) -> SectorCondensation:
         """Onto the cut faces and the functionals. Raises NotPositiveDefinite and OutOfMemory."""
-        schur = self.matrix.schur_complement()
+        schur = self.matrix.schur_complement(threads)
         faces, surface = slice(0, self.cut), slice(self.cut, None)
         return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), -schur[surface, surface])
 

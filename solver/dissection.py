@@ -10,6 +10,7 @@ Source: George 1973, doi 10.1137/0710032 (nested dissection); the separators are
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ from scipy.linalg.blas import dtrsm
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver import mumps
+from solver.cores import Threads
 from solver.memory import Stack, return_free_memory, untouched_square
 from solver.separator import Part, planned
 from solver.triangle import Triangle
@@ -76,13 +78,16 @@ class Planned:
         corner.sum_duplicates()
         return Planned(_reordered(rows, order), corner, whole, settings.factor)
 
-    def schur_complement(self) -> Floats:
-        """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order). Raises NotPositiveDefinite and OutOfMemory."""
+    def schur_complement(self, threads: Threads = nullcontext) -> Floats:
+        """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order). threads: in which separators are eliminated. Raises
+        NotPositiveDefinite and OutOfMemory."""
         return_free_memory()
         (count, columns), corner = self.rows.shape, self.corner
         result = untouched_square(columns - count)  # half of it stays so until the end
         retained = np.arange(count, columns)
-        _Elimination(self.rows, self.factor, Stack()).subtract(self.whole, retained, Triangle.within(result))
+        elimination = _Elimination(self.rows, self.factor, Stack(), threads)
+        elimination.subtract(self.whole, retained, Triangle.within(result))
+        del elimination  # with its stack
         return_free_memory()
         result[corner.row, corner.col] += corner.data
         mumps.fill_symmetric(result)
@@ -99,11 +104,13 @@ def _reordered(matrix: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
 
 @dataclass(frozen=True)
 class _Elimination:
-    """The rows to eliminate in the order of the plan (n × n + m), how leaves are factored, and where the fronts are."""
+    """The rows to eliminate in the order of the plan (n × n + m), how leaves are factored, where the fronts are, and
+    in what they are eliminated."""
 
     matrix: sp.csr_matrix
     factor: mumps.FactorSettings
     stack: Stack
+    threads: Threads
 
     def subtract(self, part: Part, outer: Ints, oo: Triangle) -> None:
         """oo −= A_oi A_ii⁻¹ A_io of a part's rows i and `outer` rows of A."""
@@ -111,7 +118,8 @@ class _Elimination:
             front = _Front.of(self.matrix, slice(part.separator, part.end), outer, oo, self.stack)
             for inner in (part,) if part.is_leaf else part.parts:
                 self._absorb(front, inner)
-            front.eliminate()
+            with self.threads():
+                front.eliminate()
 
     def _absorb(self, front: _Front, inner: Part) -> None:
         """Eliminates a part within a front."""

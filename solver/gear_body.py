@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from meshes.parameters import GearParameters
 from solver.body import Body, Fixed, assemble
 from solver.chain import ChainedCompliance, ChainSettings, Compliance
 from solver.condense import SectorCondensation, SectorSystem
+from solver.cores import Threads
 from solver.kinematics import turn
 from solver.material import Material
 from solver.surface import Surface, surface_of
@@ -79,9 +81,10 @@ def condensed_gear(
     carries_pressure: bool,
     safety: float = SAFETY,
     whole: bool = False,
+    threads: Threads = nullcontext,
 ) -> GearBody:
     """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch;
-    whole: assemble and condense all sectors instead.
+    whole: assemble and condense all sectors instead; threads: in which the largest products run.
 
     The bore is held in the gear's frame.
     """
@@ -97,7 +100,7 @@ def condensed_gear(
         body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
         system = _sector_system(body, flank, traction, pitch)
     assembled = time.perf_counter()
-    condensed: SectorCondensation | Compliance = system.condensed()
+    condensed: SectorCondensation | Compliance = system.condensed(threads)
     del system  # gigabytes at the fine end
     if isinstance(condensed, SectorCondensation):
         settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)

@@ -7,6 +7,7 @@ be searched instead, to show that it changes nothing.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -15,6 +16,7 @@ import numpy as np
 
 from meshes.data import Floats, Ints
 from solver.chain import Part
+from solver.cores import Threads
 from solver.equilibrium import CondensedSystem
 from solver.gear_body import GearBody
 from solver.kinematics import Stand, spin
@@ -133,14 +135,17 @@ class GearContact:
         z = self.bodies[0].z[self.node]
         return self.stand.pair.roll_distance(self.stand.angle, self.tooth, z)
 
-    def system(self, loaded: int, torque: float, normal_only: bool = False) -> CondensedSystem:
+    def system(
+        self, loaded: int, torque: float, normal_only: bool = False, threads: Threads = nullcontext
+    ) -> CondensedSystem:
         """Condensed system with one free rotation: of gear `loaded`, under `torque` [N·mm; per mm of width in 2D].
 
-        normal_only: without friction only the normal components are condensed, a ninth of the work.
+        normal_only: without friction only the normal components are condensed, a ninth of the work. threads: in which
+        each gear's compliance is put together.
         """
         k = 1 if normal_only else self.d
         n = len(self.node) * k
-        A = sum(self._compliance(gear, k) for gear in (0, 1))
+        A = sum(self._compliance(gear, k, threads) for gear in (0, 1))
         motion = self.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
         return CondensedSystem(self.operator, np.asarray(A), motion, np.zeros(n), np.array([torque]), lever)
@@ -168,11 +173,12 @@ class GearContact:
         maps = self.jump_maps(gear, contact_forces.shape[1])
         return np.concatenate([-E.forces(f) for E, f in zip(maps, parts)])
 
-    def _compliance(self, gear: int, k: int) -> Floats:
+    def _compliance(self, gear: int, k: int, threads: Threads) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
         body, maps = self.bodies[gear], self.jump_maps(gear, k)
         parts = [Part(body.sign * t.tooth, t.touched(gear), E.jumps) for t, E in zip(self.teeth, maps)]
-        return body.chain.block(parts)
+        with threads():
+            return body.chain.block(parts)
 
     @cached_property
     def at_edge(self) -> np.ndarray:

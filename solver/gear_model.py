@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from meshes.data import MeshData
 from meshes.parameters import GearPair
+from solver.cores import Cores
 from solver.estimates import hertz_estimate
 from solver.gear_body import GearBody, condensed_gear
 from solver.parallel import shared, together
@@ -80,14 +81,16 @@ def prepare_model(
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [index for index in (0, 1) if index % comm.size == comm.rank]
     meshes = together(comm, lambda: {index: (mesh or gear_mesh)(scene, index) for index in own})
-    meshed = time.perf_counter()
+    meshed, cores = time.perf_counter(), Cores(comm)
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 
     def condensed(index: int) -> GearBody:
         gear, material, whole = pair.gears[index], scene.materials()[index], not skips(scene, "one-sector")
-        return condensed_gear(gear, meshes[index], material, teeth, 1 - 2 * index, index == 0, whole=whole)
+        return condensed_gear(
+            gear, meshes[index], material, teeth, 1 - 2 * index, index == 0, whole=whole, threads=cores.used
+        )
 
-    built = together(comm, lambda: {index: condensed(index) for index in own})
+    built = together(comm, lambda: {index: condensed(index) for index in own}, cores.lent)
     pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(

@@ -6,11 +6,13 @@ The search, the compliance and the frictionless solution are shared by all coeff
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshes.data import Floats, Ints
+from solver.cores import Threads
 from solver.equilibrium import TOLERANCE, CondensedSystem, Equilibrium, Start, frictional, frictionless, normal_part
 from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
@@ -124,8 +126,9 @@ class Solved:
 
 
 def shared_position(
-    model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: Footprint | None
-) -> SharedPosition:
+    model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: Footprint | None,
+    threads: Threads = nullcontext,
+) -> SharedPosition:  # fmt: skip
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     extra: predicted rotations beyond the nominal ones. frictions: the coefficients that are to come: without one that
@@ -142,7 +145,7 @@ def shared_position(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the load "
                 "may bend the teeth further than the search looks: lower the torque"
             )
-        system = contact.system(model.load.on, model.load.torque, normal_only)
+        system = contact.system(model.load.on, model.load.torque, normal_only, threads)
         smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before), tolerance)
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.too_deep:

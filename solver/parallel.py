@@ -15,12 +15,14 @@ import tempfile
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
 T = TypeVar("T")
+Context = AbstractContextManager[None]
 
 SMALL = 1 << 12  # [bytes] arrays below stay in the pickle
 CHUNK = 1 << 28  # [bytes] sent at once between nodes; MPI counts in 32-bit integers
@@ -36,8 +38,8 @@ def wait_for_all(comm: MPI.Comm) -> None:
         time.sleep(PATIENCE)
 
 
-def together(comm: MPI.Comm, work: Callable[[], T]) -> T:
-    """The result of this rank's own `work`. All ranks must call it.
+def together(comm: MPI.Comm, work: Callable[[], T], waiting: Callable[[], Context] = nullcontext) -> T:
+    """The result of this rank's own `work`. All ranks must call it. waiting: makes the context to wait for others in.
 
     Raises on every rank the exception of the lowest rank on which `work` failed, with a note of where.
     """
@@ -50,7 +52,8 @@ def together(comm: MPI.Comm, work: Callable[[], T]) -> T:
         trace = "".join(traceback.format_tb(error.__traceback__)).rstrip()
         error.add_note(f"on rank {comm.rank} of {comm.size}:\n{trace}")
         failure = _portable(error)
-    wait_for_all(comm)
+    with waiting():
+        wait_for_all(comm)
     for other in comm.allgather(failure):
         if other is not None:
             raise other
@@ -81,7 +84,7 @@ def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
     key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others
     node = comm.Split_type(MPI.COMM_TYPE_SHARED, key)
     leaders = comm.Split(0 if node.rank == 0 else MPI.UNDEFINED, key)
-    memory = _node_memory(comm, node, total)
+    memory = node_memory(comm, node, total)
     for start, part in zip(starts, parts):
         memory[start : start + part.nbytes] = part
     if node.rank == 0:
@@ -109,7 +112,7 @@ def _parts(value: object) -> list[memoryview]:
     return [memoryview(head), *arrays]
 
 
-def _node_memory(comm: MPI.Comm, node: MPI.Comm, size: int) -> memoryview:
+def node_memory(comm: MPI.Comm, node: MPI.Comm, size: int) -> memoryview:
     """`size` bytes that all ranks of each node see. Raises OSError on all ranks."""
     path = together(comm, lambda: _memory_file(size) if node.rank == 0 else "")
     path = node.bcast(path, root=0)

@@ -14,6 +14,7 @@ from itertools import pairwise
 
 from mpi4py import MPI
 
+from solver.cores import Cores
 from solver.gear_model import GearModel
 from solver.gear_position import SharedPosition, shared_position
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, sweep_pitch
@@ -30,7 +31,7 @@ def sweep_on_ranks(
     """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks."""
     if comm.size == 1:
         return sweep_pitch(model, pitch, frictions, state, begin)
-    return _Crew(model, pitch, frictions, comm).swept(state, begin)
+    return _Crew(model, pitch, frictions, comm, Cores(comm)).swept(state, begin)
 
 
 def division(count: int, ranks: int) -> list[slice]:
@@ -50,12 +51,13 @@ class _Crew:
     pitch: Pitch
     frictions: Sequence[float]
     comm: MPI.Comm
+    cores: Cores
 
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
-        common = self._handed_over(together(self.comm, partial(self._ahead, begin, state)))
+        common = self._handed_over(together(self.comm, partial(self._ahead, begin, state), self.cores.lent))
         for k in range(begin, len(self.pitch.angles)):
-            position, following = together(self.comm, partial(self._work, k, state, common))
+            position, following = together(self.comm, partial(self._work, k, state, common), self.cores.lent)
             parts = [part for part in self.comm.allgather(position) if part is not None]
             common = self._handed_over(following)
             memories = tuple(memory for part in parts for memory in part.state.memories)
@@ -81,8 +83,9 @@ class _Crew:
         """What all need of position k, on rank 0; None on others, at the end, and where it is not found."""
         if self.comm.rank > 0 or k == len(self.pitch.angles):
             return None
+        angle = self.pitch.angles[k]
         try:
-            return shared_position(self.model, self.pitch.angles[k], state.extra, self.frictions, state.footprint)
+            return shared_position(self.model, angle, state.extra, self.frictions, state.footprint, self.cores.used)
         except NotConverged:  # smaller steps may lead there
             return None
 

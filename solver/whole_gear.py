@@ -7,6 +7,7 @@ same to rounding.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from meshes.data import Floats, Ints, MeshData
 from solver.body import Body, Fixed, assemble
 from solver.chain import Part
 from solver.condense import compliance
+from solver.cores import Threads
 from solver.kinematics import turn
 from solver.material import Material
 from solver.surface import surface_of
@@ -88,9 +90,10 @@ class WholeSystem:
     teeth: range
     dimension: int
 
-    def condensed(self) -> WholeGear:
+    def condensed(self, threads: Threads = nullcontext) -> WholeGear:
         """Onto the flanks. Raises NotPositiveDefinite and OutOfMemory."""
-        dense = compliance(self.stiffness, self.functionals, self.free, graph=self.graph)
+        with threads():
+            dense = compliance(self.stiffness, self.functionals, self.free, graph=self.graph)
         return WholeGear(dense, self.dimension, self.teeth)
 
 

@@ -3,7 +3,7 @@
 MUMPS alone orders a Schur complement by minimum degree (Debian builds it without METIS, and PETSc passes no ordering
 on to its Cholesky), and holds three copies of the result. Here the domain is cut to pieces first, and the separators
 are eliminated by dense LAPACK. The 17-tooth sector of demos/yang2022.toml at quick, 118,080 rows with 9,225
-retained ones, takes 37 s (one thread): half of that in LAPACK, a fifth in MUMPS, a seventh in adding updates up.
+retained ones, takes 30 s (one thread): half of that in LAPACK, a fifth in MUMPS, a tenth in adding updates up.
 
 Source: George 1973, doi 10.1137/0710032 (nested dissection); the separators are METIS' (`separator`).
 """

@@ -19,8 +19,7 @@ over. Error of the deflection of two or three touching teeth under a tangential 
     helical, 17 × 2.1 mm, bore 20          24 %   7.6 %   2.8 %
     helical, 60 × 2.1 mm, bore 60         860 %   370 %   200 %
 
-Measured for the 17-tooth sector of demos/yang2022.toml at level quick (118,080 rows, 6,765 functionals, 2 × 1,230 cut
-dofs; one thread): condensed in 37 s with 2.7 GB at the peak, ring 2 s with tolerance 1e-10.
+What condensing and the ring cost is measured in docs/benchmark.md.
 """
 
 from __future__ import annotations

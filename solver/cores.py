@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 
 from mpi4py import MPI
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import threadpool_limits
 
 from solver.parallel import node_memory
 
@@ -27,7 +27,6 @@ class Cores:
         self._rank, self._size = node.rank, node.size
         self._waits = node_memory(comm, node, node.size) if node.size > 1 else memoryview(bytearray(1))
         node.Free()
-        self._libraries = ThreadpoolController()
 
     @property
     def count(self) -> int:
@@ -54,7 +53,7 @@ class Cores:
         own = os.sched_getaffinity(0)
         os.sched_setaffinity(0, range(os.cpu_count() or 1))  # mpirun ties each rank to one core
         try:
-            with self._libraries.limit(limits=count, user_api="blas"):
+            with threadpool_limits(limits=count, user_api="blas"):
                 yield
         finally:
             os.sched_setaffinity(0, own)

@@ -2,8 +2,7 @@
 
 MUMPS alone orders a Schur complement by minimum degree (Debian builds it without METIS, and PETSc passes no ordering
 on to its Cholesky), and holds three copies of the result. Here the domain is cut to pieces first, and the separators
-are eliminated by dense LAPACK. The 17-tooth sector of demos/yang2022.toml at quick, 118,080 rows with 9,225
-retained ones, takes 30 s (one thread): half of that in LAPACK, a fifth in MUMPS, a tenth in adding updates up.
+are eliminated by dense LAPACK. How long each part takes is measured in docs/benchmark.md.
 
 Source: George 1973, doi 10.1137/0710032 (nested dissection); the separators are METIS' (`separator`).
 """

@@ -102,10 +102,9 @@ def _advance(
 
 def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
-    common: SharedPosition | None,
+    shared: SharedPosition | None,
 ) -> SweptPosition:  # fmt: skip
     begin = time.perf_counter()
-    shared = common
     if shared is None:
         shared = shared_position(model, angle, state.extra, frictions, state.footprint)
     pasts, span = _pasts(model, shared, frictions, state, span)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from mpi4py import MPI
@@ -19,10 +19,10 @@ from meshes.data import MeshData
 from meshes.section import SectorResolution
 from solver.archive import Archive, gear_shape
 from solver.estimated_errors import kept_errors
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_position import PositionResult
-from solver.gear_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch
+from solver.gear_model import prepare_model
+from solver.gear_sweep import Pitch, initial_state
 from solver.parallel import on_first, together
+from solver.rank_sweep import sweep_on_ranks
 from solver.run_data import RunData, run_data
 from solver.scene import Scene
 from solver.sectors import gear_mesh
@@ -92,28 +92,13 @@ def companion_mesh(scene: Scene, index: int) -> MeshData:
 
 
 def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:
-    """A scene on meshes of one's own, nothing written: the run on rank 0. The ranks sweep without waiting for each
-    other, each its own friction coefficients. Raises NotConverged, MeshError, NotPositiveDefinite, OutOfMemory."""
-    model = prepare_model(scene, comm, mesh).model
-    frictions = scene.contact.friction
-    parts = comm.allgather(together(comm, lambda: _counted(model, pitch, frictions[comm.rank :: comm.size])))
+    """A scene on meshes of one's own, nothing written: the run on rank 0. Raises NotConverged, MeshError,
+    NotPositiveDefinite, OutOfMemory."""
+    model, frictions = prepare_model(scene, comm, mesh).model, scene.contact.friction
+    positions = list(sweep_on_ranks(model, pitch, frictions, initial_state(frictions), comm))
 
     def joined() -> RunData:
         shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]
-        swept = [_position(pitch, k, parts, len(frictions)) for k in range(pitch.warm_up, len(pitch.angles))]
-        return run_data(scene, (shapes[0], shapes[1]), swept)
+        return run_data(scene, (shapes[0], shapes[1]), [position for position in positions if not position.warm_up])
 
     return together(comm, lambda: joined() if comm.rank == 0 else None)
-
-
-def _counted(model: GearModel, pitch: Pitch, frictions: Sequence[float]) -> list[tuple[PositionResult, ...]]:
-    """The results of all positions at some of the friction coefficients, which may be none."""
-    if not frictions:
-        return []
-    return [position.results for position in sweep_pitch(model, pitch, frictions, initial_state(frictions))]
-
-
-def _position(pitch: Pitch, k: int, parts: Sequence[list[tuple[PositionResult, ...]]], count: int) -> SweptPosition:
-    """Position k at all friction coefficients, of which i was swept by rank i modulo the ranks."""
-    results = tuple(parts[i % len(parts)][k][i // len(parts)] for i in range(count))
-    return SweptPosition(pitch.angles[k], False, results, SweepState((0.0, 0.0), ()))

@@ -1,8 +1,8 @@
-"""A pitch of gear positions on several ranks: rank 0 works a position ahead, the others solve with friction.
+"""A pitch of gear positions on several ranks: two prepare a position each, then all solve friction.
 
-Search, compliance and the frictionless equilibrium of a position depend on the frictionless one before, not on what
-friction made of it. So rank 0 prepares position k + 1 while the others solve the friction coefficients of position k,
-of which it takes few itself, if any; all ranks read what it prepared from the same memory.
+Search, compliance and the frictionless equilibrium are most of a position and ask for nothing that friction made of the
+one before; `gear_sweep` lets two neighbours start from the same state. Friction follows position by position, the
+coefficients divided among the ranks, which read what was prepared from the same memory.
 """
 
 from __future__ import annotations
@@ -10,19 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
 
 from mpi4py import MPI
 
 from solver.cores import Cores
 from solver.gear_model import GearModel
 from solver.gear_position import SharedPosition, shared_position
-from solver.gear_sweep import Pitch, SweepState, SweptPosition, sweep_pitch
+from solver.gear_sweep import Pitch, SweepState, SweptPosition, alike, sweep_pitch
 from solver.newton import NotConverged
 from solver.parallel import shared, together
-
-AHEAD = 8
-"""What preparing a position costs in friction coefficients: 0.9 s to 0.11 s in a helical pair of 246,000 dofs."""
 
 
 def sweep_on_ranks(
@@ -36,11 +32,7 @@ def sweep_on_ranks(
 
 def division(count: int, ranks: int) -> list[slice]:
     """Which of `count` friction coefficients each rank solves: neighbours together, as one helps to solve the next."""
-    if ranks == 1:
-        return [slice(0, count)]
-    first = max(0, round((count + AHEAD) / ranks - AHEAD))
-    ends = [first + (count - first) * rank // (ranks - 1) for rank in range(ranks)]
-    return [slice(0, first), *(slice(a, b) for a, b in pairwise(ends))]
+    return [slice(count * rank // ranks, count * (rank + 1) // ranks) for rank in range(ranks)]
 
 
 @dataclass(frozen=True)
@@ -55,50 +47,53 @@ class _Crew:
 
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
-        common = self._handed_over(together(self.comm, partial(self._ahead, begin, state), self.cores.lent))
-        for k in range(begin, len(self.pitch.angles)):
-            position, following = together(self.comm, partial(self._work, k, state, common), self.cores.lent)
-            parts = [part for part in self.comm.allgather(position) if part is not None]
-            common = self._handed_over(following)
-            memories = tuple(memory for part in parts for memory in part.state.memories)
-            results = tuple(result for part in parts for result in part.results)
-            state = replace(parts[0].state, memories=memories)
-            yield replace(parts[0], results=results, state=state)
+        while begin < len(self.pitch.angles):
+            numbers = alike(begin, len(self.pitch.angles))
+            own = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
+            prepared = [self._handed_over(own, root) for root in range(len(numbers))]
+            for k, common in zip(numbers, prepared):
+                part = together(self.comm, partial(self._solved, k, state, common), self.cores.lent)
+                position = _joined([part for part in self.comm.allgather(part) if part is not None])
+                state = position.state
+                yield position
+            begin = numbers.stop
 
-    def _work(
-        self, k: int, state: SweepState, common: SharedPosition | None
-    ) -> tuple[SweptPosition | None, SharedPosition | None]:
-        """This rank's own friction coefficients of position k, None if it has none, and on rank 0 what all need of the
-        next one. common: what they need of this one, None if it was not found: then each rank goes there by itself."""
-        own, position, following = division(len(self.frictions), self.comm.size)[self.comm.rank], None, None
-        if self.frictions[own]:
-            mine = replace(state, memories=state.memories[own])
-            position = next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common))
-        if common is not None:
-            after = replace(state, extra=common.contact.stand.extra, footprint=common.footprint)
-            following = self._ahead(k + 1, after)
-        return position, following
-
-    def _ahead(self, k: int, state: SweepState) -> SharedPosition | None:
-        """What all need of position k, on rank 0; None on others, at the end, and where it is not found."""
-        if self.comm.rank > 0 or k == len(self.pitch.angles):
+    def _prepared(self, numbers: range, state: SweepState) -> SharedPosition | None:
+        """What all need of the position that this rank prepares; None if it has none, and where it is not found."""
+        if self.comm.rank >= len(numbers):
             return None
-        angle = self.pitch.angles[k]
+        angle = self.pitch.angles[numbers[self.comm.rank]]
         try:
             return shared_position(self.model, angle, state.extra, self.frictions, state.footprint, self.cores.used)
         except NotConverged:  # smaller steps may lead there
             return None
 
-    def _handed_over(self, prepared: SharedPosition | None) -> SharedPosition | None:
-        """Rank 0's on all ranks: the gears, which all have, stay where they are, the compliance is in one memory."""
+    def _solved(self, k: int, state: SweepState, common: SharedPosition | None) -> SweptPosition | None:
+        """This rank's own friction coefficients of position k, None if it has none. common: what they need of it, None
+        if it was not found: then each rank goes there by itself."""
+        own = division(len(self.frictions), self.comm.size)[self.comm.rank]
+        if not self.frictions[own]:
+            return None
+        mine = replace(state, memories=state.memories[own])
+        return next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common))
+
+    def _handed_over(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
+        """Rank `root`'s on all ranks: the gears, which all have, stay where they are, the compliance is shared."""
         bare, matrix = None, None
         if prepared is not None:
             contact = replace(prepared.contact, bodies=())
             matrix = prepared.system.compliance
             bare = replace(prepared, contact=contact, system=replace(prepared.system, compliance=matrix[:0]))
-        found = self.comm.bcast(bare)
-        compliance = shared(self.comm, matrix, 0)
+        found = self.comm.bcast(bare, root)
+        compliance = shared(self.comm, matrix, root)
         if found is None:
             return None
         system = replace(found.system, compliance=compliance)
         return replace(found, contact=replace(found.contact, bodies=self.model.bodies), system=system)
+
+
+def _joined(parts: list[SweptPosition]) -> SweptPosition:
+    """A position of which each part has some friction coefficients."""
+    memories = tuple(memory for part in parts for memory in part.state.memories)
+    results = tuple(result for part in parts for result in part.results)
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))

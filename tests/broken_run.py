@@ -107,9 +107,9 @@ def break_it(how: str) -> None:
     elif kind == "full":
         before_call(archive.os, "fsync", disk_full(int(numbers[0])))
     elif kind == "raise":
-        before_call(rank_sweep._Crew, "_work", failing_rank(int(numbers[0]), int(numbers[1])))
+        before_call(rank_sweep._Crew, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "killrank":
-        before_call(rank_sweep._Crew, "_work", killed_rank(int(numbers[0]), int(numbers[1])))
+        before_call(rank_sweep._Crew, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":

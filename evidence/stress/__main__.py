@@ -16,7 +16,7 @@ from evidence import report
 from evidence.claims import Claim
 from evidence.stress.campaign import campaign, solve_seeds, summary, write_outcomes
 from evidence.stress.faults import fault_claims
-from evidence.stress.independence import cylinder_claims, gear_claims, iteration_claims
+from evidence.stress.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
 from evidence.stress.matrix import SHEETS
 from evidence.stress.sheets import draw, write_csv
 from solver import compat
@@ -56,7 +56,7 @@ def scenes() -> list[str]:
 
 def independence() -> list[str]:
     """Claims on γ, θ and iterations."""
-    claims = [*gear_claims(), *cylinder_claims(), *iteration_claims()]
+    claims = [*gear_claims(), *theta_claims(), *cylinder_claims(), *iteration_claims()]
     return ["## Independence of γ and θ; iterations", _claimed(claims)]
 
 

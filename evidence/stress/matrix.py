@@ -2,7 +2,7 @@
 
 The nominal problem is a steel cylinder on a steel block, a/R = 0.01, friction 0.3, second-order quadrilaterals of a/4
 on meshes that do not match; its error is that of p0 against Hertz. Perturbed meshes are tested with the patch test,
-whose exact solution every mesh can represent, and the position step with He's spur pair.
+whose exact solution every mesh can represent, the position step with He's spur pair, and point contact in `ball`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from demos.hertz_cylinder import Profile
 from demos.two_blocks import FRICTION, Patch
+from evidence.stress.ball import ball
 from evidence.stress.distortion import distorted
 from evidence.stress.gear_steps import spur_pair_at_steps
 from evidence.stress.sheets import Cell, Sheet, sheet_of
@@ -171,7 +172,7 @@ def patch_cell(patch: Patch, target: float) -> Cell:
 
 
 SHEETS: tuple[Callable[[], Sheet], ...] = (
-    stabiliser, friction_and_load, mesh_ratio, incompressible, initial_gap, distortion, spur_pair_at_steps,
+    stabiliser, friction_and_load, mesh_ratio, incompressible, initial_gap, ball, distortion, spur_pair_at_steps,
 )  # fmt: skip
 
 

@@ -112,6 +112,10 @@ def _map(axis: Axes, sheet: Sheet, values: Floats, norm: Normalize, pattern: str
         dark = not np.isnan(value) and norm(value) > 0.65
         axis.text(j, i, text, ha="center", va="center", fontsize=7, color="white" if dark else "0.1")
     axis.set_xticks(range(len(sheet.columns)), sheet.columns, fontsize=8)
+    if max(map(len, sheet.columns)) > 6:  # words would run into one another
+        axis.tick_params(axis="x", labelrotation=35.0)
+        for label in axis.get_xticklabels():
+            label.set_horizontalalignment("right")
     axis.set_yticks(range(len(sheet.rows)), sheet.rows, fontsize=8)
     axis.set(xlabel=sheet.column_label, ylabel=sheet.row_label)
     axis.set_title(title, fontsize=9)

@@ -1,0 +1,107 @@
+"""Hertz' point contact in the matrix: a ball on a block, one setting at a time away from nominal, cells and orders.
+
+Nominal: steel, a/R = 0.06, friction 0.3, γ = 2 C, θ = 1, cells of a/4 in rings that end at Hertz' radius, the block's
+1.2 times finer; a quarter model. The error is that of p0 against Hertz, who has no friction and two half-spaces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evidence.benchmark.cases import near_axis, sweep_columns
+from evidence.stress.sheets import Cell, Sheet, sheet_of
+from meshes.data import MeshData
+from meshes.lattice import split_to_simplices
+from meshes.rings import ring_block, ring_sphere
+from solver import hertz
+from solver.body import Body, Fixed, Freedom, Rigid
+from solver.material import Material
+from solver.problem import Contact, Nitsche, Placement, Problem, Step, solve
+
+RADIUS, LOAD, SIDE, E = 8.0, 2000.0, 4.0, 210e3  # mm, N, mm, MPa
+KINDS = tuple((shape, order) for shape in ("hexahedron", "tetrahedron") for order in (2, 1))
+
+
+@dataclass(frozen=True)
+class Ball:
+    """The nominal problem and everything of it that varies. load: over nominal; ratio: element size of the block over
+    the ball's; gap [a²/2R]: that the ball stands above the block at first, negative: within it."""
+
+    shape: str = "hexahedron"
+    order: int = 2
+    friction: float = 0.3
+    load: float = 1.0
+    ratio: float = 1 / 1.2
+    nu: float = 0.3
+    safety: float = 2.0
+    theta: float = 1.0
+    gap: float = 0.0
+
+    @property
+    def hertz(self) -> hertz.PointContact:
+        """The answer."""
+        return hertz.point_contact(self.load * LOAD, RADIUS, hertz.contact_modulus(E, self.nu, E, self.nu))
+
+    def cell(self) -> Cell:
+        """Iterations, and the error of the fitted p0."""
+        raised = np.array([0.0, 0.0, self.gap * self.hertz.radius**2 / (2.0 * RADIUS)])
+        solution = solve(self.problem(), Step(placements=(Placement(np.eye(3), raised), Placement.at_rest(3))))
+        contact = solution.contacts[0]
+        radius = np.hypot(*contact.points[:, :2].T)
+        middle = radius < 0.7 * self.hertz.radius  # single points scatter more than the ellipse that fits them
+        peak = np.sqrt(np.polyfit(radius[middle] ** 2, contact.pressure[middle] ** 2, 1)[-1])
+        return Cell(solution.iterations, abs(float(peak) / self.hertz.peak_pressure - 1.0))
+
+    def problem(self) -> Problem:
+        """A quarter of ball and block; the ball's flat top moves as a rigid body under a quarter of the load."""
+        material, symmetry = Material(E, self.nu), (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
+        down = Rigid("top", (Freedom("z", load=-self.load * LOAD / 4.0),))
+        ball, block = self._meshes()
+        bodies = (
+            Body(ball, material, symmetry, rigid=down, name="ball"),
+            Body(block, material, (*symmetry, Fixed("bottom")), name="block"),
+        )
+        a = self.hertz.radius
+        reach = max(0.1 * a, abs(self.gap) * a**2 / RADIUS)
+        contact = Contact((1, "contact"), (0, "contact"), self.friction, reach)
+        return Problem(bodies, (contact,), Nitsche(self.safety, self.theta))
+
+    def _meshes(self) -> tuple[MeshData, MeshData]:
+        a = self.hertz.radius
+        size, fine, growth, depth = a / 4.0, 1.25 * a, 1.7, 0.25 * a
+        ball = ring_sphere(RADIUS, SIDE, SIDE, a, size, fine, self.order, growth, depth)
+        block = ring_block(SIDE, SIDE, a, size * self.ratio, fine, self.order, growth, depth)
+        if self.shape == "tetrahedron":
+            ball, block = (split_to_simplices(mesh, sweep_columns(mesh.points)) for mesh in (ball, block))
+        return near_axis(ball, "arc", 1.5 * a), near_axis(block, "top", 1.5 * a)
+
+
+SETTINGS: dict[str, Ball] = {
+    "nominal": Ball(),
+    "μ = 0": Ball(friction=0.0),
+    "μ = 1": Ball(friction=1.0),
+    "load 1e-3": Ball(load=1e-3),
+    "load 0.1": Ball(load=0.1),
+    "block's cells 1:2": Ball(ratio=0.5),
+    "block's cells 2:1": Ball(ratio=2.0),
+    "ν = 0.49": Ball(nu=0.49),
+    "γ = 1.25 C": Ball(safety=1.25),
+    "γ = 20 C": Ball(safety=20.0),
+    "θ = 0": Ball(theta=0.0),
+    "θ = −1": Ball(theta=-1.0),
+    "gap 3": Ball(gap=3.0),
+    "overlap 3": Ball(gap=-3.0),
+}
+
+
+def ball() -> Sheet:
+    """Cells and orders × settings."""
+    settings = list(SETTINGS.items())
+    return sheet_of(
+        ("ball", "A ball on a block (3D), one setting at a time", "error of p0 against Hertz"),
+        ("cells, order", [f"{shape}, {order}" for shape, order in KINDS]),
+        ("setting (gaps in a²/2R)", [name for name, _ in settings]),
+        lambda i, j: replace(settings[j][1], shape=KINDS[i][0], order=KINDS[i][1]).cell(),
+    )

@@ -19,6 +19,7 @@ from solver.chain import Part
 from solver.cores import Threads
 from solver.equilibrium import CondensedSystem
 from solver.gear_body import GearBody
+from solver.gear_normals import pressing_normals
 from solver.kinematics import Stand, spin
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.search import pair_surfaces
@@ -262,7 +263,8 @@ def _tooth_operator(
     if len(pairing.weight) == 0:
         return None
     frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T
-    return contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
+    operator = contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
+    return operator.pressing_along(pressing_normals(operator, pinion, second, stand, tooth))
 
 
 def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:

@@ -15,7 +15,7 @@ Renard 2017) with its flux recovered at the nodes (solver/traction.py).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -24,6 +24,7 @@ import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints
+from solver.frames import tangent_frames
 from solver.friction import Law
 from solver.lagrange import quadrature, tabulate
 from solver.search import Pairing
@@ -59,6 +60,12 @@ class ContactOperator:
     def d(self) -> int:
         """Space dimension."""
         return self.frames.shape[1]
+
+    def pressing_along(self, normals: Floats) -> ContactOperator:
+        """With the pressure along other unit normals (n, d), a few degrees from those of surface 1. The distance along
+        them from a surface 2 that they are normal to is g n·n_1; γ stays, which is off by the square of the angle."""
+        shorter = np.einsum("ja,ja->j", normals, self.frames[:, 0])
+        return replace(self, frames=tangent_frames(normals), gap=self.gap * (self.shape @ shorter))
 
     def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
         """Trial tractions (q, k) from local jumps (n, k), k = 1 (normal only) or d; slip (n, d−1) is added to J_t."""

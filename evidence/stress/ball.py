@@ -97,11 +97,11 @@ SETTINGS: dict[str, Ball] = {
 
 
 def ball() -> Sheet:
-    """Cells and orders × settings."""
+    """Settings × cells and orders."""
     settings = list(SETTINGS.items())
     return sheet_of(
         ("ball", "A ball on a block (3D), one setting at a time", "error of p0 against Hertz"),
-        ("cells, order", [f"{shape}, {order}" for shape, order in KINDS]),
         ("setting (gaps in a²/2R)", [name for name, _ in settings]),
-        lambda i, j: replace(settings[j][1], shape=KINDS[i][0], order=KINDS[i][1]).cell(),
+        ("cells, order", [f"{shape}, {order}" for shape, order in KINDS]),
+        lambda i, j: replace(settings[i][1], shape=KINDS[j][0], order=KINDS[j][1]).cell(),
     )

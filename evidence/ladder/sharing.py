@@ -29,7 +29,7 @@ PAPER = 13.824  # °, whole engagement, He et al. 2022
 @dataclass(frozen=True)
 class Shares:
     """One tooth pair's way through the mesh: roll [-] in base pitches from the pitch point, share of the load [-];
-    total: (positions,) sum of all tooth forces over the one that the torque asks for."""
+    total: (k,) sum of all tooth forces over the one that the torque asks for, at positions where no tip edge bears."""
 
     roll: Floats
     share: Floats
@@ -49,7 +49,8 @@ def shares(model: GearModel) -> Shares:
         c = position.results[0].contact
         forces = {int(t): float(np.sum((c.pressure * c.weights)[c.tooth == t])) for t in np.unique(c.tooth)}
         total = sum(forces.values())
-        totals.append(total / wanted)
+        if not c.edge.any():
+            totals.append(total / wanted)
         rows += [(position.angle * pair.pinion.z / (2.0 * np.pi) + t, f / total) for t, f in forces.items()]
     roll, share = np.array(sorted(rows)).T
     return Shares(roll, share, np.array(totals))
@@ -136,8 +137,9 @@ def _claims(pair: GearPair, found: Shares, angles: tuple[float, float]) -> list[
                        "He et al. 2022, finite elements; their bore is not printed"),
         Claim.relative("engagement of a tooth, 0.17 N·m [°]", light, float(rigid), 0.01, Reference.ANALYTICAL,
                        "ε_α 360°/z_1 of rigid teeth"),
-        Claim.bound("sum of tooth forces over T_1/r_b1, off by", float(np.abs(found.total - 1.0).max()), 2e-4,
-                    Reference.ANALYTICAL, "involute normals are tangents of the base circle"),
+        Claim.bound("sum of tooth forces over T_1/r_b1 away from tip edges, off by",
+                    float(np.abs(found.total - 1.0).max()), 2e-4, Reference.ANALYTICAL,
+                    "involute normals are tangents of the base circle"),
         Claim.bound("share of a pair that is alone, off by", float(np.abs(found.share[alone] - 1.0).max()), 1e-12,
                     Reference.ANALYTICAL, "one pair carries all"),
         Claim.bound("share in double contact, rms off Pedrero's", deviation(pair, found), 0.05, Reference.EXTERNAL,

@@ -92,10 +92,12 @@ def _gear_claims(safety: float, level: str) -> list[Claim]:
     ]  # fmt: skip
 
 
-def theta_claims(level: str = LEVELS[1], safety: float = SAFETY) -> list[Claim]:
+def theta_claims(
+    level: str = LEVELS[1], safety: float = SAFETY, thetas: tuple[float, ...] = THETAS
+) -> list[Claim]:
     """p0, torque and transmission error of the pair at each θ against the sweep's, which has θ = 1."""
     wanted = gear_figures(safety, level=level)
-    return [claim for theta in THETAS for claim in _theta_claims(theta, safety, level, wanted)]
+    return [claim for theta in thetas for claim in _theta_claims(theta, safety, level, wanted)]
 
 
 def _theta_claims(theta: float, safety: float, level: str, wanted: Figures) -> list[Claim]:

@@ -27,6 +27,7 @@ Context = AbstractContextManager[None]
 SMALL = 1 << 12  # [bytes] arrays below stay in the pickle
 CHUNK = 1 << 28  # [bytes] sent at once between nodes; MPI counts in 32-bit integers
 ALIGNMENT = 64  # [bytes] of each array: a cache line
+SPARE_ROOM = 1.3  # of a board that had to grow: what follows may be larger still
 PATIENCE = 0.002  # [s] between two looks whether the others have come
 MEMORY_FOLDERS = ("/dev/shm", tempfile.gettempdir())  # memory where it is large enough, else a file in the page cache
 
@@ -78,24 +79,47 @@ def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
     if comm.size == 1:
         assert value is not None
         return value
-    parts = _parts(value) if comm.rank == root else []
-    sizes: list[int] = comm.bcast([part.nbytes for part in parts], root=root)
-    *starts, total = np.cumsum([0] + [-(-size // ALIGNMENT) * ALIGNMENT for size in sizes]).tolist()
-    key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others
-    node = comm.Split_type(MPI.COMM_TYPE_SHARED, key)
-    leaders = comm.Split(0 if node.rank == 0 else MPI.UNDEFINED, key)
-    memory = node_memory(comm, node, total)
-    for start, part in zip(starts, parts):
-        memory[start : start + part.nbytes] = part
-    if node.rank == 0:
-        _send(leaders, memory)
-        leaders.Free()
-    node.Barrier()
-    node.Free()
-    kept = memory.toreadonly()
-    head, *arrays = (kept[start : start + size] for start, size in zip(starts, sizes))
-    restored: T = pickle.loads(head, buffers=arrays)
-    return restored
+    board = Board(comm, root)
+    shown = board.show(value)
+    board.close()
+    return shown
+
+
+class Board:
+    """Where one rank shows all others one object after another in the same memory: pages that are new to it cost four
+    times what copying costs. All ranks must make it, and call its methods, together."""
+
+    def __init__(self, comm: MPI.Comm, root: int) -> None:
+        key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others
+        self._comm, self._root = comm, root
+        self._node = comm.Split_type(MPI.COMM_TYPE_SHARED, key)
+        self._leaders = comm.Split(0 if self._node.rank == 0 else MPI.UNDEFINED, key)
+        self._memory = memoryview(b"")
+
+    def show(self, value: T | None) -> T:
+        """The root's `value` on all ranks, its arrays read-only and once a node, until the next one is shown. Raises
+        OSError where a node has no room for it."""
+        parts = _parts(value) if self._comm.rank == self._root else []
+        sizes: list[int] = self._comm.bcast([part.nbytes for part in parts], root=self._root)
+        *starts, total = np.cumsum([0] + [-(-size // ALIGNMENT) * ALIGNMENT for size in sizes]).tolist()
+        if total > len(self._memory):
+            room = total if len(self._memory) == 0 else int(SPARE_ROOM * total)
+            self._memory = node_memory(self._comm, self._node, room)
+        for start, part in zip(starts, parts):
+            self._memory[start : start + part.nbytes] = part
+        if self._node.rank == 0:
+            _send(self._leaders, self._memory[:total])
+        self._node.Barrier()
+        kept = self._memory.toreadonly()
+        head, *arrays = (kept[start : start + size] for start, size in zip(starts, sizes))
+        restored: T = pickle.loads(head, buffers=arrays)
+        return restored
+
+    def close(self) -> None:
+        """Gives its communicators back; the memory goes with the last array."""
+        if self._node.rank == 0:
+            self._leaders.Free()
+        self._node.Free()
 
 
 def _parts(value: object) -> list[memoryview]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 from mpi4py import MPI
 
@@ -18,7 +19,9 @@ from solver.gear_model import GearModel
 from solver.gear_position import SharedPosition, shared_position
 from solver.gear_sweep import Pitch, SweepState, SweptPosition, alike, sweep_pitch
 from solver.newton import NotConverged
-from solver.parallel import shared, together
+from solver.parallel import Board, together
+
+PREPARING = 2  # ranks, as `alike` makes pairs
 
 
 def sweep_on_ranks(
@@ -26,13 +29,21 @@ def sweep_on_ranks(
 ) -> Iterator[SweptPosition]:
     """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks."""
     if comm.size == 1:
-        return sweep_pitch(model, pitch, frictions, state, begin)
-    return _Crew(model, pitch, frictions, comm, Cores(comm)).swept(state, begin)
+        yield from sweep_pitch(model, pitch, frictions, state, begin)
+        return
+    boards = tuple(Board(comm, root) for root in range(PREPARING))
+    try:
+        yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
+    finally:
+        for board in boards:
+            board.close()
 
 
 def division(count: int, ranks: int) -> list[slice]:
-    """Which of `count` friction coefficients each rank solves: neighbours together, as one helps to solve the next."""
-    return [slice(count * rank // ranks, count * (rank + 1) // ranks) for rank in range(ranks)]
+    """Which of `count` friction coefficients each rank solves: neighbours together, as one helps to solve the next, and
+    of the small ones more, as these take fewer iterations."""
+    ends = [-(-count * rank // ranks) for rank in range(ranks + 1)]
+    return [slice(a, b) for a, b in pairwise(ends)]
 
 
 @dataclass(frozen=True)
@@ -44,6 +55,7 @@ class _Crew:
     frictions: Sequence[float]
     comm: MPI.Comm
     cores: Cores
+    boards: tuple[Board, ...]
 
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
@@ -51,9 +63,10 @@ class _Crew:
             numbers = alike(begin, len(self.pitch.angles))
             own = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
             prepared = [self._handed_over(own, root) for root in range(len(numbers))]
-            for k, common in zip(numbers, prepared):
-                part = together(self.comm, partial(self._solved, k, state, common), self.cores.lent)
-                position = _joined([part for part in self.comm.allgather(part) if part is not None])
+            del own
+            mine = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
+            parts = [part for part in self.comm.allgather(mine) if part]
+            for position in map(_joined, zip(*parts, strict=True)):
                 state = position.state
                 yield position
             begin = numbers.stop
@@ -68,14 +81,17 @@ class _Crew:
         except NotConverged:  # smaller steps may lead there
             return None
 
-    def _solved(self, k: int, state: SweepState, common: SharedPosition | None) -> SweptPosition | None:
-        """This rank's own friction coefficients of position k, None if it has none. common: what they need of it, None
-        if it was not found: then each rank goes there by itself."""
+    def _solved(
+        self, numbers: range, state: SweepState, prepared: list[SharedPosition | None]
+    ) -> list[SweptPosition]:
+        """These positions with this rank's own friction coefficients, none if it has none. prepared: what all need of
+        them, None where that was not found: then each rank goes there by itself."""
         own = division(len(self.frictions), self.comm.size)[self.comm.rank]
-        if not self.frictions[own]:
-            return None
-        mine = replace(state, memories=state.memories[own])
-        return next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common))
+        mine, swept = replace(state, memories=state.memories[own]), []
+        for k, common in zip(numbers, prepared) if self.frictions[own] else ():
+            swept.append(next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common)))
+            mine = swept[-1].state
+        return swept
 
     def _handed_over(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
         """Rank `root`'s on all ranks: the gears, which all have, stay where they are, the compliance is shared."""
@@ -85,14 +101,14 @@ class _Crew:
             matrix = prepared.system.compliance
             bare = replace(prepared, contact=contact, system=replace(prepared.system, compliance=matrix[:0]))
         found = self.comm.bcast(bare, root)
-        compliance = shared(self.comm, matrix, root)
         if found is None:
             return None
+        compliance = self.boards[root].show(matrix)
         system = replace(found.system, compliance=compliance)
         return replace(found, contact=replace(found.contact, bodies=self.model.bodies), system=system)
 
 
-def _joined(parts: list[SweptPosition]) -> SweptPosition:
+def _joined(parts: Sequence[SweptPosition]) -> SweptPosition:
     """A position of which each part has some friction coefficients."""
     memories = tuple(memory for part in parts for memory in part.state.memories)
     results = tuple(result for part in parts for result in part.results)

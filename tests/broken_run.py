@@ -1,7 +1,8 @@
 """`evolvent run` with something going wrong: broken_run.py HOW SCENE.toml --out DIR [...]; run by tests, not a test.
 
 HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive replaced); kill-half-N (half of it
-written); full-N (no space for the N-th); raise-R-N (rank R fails at its N-th position); killrank-R-N (rank
+written); full-N (no space for the N-th); raise-R-N (rank R fails in its N-th turn, the first of one
+position and then of two); killrank-R-N (rank
 R is killed there); nan-N (its compliance is no number at the N-th search); unbalanced (a position fails
 its balance); count (prints how many gears this rank condensed and how many positions it searched).
 """

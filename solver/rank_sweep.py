@@ -32,11 +32,9 @@ def sweep_on_ranks(
         yield from sweep_pitch(model, pitch, frictions, state, begin)
         return
     boards = tuple(Board(comm, root) for root in range(PREPARING))
-    try:
-        yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
-    finally:
-        for board in boards:
-            board.close()
+    yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
+    for board in boards:  # not where something failed: who is alone with it would wait for the others
+        board.close()
 
 
 def division(count: int, ranks: int) -> list[slice]:

@@ -90,7 +90,7 @@ def sweep_pitch(
     for k in range(begin, len(pitch.angles)):
         position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
         after, common = position.state, None
-        if len(alike(k, k + 2)) > 1:
+        if k + 1 in alike(k, len(pitch.angles)):
             after = replace(after, extra=state.extra, footprint=state.footprint)
         state = after
         yield replace(position, warm_up=k < pitch.warm_up, state=after)

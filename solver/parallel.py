@@ -86,8 +86,8 @@ def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
 
 
 class Board:
-    """Where one rank shows all others one object after another in the same memory: pages that are new to it cost four
-    times what copying costs. All ranks must make it, and call its methods, together."""
+    """Where one rank shows all others one object after another in the same memory: 140 MB took 0.09 s the first time,
+    as their pages were new, and 0.007 s each other time. All ranks must make it, and call its methods, together."""
 
     def __init__(self, comm: MPI.Comm, root: int) -> None:
         key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others

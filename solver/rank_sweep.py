@@ -61,7 +61,7 @@ class _Crew:
             numbers = alike(begin, len(self.pitch.angles))
             own = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
             prepared = [self._handed_over(own, root) for root in range(len(numbers))]
-            del own
+            del own  # a compliance that was handed over is not needed twice
             mine = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
             parts = [part for part in self.comm.allgather(mine) if part]
             for position in map(_joined, zip(*parts, strict=True)):

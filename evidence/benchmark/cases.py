@@ -46,7 +46,7 @@ def cylinder(cells: float, order: int, shape: str) -> Task:
     size, fine = case.half_width / cells, 1.5 * case.half_width
     upper = cylinder_2d(case.radius, size, fine, order, shape, growth=GROWTH)
     lower = graded_rectangle(200.0, 200.0, size / FINER, fine, order, shape, GROWTH)
-    bodies = near_axis(upper, "arc", 2 * case.half_width), near_axis(lower, "top", 2 * case.half_width)
+    bodies = _near(upper, "arc", 2 * case.half_width), _near(lower, "top", 2 * case.half_width)
     return Task(
         bodies, (STEEL, ALUMINIUM), "top", Push(-case.approach), ((1, "bottom", "xy"),), ("contact", "contact")
     )
@@ -61,20 +61,27 @@ def point_contact() -> Hertz:
 def sphere(cells: float, order: int, shape: str, edge: float = 1.0) -> Task:
     """A quarter of ball and block with cells of a/`cells` on the ball, in rings one of which ends at `edge` times
     Hertz' radius; shape "hexahedron" or "tetrahedron"."""
-    case, side = point_contact(), 4.0
-    a, size = case.half_width, case.half_width / cells
-    growth, depth = 1.7, 0.25 * a
-    upper = ring_sphere(case.radius, side, side, edge * a, size, 1.25 * a, order, growth, depth)
-    lower = ring_block(side, side, edge * a, size / 1.2, 1.25 * a, order, growth, depth)
-    if shape == "tetrahedron":
-        upper, lower = (split_to_simplices(mesh, sweep_columns(mesh.points)) for mesh in (upper, lower))
-    bodies = near_axis(upper, "arc", 1.5 * a), near_axis(lower, "top", 1.5 * a)
+    case = point_contact()
+    bodies = ball_and_block(case.radius, case.half_width, case.half_width / cells, order, shape, edge)
     symmetry = [(body, f"symmetry_{axis}", axis) for body in (0, 1) for axis in "xy"]
     held = (*symmetry, (1, "bottom", "xyz"))
     return Task(bodies, (STEEL, STEEL), "top", Push(-case.approach), held, ("contact", "contact"))
 
 
-def near_axis(mesh: MeshData, group: str, distance: float) -> MeshData:
+def ball_and_block(
+    radius: float, a: float, size: float, order: int, shape: str, edge: float = 1.0, ratio: float = 1 / 1.2
+) -> tuple[MeshData, MeshData]:
+    """Quarters of a ball and of a block of 4 mm with cells of `size` on the ball and `ratio` times that on the block,
+    in rings one of which ends at `edge` times Hertz' radius a [mm]; facet group "contact" within 1.5 a."""
+    side, fine, growth, depth = 4.0, 1.25 * a, 1.7, 0.25 * a
+    upper = ring_sphere(radius, side, side, edge * a, size, fine, order, growth, depth)
+    lower = ring_block(side, side, edge * a, size * ratio, fine, order, growth, depth)
+    if shape == "tetrahedron":
+        upper, lower = (split_to_simplices(mesh, _columns(mesh.points)) for mesh in (upper, lower))
+    return _near(upper, "arc", 1.5 * a), _near(lower, "top", 1.5 * a)
+
+
+def _near(mesh: MeshData, group: str, distance: float) -> MeshData:
     """The mesh with a facet group "contact": the facets of `group` that close to the z axis (in 2D: the y axis)."""
     facets = mesh.facets[group]
     centre = mesh.points[facets].mean(axis=1)
@@ -82,7 +89,7 @@ def near_axis(mesh: MeshData, group: str, distance: float) -> MeshData:
     return replace(mesh, facets={**mesh.facets, "contact": facets[near < distance]})
 
 
-def sweep_columns(points: Floats) -> np.ndarray:
+def _columns(points: Floats) -> np.ndarray:
     """A number for each column of nodes above each other, by radius and then angle (n,)."""
     x, y = points[:, 0], points[:, 1]
     key = np.round(np.column_stack([np.hypot(x, y), np.arctan2(y, x) * (np.hypot(x, y) > 1e-9)]), 9)

@@ -10,17 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evidence.benchmark.cases import near_axis, sweep_columns
+from evidence.benchmark.cases import ball_and_block
 from evidence.stress.sheets import Cell, Sheet, sheet_of
-from meshes.data import MeshData
-from meshes.lattice import split_to_simplices
-from meshes.rings import ring_block, ring_sphere
 from solver import hertz
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.problem import Contact, Nitsche, Placement, Problem, Step, solve
 
-RADIUS, LOAD, SIDE, E = 8.0, 2000.0, 4.0, 210e3  # mm, N, mm, MPa
+RADIUS, LOAD, E = 8.0, 2000.0, 210e3  # mm, N, MPa
 KINDS = tuple((shape, order) for shape in ("hexahedron", "tetrahedron") for order in (2, 1))
 
 
@@ -58,24 +55,15 @@ class Ball:
         """A quarter of ball and block; the ball's flat top moves as a rigid body under a quarter of the load."""
         material, symmetry = Material(E, self.nu), (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
         down = Rigid("top", (Freedom("z", load=-self.load * LOAD / 4.0),))
-        ball, block = self._meshes()
+        a = self.hertz.radius
+        ball, block = ball_and_block(RADIUS, a, a / 4.0, self.order, self.shape, ratio=self.ratio)
         bodies = (
             Body(ball, material, symmetry, rigid=down, name="ball"),
             Body(block, material, (*symmetry, Fixed("bottom")), name="block"),
         )
-        a = self.hertz.radius
         reach = max(0.1 * a, abs(self.gap) * a**2 / RADIUS)
         contact = Contact((1, "contact"), (0, "contact"), self.friction, reach)
         return Problem(bodies, (contact,), Nitsche(self.safety, self.theta))
-
-    def _meshes(self) -> tuple[MeshData, MeshData]:
-        a = self.hertz.radius
-        size, fine, growth, depth = a / 4.0, 1.25 * a, 1.7, 0.25 * a
-        ball = ring_sphere(RADIUS, SIDE, SIDE, a, size, fine, self.order, growth, depth)
-        block = ring_block(SIDE, SIDE, a, size * self.ratio, fine, self.order, growth, depth)
-        if self.shape == "tetrahedron":
-            ball, block = (split_to_simplices(mesh, sweep_columns(mesh.points)) for mesh in (ball, block))
-        return near_axis(ball, "arc", 1.5 * a), near_axis(block, "top", 1.5 * a)
 
 
 SETTINGS: dict[str, Ball] = {

@@ -8,10 +8,11 @@ path between the mesh and the contact law is shared with the sweep.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
+from functools import cached_property
 
 import numpy as np
 
+from evidence.stress.gear_steps import spur_scene
 from meshes.data import Floats, MeshData
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.gear_body import matching_cuts
@@ -19,11 +20,10 @@ from solver.gear_contact import GAP
 from solver.gear_results import fitted_peak
 from solver.kinematics import Stand
 from solver.problem import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
-from solver.scene import Scene, load_scene
+from solver.scene import Scene
 from solver.sectors import gear_mesh
 from solver.whole_gear import whole_mesh
 
-SPUR = Path(__file__).resolve().parents[2] / "demos/he2022.toml"
 TEETH = (-1, 0, 1)
 """Tooth pairs that may touch within a pitch about the pitch point."""
 
@@ -64,9 +64,9 @@ class ThetaPair:
         reach = GAP * scene.gear_pair().pinion.normal_module
         return Problem(bodies, (Contact((0, "flank"), (1, "flank"), self.friction, reach),), self.nitsche)
 
-    @property
+    @cached_property
     def _scene(self) -> Scene:
-        return load_scene(SPUR, [f"mesh.level={self.level}"])
+        return spur_scene(f"mesh.level={self.level}")
 
 
 def _whole_gear(scene: Scene, gear: int) -> MeshData:

@@ -23,6 +23,7 @@ SETTINGS = (
     "output.animation=false", "output.fields=false",
 )  # fmt: skip
 KILLS = 20
+GLANCE = 0.02  # s between two looks at a running run
 AGREEMENT = 1e-7
 PASSING = ("seconds", "residual", "iterations")
 """What depends on the clock or on rounding."""
@@ -66,25 +67,26 @@ def run(out: Path, *more: str, user: int | None = None) -> subprocess.CompletedP
 
 
 def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
-    """Kills a run at random times, resuming it each time, and lets it end when it was killed so often.
+    """Kills a run at random moments, resuming it each time, and lets it end when it was killed so often.
 
-    The times are spread over what a whole run takes here and now, so that kills fall into the start, the meshes, the
-    positions and the writing. A run that ends before it is killed is started anew. Raises RuntimeError where resuming
-    does not end well.
+    A kill falls after a random number of positions, at a random time of what an undisturbed run takes there, so that
+    start, meshes, positions and writing are all hit on a machine of any speed. A run that is beyond that number, or
+    that ended before it was killed, is started anew. Raises RuntimeError where resuming does not end well.
     """
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
-        begin = time.perf_counter()
-        run(Path(folder) / "out")
-        seconds = time.perf_counter() - begin
+        stages = _stages(Path(folder) / "out")
     complete: list[int] = []
     while len(complete) < kills:
-        if (out / "summary.json").exists():
+        after = int(rng.integers(len(stages)))
+        if (out / "summary.json").exists() or _complete(out) > after:
             shutil.rmtree(out)
-        fresh = ["--resume"] if out.exists() else []
-        with started(out, *fresh) as process:
+        more = ["--resume"] if out.exists() else []
+        span = stages[after if _complete(out) < after else 0]
+        with started(out, *more) as process:
+            _await(process, out, after)
             try:
-                process.communicate(timeout=float(rng.uniform(0.2, 0.95)) * seconds)
+                process.communicate(timeout=float(rng.uniform()) * span)
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGKILL)
                 process.communicate()
@@ -93,6 +95,23 @@ def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
     if last.returncode != 0:
         raise RuntimeError(f"{out}: wanted a resumed run to end with status 0, found {last.returncode}: {last.stderr}")
     return Struck(tuple(complete))
+
+
+def _stages(out: Path) -> list[float]:
+    """Seconds of an undisturbed run after 0, 1, ... complete positions until the next, and after the last until its
+    end."""
+    times = [time.perf_counter()]
+    with started(out) as process:
+        while process.poll() is None:
+            _await(process, out, len(times))
+            times.append(time.perf_counter())
+    return np.diff(times).tolist()
+
+
+def _await(process: subprocess.Popen[str], out: Path, positions: int) -> None:
+    """Until so many positions are complete, or the run has ended."""
+    while process.poll() is None and _complete(out) < positions:
+        time.sleep(GLANCE)
 
 
 def _complete(out: Path) -> int:

@@ -98,17 +98,14 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
-def frictionless(
-    system: CondensedSystem, start: np.ndarray | None = None, tolerance: float = TOLERANCE
-) -> Equilibrium:
+def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. tolerance: of the
-    residual force over the force in the system. Raises NotConverged.
+    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
     """
     chosen = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
     problem = _Contact(system, lambda t: coulomb(t, 0.0))
-    return _converged(problem, _assumed_contact(system, chosen), "contact without friction", tolerance)
+    return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
@@ -238,8 +235,8 @@ def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats |
     return -problem.solve(zero, problem.residual(zero))
 
 
-def _converged(problem: _Contact, start: Floats, stage: str, tolerance: float = TOLERANCE) -> Equilibrium:
-    root = newton.solve(problem, start, stage, ITERATIONS, tolerance)
+def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
+    root = newton.solve(problem, start, stage, ITERATIONS, TOLERANCE)
     if not root.converged:
         left = root.residual / problem.scale(root.x)
         raise NotConverged(

@@ -13,7 +13,7 @@ import numpy as np
 
 from meshes.data import Floats, Ints
 from solver.cores import Threads
-from solver.equilibrium import TOLERANCE, CondensedSystem, Equilibrium, Start, frictional, frictionless, normal_part
+from solver.equilibrium import CondensedSystem, Equilibrium, Start, frictional, frictionless, normal_part
 from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
 from solver.gear_model import GearModel
@@ -27,7 +27,6 @@ smaller one but for its square over the curvature radius, 3e-8 modules."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
-START_TOLERANCE = 1e-4  # residual of a frictionless state that nobody asked for, a start for friction
 
 
 @dataclass(frozen=True)
@@ -132,11 +131,11 @@ def shared_position(
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
     extra: predicted rotations beyond the nominal ones. frictions: the coefficients that are to come: without one that
-    is not 0 only normal components are condensed, without a 0 the frictionless state is a mere start. before: the
-    footprint of the last position. Raises NotConverged, SearchError.
+    is not 0 only normal components are condensed. before: the footprint of the last position. The frictionless state is
+    exact also where it is but a start: the search is made where it leaves the gears, which must not depend on which
+    other coefficients there are. Raises NotConverged, SearchError.
     """
     normal_only = not any(map(model.has_friction_terms, frictions))
-    tolerance = TOLERANCE if 0.0 in frictions else START_TOLERANCE
     stand, half_width = Stand(model.pair, angle, extra), model.half_width
     for _ in range(ROUNDS):
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
@@ -146,7 +145,7 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
-        smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before), tolerance)
+        smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before))
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.too_deep:
             raise NotConverged(

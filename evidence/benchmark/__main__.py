@@ -55,8 +55,9 @@ def _measure(part: str, peers: tuple[Program, ...], small: bool, out: Path, fold
     elif part == "spur":
         _kept(out / "spur.csv", spur.rows())
     elif part == "bars":
-        problem = bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)) if small else bars.spur_problem()
-        _kept(out / "bars.csv", bars.measure_bars(problem))
+        full = bars.spur_problem(), bars.helical_problem()
+        problems = (bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)),) if small else full
+        _kept(out / "bars.csv", (row for problem in problems for row in bars.measure_bars(problem)))
     else:
         case = _case(part, small)
         known = precision.overkill(case, folder)

@@ -78,9 +78,10 @@ class BarRow:
 
 @dataclass(frozen=True)
 class BarProblem:
-    """A scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, twice
+    """A named scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, twice
     the elements in the body if `fine_body`, then all cells halved so many times."""
 
+    name: str
     scene: Scene
     cases: tuple[tuple[str, ...], ...]
     reference: tuple[str, ...]
@@ -100,15 +101,14 @@ def spur_problem(
     """He's pair in plane strain at several numbers of elements across the contact width, of both orders,
     quadrilaterals and triangles."""
     settings = [f"contact.friction={list(frictions)}", f"sweep.positions={positions}"]
-    return BarProblem(load_scene(DEMOS / "he2022.toml", settings), mesh_cases(widths), ("level=fine",), 2, True)
+    return BarProblem("spur", load_scene(DEMOS / "he2022.toml", settings), mesh_cases(widths), ("level=fine",), 2, True)
 
 
 def helical_problem(widths: Sequence[float] = (1.2, 1.7), reference: float = 1.7) -> BarProblem:
     """A narrow helical pair, hexahedra and tetrahedra of both orders. reference: elements across the contact width
     before all cells are halved once; that solution takes gigabytes and many minutes of one core."""
-    return BarProblem(
-        scene_from_text(HELICAL), mesh_cases(widths), (f"elements_per_contact_width={reference}",), 1, False
-    )
+    finest = (f"elements_per_contact_width={reference}",)
+    return BarProblem("helical", scene_from_text(HELICAL), mesh_cases(widths), finest, 1, False)
 
 
 def mesh_cases(widths: Sequence[float]) -> tuple[tuple[str, ...], ...]:
@@ -129,7 +129,7 @@ def measure_bars(problem: BarProblem) -> list[BarRow]:
         scene = problem.with_mesh(case)
         run, coarse = _solved(scene), _solved(scene, coarse=True)
         values, bars = _figures(run), [astuple(errors) for errors in errors_between(run, coarse)]
-        rows += _rows(", ".join(case), run.frictions, values, bars, exact, nearly)
+        rows += _rows(", ".join((problem.name, *case)), run.frictions, values, bars, exact, nearly)
     return [row for row in rows if not (row.figure == "loss_percent" and row.friction == 0.0)]
 
 

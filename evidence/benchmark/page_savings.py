@@ -60,7 +60,8 @@ def bars_section(rows: Sequence[bars.BarRow]) -> list[str]:
         lines.append([figure, str(len(own)), str(sum(r.inside for r in own)), f"{100 * bars.hit_rate(own):.0f}",
                       str(sum(r.inside for r in own if r.decided)), str(sum(r.decided for r in own))])  # fmt: skip
     words = (
-        f"He's pair at several meshes of both orders and shapes, against a mesh several times finer: the error bar "
+        "He's pair and a narrow helical pair at several meshes of both orders and shapes, against meshes several times "
+        "finer: the error bar "
         f"holds the true error in **{100 * bars.hit_rate(rows):.0f} %** of {len(rows)} figures. Wanted: 90 %. "
         "*Decided*: where the reference is good enough to tell."
     )

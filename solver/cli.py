@@ -42,6 +42,7 @@ MEANINGS = (
     ("solver.newton", "NotConverged", Exit.NOT_CONVERGED),
     ("solver.run", "BalanceError", Exit.NOT_CONVERGED),
     ("solver.archive", "ArchiveError", Exit.BAD_INPUT),
+    ("wear.tables", "TableError", Exit.BAD_INPUT),
 )
 """Exceptions of modules that may not have been imported; then nothing can have raised them."""
 
@@ -161,6 +162,35 @@ def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a 
         from solver.plots import plot_directory
 
         plot_directory(directory)
+
+
+@app.command(
+    "wear-coefficient",
+    epilog="\b\nExample:\n  evolvent wear-coefficient record.csv --force-N 500 --pin-diameter-mm 6 --run-in-m 500",
+)
+def wear_coefficient(
+    records: Annotated[
+        list[Path], typer.Argument(metavar="RECORD.csv...", help="Columns sliding_distance_m (or _mm, _km) and "
+                                   "depth_um (or _mm).")
+    ],
+    force: Annotated[float, typer.Option("--force-N", help="Normal force on the pin.")],
+    diameter: Annotated[float, typer.Option("--pin-diameter-mm", help="Diameter of the pin.")],
+    run_in: Annotated[float, typer.Option("--run-in-m", help="Sliding distance that is left out.")] = 0.0,
+) -> None:  # fmt: skip
+    """Archard's K/H from pin-on-disc records, with its spread."""
+    with reported():
+        from wear.coefficient import PinOnDisc, Record, coefficient
+
+        test = PinOnDisc(force, diameter)
+        read = [Record.read(path, 1e3 * run_in) for path in records]
+        found = coefficient(read, test)
+        for record, own in zip(read, found.each):
+            typer.echo(f"{record.name}: {len(record.depth)} lines, K/H = {own:.4e} mm²/N")
+        rate = 1e9 * found.value * test.pressure
+        typer.echo(
+            f"K/H = {found.value:.4e} mm²/N, 95 % between {found.low:.4e} and {found.high:.4e}; at "
+            f"{test.pressure:.3f} MPa {rate:.4g} µm per km"
+        )
 
 
 @app.command(epilog="\b\nExample:\n  evolvent info")

@@ -33,7 +33,8 @@ class GearBody:
     flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
     pressure, else None. chain: compliance of all modelled teeth, tooth
     s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
-    assemble_seconds, condense_seconds: what it took.
+    assemble_seconds, condense_seconds: what it took. worn: (n,) depth [mm] that the flank has lost, of which mesh and
+    chain know nothing.
     """
 
     gear: GearParameters
@@ -44,6 +45,11 @@ class GearBody:
     sign: int
     assemble_seconds: float
     condense_seconds: float
+    worn: Floats | None = None
+
+    def lost(self, facets: Ints, xi: Floats) -> Floats:
+        """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
+        return np.zeros(len(facets)) if self.worn is None else self.flank.hat_matrix(facets, xi) @ self.worn
 
     @property
     def d(self) -> int:

@@ -7,6 +7,7 @@ be searched instead, to show that it changes nothing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +23,7 @@ from solver.gear_body import GearBody
 from solver.gear_normals import pressing_normals
 from solver.kinematics import Stand, spin
 from solver.nitsche import ContactOperator, contact_operator, stacked
-from solver.search import pair_surfaces
+from solver.search import Pairing, pair_surfaces
 from solver.surface import Surface
 
 EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
@@ -32,10 +33,20 @@ PENETRATION = 0.5  # how deep [module] undeformed flanks may overlap: far beyond
 
 @dataclass(frozen=True)
 class ToothContact:
-    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion."""
+    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion; the same
+    before wear, and where its points lie on both flanks."""
 
     tooth: int
     operator: ContactOperator
+    as_made: ContactOperator
+    pairing: Pairing
+
+    @staticmethod
+    def between(bodies: Sequence[GearBody], tooth: int, as_made: ContactOperator, pairing: Pairing) -> ToothContact:
+        """Of flanks worn as the bodies say."""
+        sides = (pairing.facet1, pairing.xi1), (pairing.facet2, pairing.xi2)
+        lost = np.sum([body.lost(*side) for body, side in zip(bodies, sides)], axis=0)
+        return ToothContact(tooth, as_made.worn(lost, np.zeros_like(lost)), as_made, pairing)
 
     def touched(self, gear: int) -> Ints:
         """Flank nodes of a gear that the jump sees, sorted."""
@@ -88,6 +99,11 @@ class GearContact:
     stand: Stand
     teeth: tuple[ToothContact, ...]
     half_width: float
+
+    def on(self, bodies: tuple[GearBody, GearBody]) -> GearContact:
+        """The same position between the same gears, worn otherwise."""
+        teeth = tuple(ToothContact.between(bodies, t.tooth, t.as_made, t.pairing) for t in self.teeth)
+        return GearContact(bodies, self.stand, teeth, self.half_width)
 
     @property
     def d(self) -> int:
@@ -207,6 +223,15 @@ class GearContact:
         return np.asarray(self.operator.shape @ arc)
 
     @cached_property
+    def opposite(self) -> Floats:
+        """(q,) the same on the wheel's flank, of what lies opposite the points; positive towards the wheel's tip."""
+        pair, base = self.stand.pair, self.bodies[1].gear.base_radius
+        ρ_line = pair.pitch_point_roll_lengths[1] - self.ξ
+        axis = self.stand.tilt(1)[: self.d, : self.d]
+        r = np.linalg.norm(((self.points[1] - self.stand.centre(1, self.d)) @ axis)[:, :2], axis=1)
+        return np.asarray(self.operator.shape @ ((r**2 - base**2 - ρ_line**2) / (2.0 * base)))
+
+    @cached_property
     def distance(self) -> Floats:
         """(q,) how far the points lie from their contact lines, in half-widths of the window."""
         parts = [
@@ -245,13 +270,13 @@ def gear_contact(
 
     Raises SearchError.
     """
-    found = [ToothContact(i, op) for i in teeth if (op := _tooth_operator(bodies, stand, i, half_width)) is not None]
-    return GearContact(bodies, stand, tuple(found), half_width)
+    found = [_tooth_contact(bodies, stand, tooth, half_width) for tooth in teeth]
+    return GearContact(bodies, stand, tuple(contact for contact in found if contact is not None), half_width)
 
 
-def _tooth_operator(
+def _tooth_contact(
     bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float
-) -> ContactOperator | None:
+) -> ToothContact | None:
     pinion = bodies[0]
     assert pinion.traction is not None
     facets = np.flatnonzero(facets_in_window(pinion, stand, tooth, half_width))
@@ -264,7 +289,8 @@ def _tooth_operator(
         return None
     frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T
     operator = contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
-    return operator.pressing_along(pressing_normals(operator, pinion, second, stand, tooth))
+    operator = operator.pressing_along(pressing_normals(operator, pinion, second, stand, tooth))
+    return ToothContact.between(bodies, tooth, operator, pairing)
 
 
 def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:

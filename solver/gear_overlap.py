@@ -34,7 +34,8 @@ def _overlap(contact: GearContact, forces: tuple[Floats, Floats], tooth: int) ->
         return 0.0
     sides = (first, found.facet1, found.xi1), (second, found.facet2, found.xi2)
     u1, u2 = (_moved(contact, forces[gear], gear, tooth, *side) for gear, side in enumerate(sides))
-    return float(np.max(np.einsum("qa,qa->q", _normals(first, found), u1 - u2) - found.gap, initial=0.0))
+    gap = found.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, sides))
+    return float(np.max(np.einsum("qa,qa->q", _normals(first, found), u1 - u2) - gap, initial=0.0))
 
 
 def _unsearched(contact: GearContact, tooth: int) -> Ints:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +23,12 @@ from solver.newton import NotConverged
 
 RELOCATE = 1.7e-4
 """A free rotation that moves the flanks further [modules] is made exact and searched again; the gap is linear in a
-smaller one but for its square over the curvature radius, 3e-8 modules."""
+smaller one but for its square over the curvature radius, 3e-8 modules. Searches are made at rotations that are whole
+multiples of twice this, at the nearest one to the solution: so that results do not depend on where a search starts."""
+NEAREST = 1.001  # of half a multiple: at its very end two searches could send each other back and forth
+STALE = 2e-3
+"""So far [modules] may wear let the flanks move until a position is searched again: the gap is then off by 4e-6 modules
+squared over a curvature radius of some modules, a ten-thousandth of a loaded tooth's deflection."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
@@ -34,15 +39,17 @@ class ContactPoints:
     """The contact of a position at its q quadrature points on the pinion's flanks.
 
     tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
-    contact line [mm]. weights [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative
-    velocity of pinion over wheel per radian of pinion rotation, local [mm/rad]. sticks, edge: (q,) bool; edge: in the
-    last row of facets before a tip edge.
+    contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
+    [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
+    per radian of pinion rotation, local [mm/rad]. sticks, edge: (q,) bool; edge: in the last row of facets before a tip
+    edge.
     """
 
     tooth: Ints
     z: Floats
     ξ: Floats
     across: Floats
+    opposite: Floats
     weights: Floats
     traction: Floats
     rate: Floats
@@ -136,7 +143,7 @@ def shared_position(
     other coefficients there are. Raises NotConverged, SearchError.
     """
     normal_only = not any(map(model.has_friction_terms, frictions))
-    stand, half_width = Stand(model.pair, angle, extra), model.half_width
+    stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
     for _ in range(ROUNDS):
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.teeth:
@@ -154,14 +161,35 @@ def shared_position(
             )
         if contact.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
-        elif abs(shift) <= RELOCATE * model.pair.pinion.normal_module:
+        elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
             if overlap_outside(contact, smooth.force, model.teeth) == 0.0:
                 return SharedPosition(contact, system, smooth)
             half_width = np.inf
-        stand = stand.turned(model.load.on, float(smooth.motion[0]))
+        stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
+
+
+def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
+    """The nearest stand at which searches are made."""
+    on = model.load.on
+    step = 2.0 * RELOCATE * model.pair.pinion.normal_module / model.bodies[on].gear.base_radius
+    return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
+
+
+def worn_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
+    """The same position after the model's flanks have worn on: search and compliance stay, the gap and the frictionless
+    state are new. None where the gears have moved so far, or the contact so near to the window's rim, that the position
+    has to be searched again. Raises NotConverged."""
+    contact = shared.contact.on(model.bodies)
+    system = replace(shared.system, operator=contact.operator)
+    pressed = shared.smooth.traction[:, 0] > 0.0
+    smooth = frictionless(system if system.k == 1 else normal_part(system), pressed if pressed.any() else None)
+    shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+    if abs(shift) > STALE * model.pair.pinion.normal_module or contact.reaches_rim(smooth.traction[:, 0] > 0.0):
+        return None
+    return SharedPosition(contact, system, smooth)
 
 
 def _foreseen(contact: GearContact, before: Footprint | None) -> np.ndarray:
@@ -218,7 +246,7 @@ def position_result(
         stand=contact.stand.turned(model.load.on, float(found.motion[0])),
         friction=friction,
         torques=(torques[0], torques[1]),
-        contact=_contact_points(contact, found.traction, friction),
+        contact=contact_points(contact, found.traction, friction),
         tooth=contact.tooth,
         node=contact.node,
         weights=weights,
@@ -228,8 +256,8 @@ def position_result(
     )
 
 
-def _contact_points(contact: GearContact, traction: Floats, friction: float) -> ContactPoints:
-    """What is kept of the points: those under pressure."""
+def contact_points(contact: GearContact, traction: Floats, friction: float) -> ContactPoints:
+    """Of tractions (q, k): what is kept of the points, those under pressure."""
     pressed = np.flatnonzero(traction[:, 0] > 0.0)
     shape, t = contact.operator.shape[pressed], traction[pressed]
     bound = friction * t[:, 0]
@@ -239,6 +267,7 @@ def _contact_points(contact: GearContact, traction: Floats, friction: float) -> 
         z=shape @ contact.bodies[0].z[contact.node],
         ξ=shape @ contact.ξ,
         across=contact.across[pressed],
+        opposite=contact.opposite[pressed],
         weights=contact.operator.weights[pressed],
         traction=t,
         rate=shape @ relative_velocity(contact),

@@ -67,6 +67,12 @@ class ContactOperator:
         shorter = np.einsum("ja,ja->j", normals, self.frames[:, 0])
         return replace(self, frames=tangent_frames(normals), gap=self.gap * (self.shape @ shorter))
 
+    def worn(self, depth: Floats, softness: Floats) -> ContactOperator:
+        """Between surfaces that have lost `depth` (q,) [mm] together, and lose `softness` (q,) [mm/MPa] times the
+        pressure more while it acts: in series with γ, as λ = γ(J − g − h − cλ)."""
+        γ, γ_t = self.stabiliser.T
+        return replace(self, gap=self.gap + depth, stabiliser=np.column_stack([γ / (1.0 + γ * softness), γ_t]))
+
     def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
         """Trial tractions (q, k) from local jumps (n, k), k = 1 (normal only) or d; slip (n, d−1) is added to J_t."""
         k = jump.shape[1]

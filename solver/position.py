@@ -13,7 +13,7 @@ from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictio
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.prepared import PreparedBody
-from solver.search import pair_surfaces
+from solver.search import Pairing, pair_surfaces
 from solver.statement import Contact, Placement, Problem, Side, Step
 from solver.surface import Surface
 
@@ -23,7 +23,8 @@ class ContactResult:
     """One contact of a solution, at the q quadrature points of the first surface that face the second one.
 
     points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
-    (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with.
+    (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with. slip: (q, d) [mm] of the
+    first body over the second since the step before, in the first step since rest; zero where the points stick.
     """
 
     points: Floats
@@ -31,6 +32,7 @@ class ContactResult:
     weights: Floats
     pressure: Floats
     traction: Floats
+    slip: Floats
 
     @property
     def force(self) -> Floats:
@@ -77,7 +79,10 @@ class Position:
             raise ValueError(f"step: wanted body indices below {len(prepared)}, found {[i for i, _ in step.freedoms]}")
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
         self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
-        self.operators = [self._operator(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
+        self.pairings = [self._pairing(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
+        self.operators = [
+            self._operator(c, p, *pair) for c, p, pair in zip(problem.contacts, self.pairings, self.placed)
+        ]
         self.maps = [self._map(b) for b in range(len(prepared))]
         self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(prepared)]
 
@@ -85,11 +90,14 @@ class Position:
         where = self.placements[side[0]]
         return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
 
-    def _operator(self, contact: Contact, first: Surface, second: Surface) -> ContactOperator:
+    def _pairing(self, contact: Contact, first: Surface, second: Surface) -> Pairing:
         reach = contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
+        return pair_surfaces(first, second, reach, reach)
+
+    def _operator(self, contact: Contact, pairing: Pairing, first: Surface, second: Surface) -> ContactOperator:
         traction = self.prepared[contact.first[0]].tractions[contact.first[1]]
         frames = traction.frames @ self.placements[contact.first[0]].rotation.T
-        return contact_operator(pair_surfaces(first, second, reach, reach), first, second, traction.stabiliser, frames)
+        return contact_operator(pairing, first, second, traction.stabiliser, frames)
 
     def _map(self, body: int) -> sp.csr_matrix:
         """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
@@ -112,13 +120,17 @@ class Position:
             [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
         )
 
+    def as_seen(self, contact: int) -> ContactOperator:
+        """A contact's operator as the contact law sees it."""
+        return self.operators[contact]
+
     def load_jump(self) -> Floats:
         """Local jumps (Σn·d,) that the external loads alone would make."""
         return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.prepared))
 
     def system(self) -> CondensedSystem:
         """Compliance, motions and loads of all bodies in local jumps."""
-        operator = stacked(self.operators)
+        operator = stacked([self.as_seen(i) for i in range(len(self.operators))])
         n = len(operator.nodes) * self.d
         A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
         for E, body, motions in zip(self.maps, self.prepared, self.motions):
@@ -135,14 +147,14 @@ class Position:
     def solve(self, before: History | None) -> tuple[Solution, History]:
         """Equilibrium, with the slip since `before`."""
         system = self.system()
-        μ = self.friction
-        found = self._with_friction(system, μ, before) if μ.any() else frictionless(normal_part(system))
-        return self._solution(system, found), self._history(found)
+        μ, slip = self.friction, self.slip(before)
+        found = self._with_friction(system, μ, slip) if μ.any() else frictionless(normal_part(system))
+        return self._solution(system, found, slip), self._history(found)
 
-    def _with_friction(self, system: CondensedSystem, μ: Floats, before: History | None) -> Equilibrium:
+    def _with_friction(self, system: CondensedSystem, μ: Floats, slip: Floats) -> Equilibrium:
         """From the frictionless state; where there is none (only friction carries the load) or Newton's method fails
         from there, from the state in which all contact sticks."""
-        slip, unknown = self.slip(before), np.zeros((len(μ), self.d - 1))
+        unknown = np.zeros((len(μ), self.d - 1))
         try:
             start = frictionless(normal_part(system))
             found = frictional(system, μ, slip, unknown, start)
@@ -160,7 +172,18 @@ class Position:
         """Local tractions (q, d) at the points of each contact."""
         traction = np.zeros((len(found.traction), self.d))
         traction[:, : found.traction.shape[1]] = found.traction
-        return np.split(traction, np.cumsum([len(op.weights) for op in self.operators])[:-1])
+        return self._split(traction)
+
+    def _split(self, values: Floats) -> list[Floats]:
+        """Values (Σq, ...) at the points of each contact."""
+        return np.split(values, np.cumsum([len(op.weights) for op in self.operators])[:-1])
+
+    def _slid(self, system: CondensedSystem, found: Equilibrium, slip: Floats) -> Floats:
+        """(Σq, d−1) slip of the first body over the second in this step: (q − τ)/γ_t of the trial traction q."""
+        jump = system.jumps(self._forces(found), found.motion)[:, 1:] + slip
+        yielding = system.operator.stabiliser[:, 1:]
+        τ = found.traction[:, 1:] if found.traction.shape[1] > 1 else 0.0
+        return np.asarray(system.operator.shape @ jump - τ / yielding)
 
     def _body_motions(self, found: Equilibrium) -> list[Floats]:
         result, at = [], 0
@@ -171,10 +194,11 @@ class Position:
             result.append(value)
         return result
 
-    def _solution(self, system: CondensedSystem, found: Equilibrium) -> Solution:
+    def _solution(self, system: CondensedSystem, found: Equilibrium, slip: Floats) -> Solution:
         force = self._forces(found)
+        slid = self._split(self._slid(system, found, slip))
         on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
-        contacts = tuple(_contact_result(op, t) for op, t in zip(self.operators, self._tractions(found)))
+        contacts = tuple(_contact_result(*own) for own in zip(self.operators, self._tractions(found), slid))
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
         return Solution(
@@ -232,7 +256,7 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     return RigidMotions(own.shapes, load, value)
 
 
-def _contact_result(op: ContactOperator, local: Floats) -> ContactResult:
-    return ContactResult(
-        op.points, op.common(np.eye(op.d)[:1].repeat(len(local), axis=0)), op.weights, local[:, 0], op.common(local)
-    )
+def _contact_result(op: ContactOperator, local: Floats, slid: Floats) -> ContactResult:
+    normals = op.common(np.eye(op.d)[:1].repeat(len(local), axis=0))
+    slip = op.common(np.hstack([np.zeros((len(slid), 1)), slid]))
+    return ContactResult(op.points, normals, op.weights, local[:, 0], op.common(local), slip)

@@ -93,6 +93,15 @@ class Surface:
         rows, columns = np.repeat(self.facets, k, axis=1).ravel(), np.tile(self.facets, (1, k)).ravel()
         return csr_matrix((local.ravel(), (rows, columns)), shape=(len(self.points),) * 2)
 
+    def hat_matrix(self, facets: Ints, xi: Floats) -> csr_matrix:
+        """(q, n) ψ_j at xi (q, dt) of the facets (q,); a point that lies a little outside counts to the rim."""
+        inside = np.maximum(xi, 0.0)
+        if self.shape == "triangle":
+            inside = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1.0)
+        psi = hats(self.shape, self.order, np.minimum(inside, 1.0))
+        ends = psi.shape[1] * np.arange(len(psi) + 1)
+        return csr_matrix((psi.ravel(), self.facets[facets].ravel(), ends), shape=(len(psi), len(self.points)))
+
     def moved(self, rotation: ArrayLike, translation: ArrayLike) -> Surface:
         """The surface after x -> rotation (d, d) x + translation (d,) [mm]."""
         turn = np.asarray(rotation, dtype=np.float64)

@@ -9,7 +9,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("meshes", "solver", "demos", "evidence")
+PACKAGES = ("meshes", "solver", "wear", "demos", "evidence")
 FILES = [path.relative_to(ROOT) for name in PACKAGES for path in sorted((ROOT / name).rglob("*.py"))]
 Import = tuple[str, str]
 

@@ -78,8 +78,8 @@ class BarRow:
 
 @dataclass(frozen=True)
 class BarProblem:
-    """A named scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides, twice
-    the elements in the body if `fine_body`, then all cells halved so many times."""
+    """A named scene, the meshes on which its bars are tried (overrides of [mesh]), and its reference: these overrides,
+    twice the elements in the body if `fine_body`, then all cells halved so many times."""
 
     name: str
     scene: Scene

@@ -1,0 +1,163 @@
+"""Pin on disc, He et al. 2022, Figs 3 and 13: a pin of 6 mm wears on a rotating disc of 100 mm under 500 N.
+
+    python demos/pin_on_disc.py [--quick] [--out DIR] [--km 10]
+
+Friction bends the pin, so that it first presses on its leading or trailing edge; wear evens that out, until every point
+loses the same depth a turn. Then p v is the same everywhere: a pin that does not turn presses more where the disc is
+slower, nearer to the axis. The mean pressure is 17.684 MPa and the depth grows at 2.446 µm per km.
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from mpi4py import MPI
+
+from meshes.data import MeshData
+from meshes.rings import ring_block
+from meshes.variants import doubled
+from solver import compat
+from solver.body import Body, Fixed, Freedom, Rigid
+from solver.kinematics import turn
+from solver.material import STEEL
+from solver.plots_style import PRESSURE_MAP, save, sheet, styled
+from solver.problem import Contact, Placement, Problem, Step
+from wear.blocks import BlockSettings
+from wear.cycle import Cycle, Travel
+from wear.law import Archard
+from wear.study import CycleState, WearStudy
+
+DIAMETER, LENGTH, LOAD, FRICTION = 6.0, 8.0, 500.0, 0.1  # mm, mm, N; length and μ are not printed
+TRACK = 40.0  # radius of the track on the disc [mm], not printed
+COEFFICIENT = 1.3832e-10  # mm²/N
+DRAG = 0.05  # mm of sliding until friction has its direction everywhere
+KILOMETRE = 1e6 / TRACK  # rad
+
+
+@dataclass(frozen=True)
+class Stage:
+    """After so many km: pressure of the contact points, mean depth [µm]."""
+
+    distance: float
+    depth: float
+    state: CycleState
+
+
+def whole(quarter: MeshData) -> MeshData:
+    """All four quarters."""
+    return doubled(doubled(quarter, "symmetry_x", 0), "symmetry_y", 1)
+
+
+def problem(size: float) -> Problem:
+    """The pin (body 0) stands on a slab of the disc, whose axis is at y = −TRACK; cells of `size` [mm] on its face."""
+    radius = DIAMETER / 2.0
+    ring = radius / 1.5
+    pin = whole(ring_block(radius, LENGTH, ring, size, 0.5 * (ring + radius), growth=1.2, fine_depth=size))
+    pin = replace(pin, points=pin.points * (-1.0, 1.0, -1.0))  # upside down
+    slab = whole(ring_block(3.0 * radius, 2.0 * radius, radius, size, 1.3 * radius, growth=1.5, fine_depth=size))
+    near = slab.facets["top"]
+    near = near[np.hypot(*slab.points[near, :2].mean(axis=1).T) < 1.2 * radius]
+    slab = replace(slab, facets={**slab.facets, "track": near})
+    down = Rigid("bottom", (Freedom("z", load=-LOAD),))
+    return Problem(
+        (Body(pin, STEEL, rigid=down, name="pin"), Body(slab, STEEL, (Fixed("bottom"),), name="disc")),
+        (Contact((0, "top"), (1, "track"), FRICTION, reach=0.1),),
+    )
+
+
+def turning() -> Cycle:
+    """Press, drag the disc along until all slides, and then let it turn by one km of the track."""
+    R = turn(DRAG / TRACK, 3)
+    centre = np.array([0.0, -TRACK, 0.0])
+    rest, turned = Placement.at_rest(3), Placement(R, centre - R @ centre)
+    steps = Step(), Step(placements=(rest, turned))
+    return Cycle(steps, (Travel(1, rotation=(0.0, 0.0, KILOMETRE), centre=(0.0, -TRACK, 0.0)),))
+
+
+def run(size: float, distance: float) -> tuple[WearStudy, list[Stage]]:
+    """Stages after every block."""
+    study = WearStudy(problem(size), (Archard(COEFFICIENT),), turning())
+    areas = study.geometry.prepared[0].surfaces["top"].weights()
+    fresh = study.evaluate(np.zeros(len(areas)))
+    stages = [Stage(0.0, 0.0, fresh)]
+    for block in study.blocks(distance, BlockSettings(first=0.01, tolerance=0.1)):
+        depth = 1e3 * float(areas @ block.state.depth) / float(areas.sum())
+        stages.append(Stage(block.state.cycles, depth, block.state.now))
+        print(f"{block.state.cycles:8.3f} km, {depth:8.4f} µm, error {block.error:.3f}", flush=True)
+    return study, stages
+
+
+def draw(stages: list[Stage], out: Path) -> None:
+    """Pressure on the pin's face at four distances, and depth over distance."""
+    chosen = [stages[0], *(min(stages[1:], key=lambda s: abs(s.distance - d)) for d in (0.1, 1.0)), stages[-1]]
+    with styled():
+        see = "Friction bends the pin onto its edge; wear evens the pressure out"
+        figure = sheet("Pressure on the pin as it wears", see, (12.0, 4.0))
+        axes = figure.subplots(1, len(chosen))
+        for axis, stage in zip(axes, chosen):
+            result = stage.state.rubbing[0][-1].result
+            shown = axis.tricontourf(
+                *result.points[:, :2].T, result.pressure, np.linspace(0.0, 60.0, 25), cmap=PRESSURE_MAP, extend="max"
+            )
+            axis.set(aspect="equal", title=f"{stage.distance:.3g} km", xlabel="x, sliding [mm]")
+        figure.colorbar(shown, ax=axes, label="pressure [MPa]")
+        save(figure, out / "pressure.png")
+        figure = sheet("Wear depth of the pin", f"{rate(stages):.3f} µm per km; F/A · K/H is 2.446")
+        axis = figure.add_subplot()
+        axis.plot([s.distance for s in stages], [s.depth for s in stages], "o-", ms=3)
+        axis.set(xlabel="sliding distance [km]", ylabel="mean depth [µm]")
+        save(figure, out / "depth.png")
+
+
+def rate(stages: list[Stage]) -> float:
+    """µm per km over all but the first tenth."""
+    late = [s for s in stages if s.distance >= 0.1 * stages[-1].distance]
+    return float(np.polyfit([s.distance for s in late], [s.depth for s in late], 1)[0])
+
+
+def skew(stage: Stage) -> float:
+    """Offset [mm] of the force's line of action in the direction in which the disc moves under the pin."""
+    result = stage.state.rubbing[0][-1].result
+    force = result.weights * result.pressure
+    return float(force @ result.points[:, 0] / force.sum())
+
+
+def evenness(stage: Stage) -> tuple[float, float]:
+    """Largest deviation of p and of p·v from their means within 0.8 of the radius."""
+    state = stage.state.rubbing[0][-1]
+    inside = np.hypot(*state.result.points[:, :2].T) < 0.4 * DIAMETER
+    w, found = state.result.weights[inside], []
+    for values in (state.result.pressure[inside], (state.result.pressure * state.sliding)[inside]):
+        found.append(float(np.abs(values / (w @ values / w.sum()) - 1.0).max()))
+    return found[0], found[1]
+
+
+def main(
+    out: Annotated[Path, typer.Option()] = Path("out/pin_on_disc"), quick: bool = False, km: float = 10.0
+) -> None:
+    """Compute, print, write depth.csv and the pictures."""
+    compat.silence_logs()
+    _, stages = run(0.8 if quick else 0.4, km)
+    if MPI.COMM_WORLD.rank:
+        return
+    out.mkdir(parents=True, exist_ok=True)
+    with open(out / "depth.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["sliding_distance_km", "depth_um"])
+        table.writerows([f"{s.distance:.6g}", f"{s.depth:.6g}"] for s in stages)
+    for stage in (stages[0], stages[-1]):
+        p, pv = evenness(stage)
+        print(f"{stage.distance:.3g} km: force {skew(stage):+.3f} mm off the middle, p even to {100 * p:.1f} %, p v to "
+              f"{100 * pv:.1f} %")  # fmt: skip
+    print(f"rate {rate(stages):.4f} µm per km")
+    draw(stages, out)
+
+
+if __name__ == "__main__":
+    typer.run(main)
+

@@ -1,0 +1,159 @@
+"""Blocks of cycles: dh/dN = r(h) with a length of block that an error estimate chooses.
+
+Explicit: the rates of this block's start and of the last one foretell the block's end, the rate there corrects it by
+the trapezoid rule; their difference is the error. One rate a block, but ripples where a block is longer than the
+contact takes to wear them off. Implicit: the rate is that of the block's end (Euler), stable for any length; the error
+is half the difference of the rates at both ends. A state is a value: a block that is refused leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.newton import NotConverged
+from solver.search import SearchError
+
+LOG = logging.getLogger("evolvent")
+SAFETY, LONGER, SHORTER = 0.8, 2.0, 0.2  # of the next block's length over this one's
+HALVINGS = 12  # of a block before it is given up
+
+
+class WearStopped(RuntimeError):
+    """No block, however short, could be made; the message says from where on and why."""
+
+
+@dataclass(frozen=True)
+class BlockSettings:
+    """How blocks are made.
+
+    first: length of the first block [cycles]; none is made shorter because of its error. tolerance: the share of a
+    block's volume that may be worn off in the wrong place. implicit: see above. deformation_share: largest depth of an
+    explicit block over the contact's deformation.
+    """
+
+    first: float
+    tolerance: float = 0.05
+    implicit: bool = True
+    deformation_share: float = np.inf
+
+    def __post_init__(self) -> None:
+        for name in ("first", "tolerance", "deformation_share"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"wear blocks: wanted {name} above zero, found {getattr(self, name)}")
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """One cycle on a worn state: rate (n,) [mm per cycle] of all nodes that wear, their areas (n,) [mm²; mm in 2D], and
+    the contact's deformation [mm]."""
+
+    rate: Floats
+    areas: Floats
+    deformation: float
+
+
+E = TypeVar("E", bound=Evaluated, covariant=True)
+
+
+class Wearable(Protocol[E]):
+    """What wears: the rate of a state."""
+
+    def evaluate(self, depth: Floats, before: Any = None) -> E:
+        """One cycle at depths (n,). before: what this returned at depths near by, of which it may use what it likes.
+        Raises NotConverged, SearchError."""
+        ...
+
+    def implicit(self, depth: Floats, now: Any, length: float) -> tuple[Floats, E]:
+        """What a block of so many cycles takes away from depths (n,), (n,) [mm], at the rate of its end; and the cycle
+        there. now: the cycle at its start. Raises NotConverged, SearchError."""
+        ...
+
+
+@dataclass(frozen=True)
+class WearState(Generic[E]):
+    """After so many cycles: depths (n,) [mm], the cycle there, the rate (n,) and length of the block before, and the
+    length of the next one."""
+
+    cycles: float
+    depth: Floats
+    now: E
+    last: tuple[Floats, float] | None
+    length: float
+
+
+@dataclass(frozen=True)
+class Block(Generic[E]):
+    """A finished block.
+
+    state: at its end. length: cycles. error: its error over its volume. refused: how many longer ones were.
+    """
+
+    state: WearState[E]
+    length: float
+    error: float
+    refused: int
+
+
+def unworn(wearable: Wearable[E], depth: Floats, settings: BlockSettings, cycles: float = 0.0) -> WearState[E]:
+    """The state to begin with, at depths (n,)."""
+    return WearState(cycles, depth, wearable.evaluate(depth), None, settings.first)
+
+
+def next_block(wearable: Wearable[E], state: WearState[E], end: float, settings: BlockSettings) -> Block[E]:
+    """The next block, which ends at `end` cycles at the latest. Raises WearStopped."""
+    length, refused = min(state.length, end - state.cycles), 0
+    while refused <= HALVINGS:
+        length = min(length, _deepest(state, settings))
+        try:
+            tried, error = _tried(wearable, state, length, settings)
+        except (NotConverged, SearchError) as failure:
+            LOG.info("block of %.6g cycles after %.6g: %s", length, state.cycles, failure)
+            length, refused, why = 0.5 * length, refused + 1, str(failure)
+            continue
+        if error <= settings.tolerance or length <= settings.first:
+            following = max(length * _change(error, settings), settings.first)
+            return Block(replace(tried, length=following), length, error, refused)
+        length, refused, why = length * min(_change(error, settings), 0.7), refused + 1, f"error {error:.2g}"
+        length = max(length, settings.first)
+    raise WearStopped(
+        f"wear after {state.cycles:.6g} cycles: wanted a block with an error below {settings.tolerance:g}, found none "
+        f"down to {length:.3g} cycles ({why}); the last good state is kept: refine the mesh, or allow more error"
+    )
+
+
+def _tried(
+    wearable: Wearable[E], state: WearState[E], length: float, settings: BlockSettings
+) -> tuple[WearState[E], float]:
+    """The state after a block, and its error over its volume."""
+    begin = state.now.rate
+    if settings.implicit:
+        gained, end = wearable.implicit(state.depth, state.now, length)
+        error = 0.5 * length * (end.rate - begin)
+    else:
+        slope = 0.0 if state.last is None else (begin - state.last[0]) / state.last[1]
+        foretold = length * np.maximum(begin + 0.5 * length * slope, 0.0)
+        end = wearable.evaluate(state.depth + foretold, state.now)
+        gained = 0.5 * length * (begin + end.rate)
+        error = gained - foretold
+    areas, volume = state.now.areas, float(state.now.areas @ gained)
+    share = float(areas @ np.abs(error)) / volume if volume > 0.0 else 0.0
+    return WearState(state.cycles + length, state.depth + gained, end, (begin, length), length), share
+
+
+def _deepest(state: WearState[E], settings: BlockSettings) -> float:
+    """The length at which the depth at today's rate is the allowed share of the deformation; without a limit where the
+    pressure follows the wear within the block."""
+    if settings.implicit:
+        return np.inf
+    rate = float(state.now.rate.max(initial=0.0))
+    return settings.deformation_share * state.now.deformation / rate if rate > 0.0 else np.inf
+
+
+def _change(error: float, settings: BlockSettings) -> float:
+    """Of the length: a block's relative error grows like its length."""
+    return float(np.clip(SAFETY * settings.tolerance / max(error, 1e-12), SHORTER, LONGER))

@@ -1,0 +1,95 @@
+"""K/H and its spread from pin-on-disc records: depth over sliding distance under a constant load.
+
+K/H = (dh/ds) A/F (Z. He, Y. Hu, X. Zheng, Y. Yu, Machines 10 (2022) 69, Eq. 3), dh/ds the slope of the straight line
+that fits the record after running in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import stats
+
+from meshes.data import Floats
+from wear.tables import Column, TableError, read_columns, require_ascending
+
+DISTANCE = Column("sliding_distance", (("mm", 1.0), ("m", 1e3), ("km", 1e6)))
+DEPTH = Column("depth")
+CONFIDENCE = 0.95
+FEWEST = 5  # lines: fewer say nothing about the spread
+FASTEST = 1e-5
+"""K/H [mm²/N] above which units are wrong: mild steel on mild steel, dry, has 4e-6 (J. F. Archard, W. Hirst, The wear
+of metals under unlubricated conditions, Proc. R. Soc. A 236 (1956) 397: K = 7e-3 at 1860 MPa)."""
+
+
+@dataclass(frozen=True)
+class PinOnDisc:
+    """force [N] on a pin of this diameter [mm]. Raises TableError."""
+
+    force: float
+    diameter: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("force", self.force), ("pin diameter", self.diameter)):
+            if not (np.isfinite(value) and value > 0.0):
+                raise TableError(f"pin on disc: wanted a {name} above zero, found {value:g}")
+
+    @property
+    def pressure(self) -> float:
+        """F/A [MPa]."""
+        return self.force / (np.pi * self.diameter**2 / 4.0)
+
+
+@dataclass(frozen=True)
+class Record:
+    """Sliding distance and depth (n,) [mm] of one test."""
+
+    name: str
+    distance: Floats
+    depth: Floats
+
+    @staticmethod
+    def read(path: Path, run_in: float = 0.0) -> Record:
+        """From a CSV file with the columns sliding_distance_mm, _m or _km and depth_um or _mm, from the distance
+        `run_in` [mm] on. Raises TableError."""
+        distance, depth = read_columns(path, (DISTANCE, DEPTH))
+        require_ascending(path, "a sliding distance", distance)
+        later = distance >= run_in
+        if np.count_nonzero(later) < FEWEST:
+            raise TableError(
+                f"{path}: wanted at least {FEWEST} lines from {1e-3 * run_in:g} m on, found {np.count_nonzero(later)}; "
+                "give a longer record, or a shorter running in"
+            )
+        return Record(path.name, distance[later], depth[later])
+
+
+@dataclass(frozen=True)
+class Coefficient:
+    """K/H [mm²/N]. low, high: the 95 % confidence interval of the mean: of one record that of its slope, of several
+    that of their mean. each: of every record."""
+
+    value: float
+    low: float
+    high: float
+    each: tuple[float, ...]
+
+
+def coefficient(records: Sequence[Record], test: PinOnDisc) -> Coefficient:
+    """Raises TableError where nothing wears, or faster than anything does."""
+    fits = [stats.linregress(r.distance, r.depth) for r in records]
+    each = np.array([fit.slope / test.pressure for fit in fits])
+    for record, own in zip(records, each):
+        if not 0.0 < own <= FASTEST:
+            raise TableError(
+                f"{record.name}: wanted a K/H between 0 and {FASTEST:g} mm²/N, found {own:.3g}; is the record's "
+                "depth rising, and are its units, the force in N and the diameter in mm right?"
+            )
+    if len(each) == 1:
+        error, freedom = fits[0].stderr / test.pressure, len(records[0].distance) - 2
+    else:
+        error, freedom = each.std(ddof=1) / np.sqrt(len(each)), len(each) - 1
+    value, half = float(each.mean()), float(error * stats.t.ppf(0.5 + CONFIDENCE / 2.0, freedom))
+    return Coefficient(value, value - half, value + half, tuple(each.tolist()))

@@ -1,0 +1,155 @@
+"""One cycle of a problem on worn bodies: the contact states in which surfaces rub, and what each loses there.
+
+A cycle is a few steps, solved one after the other. Surfaces rub by the slip of the steps, or by *travel*: a rigid
+motion of a body that goes on through the last state while this stays as it is, such as a disc that turns under its pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.nitsche import ContactOperator
+from solver.position import ContactResult, History, Position
+from solver.prepared import PreparedBody
+from solver.statement import Problem, Side, Step
+from wear.law import Archard, Places
+
+Depths = dict[Side, Floats]
+
+
+@dataclass(frozen=True)
+class Travel:
+    """A rigid motion of a body in each cycle: translation [mm], then rotation [rad] about an axis through `centre`.
+
+    Contact points take the speed that the motion has at the start; a body that turns goes round and round.
+    """
+
+    body: int
+    translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def at(self, points: Floats) -> Floats:
+        """Path (q, d) per cycle of points (q, d) [mm]."""
+        d = points.shape[1]
+        arms = np.zeros((len(points), 3))
+        arms[:, :d] = points - np.asarray(self.centre)[:d]
+        return np.asarray(np.asarray(self.translation) + np.cross(self.rotation, arms))[:, :d]
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Steps, and what goes on through the last of them. Without travel the slip of all steps wears."""
+
+    steps: tuple[Step, ...] = (Step(),)
+    travel: tuple[Travel, ...] = ()
+
+
+@dataclass(frozen=True)
+class Rubbing:
+    """A contact in one state, per cycle.
+
+    result: the solved contact. sliding: (q,) [mm per cycle] at its points. places: of the points on both surfaces.
+    """
+
+    result: ContactResult
+    sliding: Floats
+    places: tuple[Places, Places]
+
+    @property
+    def work(self) -> Floats:
+        """w λ s (q,) [N·mm per cycle; per mm in 2D]."""
+        return self.result.weights * self.result.pressure * self.sliding
+
+    def depths(self, law: Archard) -> tuple[Floats, Floats]:
+        """Depth per cycle [mm] at the nodes of both surfaces."""
+        first, second = (place.depth(K * self.work) for K, place in zip(law.both, self.places))
+        return first, second
+
+
+@dataclass(frozen=True)
+class Worn:
+    """What the contact law sees of wear: depths already lost per side, and the cycles to come while it acts."""
+
+    problem: Problem
+    laws: tuple[Archard, ...]
+    cycle: Cycle
+    depths: Depths
+    ahead: float = 0.0
+
+
+def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbing]]:
+    """Solves a cycle: per contact, the states in which it rubs. With `ahead` cycles to come the pressure is that at
+    their end (implicit Euler), which only a cycle with travel can do.
+
+    Raises NotConverged, SearchError, ValueError.
+    """
+    if worn.ahead and not worn.cycle.travel:
+        raise ValueError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
+    before: History | None = None
+    found: list[list[Rubbing]] = [[] for _ in worn.laws]
+    for number, step in enumerate(worn.cycle.steps):
+        position = _Wearing(worn, prepared, step)
+        solution, before = position.solve(before)
+        if not worn.cycle.travel or number == len(worn.cycle.steps) - 1:
+            for i, result in enumerate(solution.contacts):
+                found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
+    return found
+
+
+class _Wearing(Position):
+    """A position between worn surfaces."""
+
+    def __init__(self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step) -> None:
+        self.wear = worn
+        super().__init__(worn.problem, prepared, step)
+        self.places = [self._places(i) for i in range(len(self.operators))]
+
+    def _places(self, index: int) -> tuple[Places, Places]:
+        pairing, (first, second) = self.pairings[index], self.placed[index]
+        return Places.of(first, pairing.facet1, pairing.xi1), Places.of(second, pairing.facet2, pairing.xi2)
+
+    def as_seen(self, contact: int) -> ContactOperator:
+        """With the depth that is gone between the surfaces, and what goes within the block."""
+        operator, law, ahead = self.operators[contact], self.wear.laws[contact], self.wear.ahead
+        lost = np.zeros(len(operator.weights))
+        for places, side in zip(self.places[contact], self._sides(contact)):
+            if side in self.wear.depths:
+                lost += places.at_points(self.wear.depths[side])
+        normals = operator.shape @ operator.frames[:, 0]
+        going = sum(law.both) * ahead * self._travelled(contact, operator.points, normals) if ahead else 0.0 * lost
+        return operator.worn(lost, going)
+
+    def _sides(self, contact: int) -> tuple[Side, Side]:
+        own = self.problem.contacts[contact]
+        return own.first, own.second
+
+    def sliding(self, index: int, result: ContactResult) -> Floats:
+        """(q,) [mm per cycle]."""
+        if self.wear.cycle.travel:
+            return self._travelled(index, result.points, result.normals)
+        return np.linalg.norm(result.slip, axis=1)
+
+    def _travelled(self, contact: int, points: Floats, normals: Floats) -> Floats:
+        """(q,) tangential part of the first body's path over the second one per cycle."""
+        path: Floats = np.zeros_like(points)
+        for (body, _), sign in zip(self._sides(contact), (1.0, -1.0)):
+            for travel in self.wear.cycle.travel:
+                path = path + sign * (travel.body == body) * travel.at(points)
+        along = path - np.einsum("qa,qa->q", path, normals)[:, None] * normals
+        return np.asarray(np.linalg.norm(along, axis=1))
+
+
+def added(laws: Sequence[Archard], problem: Problem, states: list[list[Rubbing]]) -> Depths:
+    """Depth per cycle [mm] on every side that wears."""
+    total: Depths = {}
+    for contact, law, own in zip(problem.contacts, laws, states):
+        for side, K, number in ((contact.first, law.first, 0), (contact.second, law.second, 1)):
+            if K > 0.0:
+                depth = np.sum([state.depths(law)[number] for state in own], axis=0)
+                total[side] = total.get(side, 0.0) + depth
+    return total

@@ -1,0 +1,72 @@
+"""A tooth's flank as a grid of nodes over (arc, height): where wear is gathered and looked up.
+
+The arc u = ρ²/(2 r_b) is the involute's length from the base circle, ρ the transverse curvature radius √(r² − r_b²). A
+flank's nodes lie in layers of equal height with the same arcs, whatever cells the mesh is made of, and between them the
+hats are linear in u and in z, as those of the surface are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats, Ints
+from solver.gear_body import GearBody
+
+SAME = 1e-6  # of a module: heights that are one layer
+UNEVEN = 1e-2  # of a module: how far the arcs of layers may differ, by modifications
+
+
+@dataclass(frozen=True)
+class FlankGrid:
+    """arcs (m,) and heights (l,), ascending [mm]. node: (l, m) flank node. areas: (n,) of the nodes' hats [mm²; mm]."""
+
+    arcs: Floats
+    heights: Floats
+    node: Ints
+    areas: Floats
+
+    @staticmethod
+    def of(body: GearBody) -> FlankGrid:
+        """Of a gear's flank. Raises ValueError where its nodes are no grid."""
+        u, module = body.roll_length**2 / (2.0 * body.gear.base_radius), body.gear.normal_module
+        layer = np.round(body.z / (SAME * module)).astype(np.int64)
+        heights, which = np.unique(layer, return_inverse=True)
+        order = np.lexsort([u, which.reshape(-1)])
+        if len(order) % len(heights) or len(set(np.bincount(which.reshape(-1)))) > 1:
+            raise ValueError(f"flank of {body.gear.z} teeth: wanted layers with equally many nodes, found others")
+        node = order.reshape(len(heights), -1)
+        spread = float(np.ptp(u[node], axis=0).max())
+        if spread > UNEVEN * module:
+            raise ValueError(f"flank of {body.gear.z} teeth: wanted the same arcs in all layers, found {spread:.2g} mm")
+        return FlankGrid(u[node].mean(axis=0), body.z[node].mean(axis=1), node, body.flank.weights())
+
+    def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
+        """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""
+        (i, s), (j, t) = _between(self.arcs, u), _between(self.heights, z)
+        m, corners, values = len(self.arcs), [], []
+        for row, along in ((j, 1.0 - t), (np.minimum(j + 1, len(self.heights) - 1), t)):
+            for column, across in ((i, 1.0 - s), (np.minimum(i + 1, m - 1), s)):
+                corners.append(self.node[row, column])
+                values.append(along * across)
+        columns, weights = np.stack(corners, axis=1), np.stack(values, axis=1)
+        matrix = sp.csr_matrix((weights.ravel(), columns.ravel(), 4 * np.arange(len(u) + 1)), (len(u), self.node.size))
+        matrix.sum_duplicates()
+        return matrix
+
+    def gathered(self, u: Floats, z: Floats, volumes: Floats) -> sp.csr_matrix:
+        """(n, q) mean depths that take away volumes (q, e) at arcs (q, e) and heights (q,)."""
+        q, e = u.shape
+        per_place = self.hats(u.ravel(), np.repeat(z, e))
+        added = sp.csr_matrix((volumes.ravel(), np.arange(q * e), e * np.arange(q + 1)), (q, q * e))
+        return (sp.diags(1.0 / self.areas) @ (added @ per_place).T).tocsr()
+
+
+def _between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:
+    """Interval and place in it (0 to 1) of x in an ascending grid; clamped to its ends."""
+    if len(grid) == 1:
+        return np.zeros(len(x), dtype=np.int64), np.zeros(len(x))
+    i = np.clip(np.searchsorted(grid, x) - 1, 0, len(grid) - 2)
+    return i, np.clip((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)

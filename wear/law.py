@@ -1,0 +1,64 @@
+"""Archard's law, dh = (K/H) p |ds|, on a contact state: what each surface loses at its nodes.
+
+    m_k h_k = (K/H) Σ_q w_q ψ_k(q) λ_q s_q ,   m_k = ∫ψ_k dΓ
+
+with the hats ψ of the surface's nodes, which are nowhere negative and sum to one: no depth is negative, and the volume
+Σ m_k h_k is (K/H) Σ w λ s, that is (K/H)∫∫p|v_s| dA dt, to rounding on any mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from meshes.data import Floats, Ints
+from solver.surface import Surface
+
+
+@dataclass(frozen=True)
+class Archard:
+    """K/H [mm²/N] of the first and of the second surface of a contact; zero: does not wear. Source: J. F. Archard,
+    Contact and rubbing of flat surfaces, J. Appl. Phys. 24 (1953) 981. Raises ValueError."""
+
+    first: float = 0.0
+    second: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in (("first", self.first), ("second", self.second)):
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ValueError(f"wear of the {name} surface: wanted K/H of zero or more in mm²/N, found {value}")
+
+    @property
+    def both(self) -> tuple[float, float]:
+        """(first, second)."""
+        return self.first, self.second
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where q contact points lie on a surface of n nodes.
+
+    hats: (q, n) ψ at the points. areas: (n,) m_k of the whole surface [mm²; mm in 2D].
+    """
+
+    hats: sp.csr_matrix
+    areas: Floats
+
+    @staticmethod
+    def of(surface: Surface, facets: Ints, xi: Floats) -> Places:
+        """Of points xi (q, d−1) of the facets (q,); a point that lies a little outside counts to the rim."""
+        return Places(surface.hat_matrix(facets, xi), surface.weights())
+
+    def depth(self, volumes: Floats) -> Floats:
+        """(n,) mean depth that takes away these volumes (q,) [mm³; mm² in 2D] at the points."""
+        return np.asarray(self.hats.T @ volumes) / self.areas
+
+    def at_points(self, depth: Floats) -> Floats:
+        """(q,) of nodal depths (n,)."""
+        return np.asarray(self.hats @ depth)
+
+    def volume(self, depth: Floats) -> float:
+        """Σ m_k h_k [mm³; mm² in 2D]."""
+        return float(self.areas @ depth)

@@ -1,0 +1,178 @@
+"""The mesh follows the worn surface: where its nodes go, and where the interior goes (ALE: the material stays).
+
+A worn node goes by −h d, d·n = 1, within the free faces that it also belongs to: a worn edge stays on its end face and
+on its tip cylinder. The interior follows by a linear equation with these nodes prescribed and the held groups at rest,
+every cell as stiff as it is small, so that large ones take most of the motion. What goes on smoothly from a worn
+surface stays; faces beyond an edge slide in themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import scipy.sparse as sp
+import ufl
+from scipy.sparse.csgraph import connected_components
+
+from meshes.data import FACET_SHAPE, Floats, Ints, MeshData, MeshError
+from meshes.lattice import boundary_facets
+from meshes.quality import scaled_jacobians
+from meshes.reference import corner_count
+from solver import compat
+from solver.condense import Factor
+from solver.lagrange import gmsh_permutation
+from solver.surface import Surface
+
+Follow = Literal["elastic", "harmonic"]
+SMOOTH = 0.87  # faces whose normals' cosine is above this (30°) are one smooth surface, and no edge
+POISSON = 0.3  # of the elastic equation
+
+
+class MeshInverted(MeshError):
+    """The moved mesh has a cell that is turned over, or nearly so."""
+
+
+@dataclass(frozen=True)
+class WornSurface:
+    """A surface that loses depth (n,) [mm] at its nodes."""
+
+    surface: Surface
+    depth: Floats
+
+
+def worn_mesh(
+    mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], follow: Follow = "harmonic",
+    least_quality: float = 0.05,
+) -> MeshData:  # fmt: skip
+    """The mesh with its worn surfaces moved in and the interior following. held: facet groups that stay where they are.
+
+    Raises MeshInverted where a scaled Jacobian falls below `least_quality`, and ValueError where nothing is held.
+    """
+    moved = np.concatenate([w.surface.nodes for w in worn])
+    goal = np.concatenate([-w.depth[:, None] * directions(mesh, w.surface) for w in worn])
+    if not len(held):
+        raise ValueError("mesh motion: wanted a facet group that stays at rest, found none; name a support")
+    resting = [mesh.facets[name].ravel() for name in held]
+    still = np.unique(np.concatenate([*resting, *(_continuation(mesh, w.surface) for w in worn)]))
+    shift = np.zeros((len(mesh.points), mesh.dimension))
+    if np.any(goal):
+        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow)
+        shift = _along_free_faces(mesh, shift, moved)
+    points = mesh.points.copy()
+    points[:, : mesh.dimension] += shift
+    result = replace(mesh, points=points)
+    _check(result, least_quality)
+    return result
+
+
+def directions(mesh: MeshData, surface: Surface) -> Floats:
+    """(n, d) where a worn node goes for a depth of one, outwards: d·n = 1, and within adjacent free faces."""
+    own = {tuple(row) for row in np.sort(surface.nodes[surface.facets], axis=1).tolist()}
+    outer = boundary_facets(mesh.shape, mesh.order, mesh.cells)
+    others = [row for row in outer.tolist() if tuple(sorted(row)) not in own]
+    result = surface.normals.copy()
+    for node, normals in _normals_at(mesh, np.asarray(others), surface.nodes).items():
+        n = surface.normals[node]
+        edges = normals[np.abs(normals @ n) < SMOOTH]
+        result[node] = np.linalg.pinv(np.vstack([n, edges]), rcond=1e-3)[:, 0]
+    return result
+
+
+def _continuation(mesh: MeshData, surface: Surface) -> Ints:
+    """Nodes of the outer facets that go on from a surface without an edge, its own not among them."""
+    outer = boundary_facets(mesh.shape, mesh.order, mesh.cells)
+    corners = outer[:, : corner_count(FACET_SHAPE[mesh.shape])]
+    rows = np.repeat(np.arange(len(outer)), corners.shape[1])
+    has = sp.csr_matrix((np.ones(corners.size), (rows, corners.ravel())), (len(outer), len(mesh.points)))
+    pairs = (has @ has.T).tocoo()
+    beside = (pairs.data >= mesh.dimension - 1) & (pairs.row != pairs.col)
+    one, other, unit = pairs.row[beside], pairs.col[beside], _unit_normals(mesh, outer)
+    smooth = np.abs(np.einsum("fa,fa->f", unit[one], unit[other])) > SMOOTH
+    links = sp.csr_matrix((np.ones(smooth.sum()), (one[smooth], other[smooth])), (len(outer), len(outer)))
+    part = connected_components(links, directed=False)[1]
+    own = np.isin(corners, surface.nodes).all(axis=1)
+    found = np.isin(part, part[own]) & ~own
+    return np.setdiff1d(outer[found].ravel(), surface.nodes)
+
+
+def _normals_at(mesh: MeshData, facets: Ints, nodes: Ints) -> dict[int, Floats]:
+    """Position in `nodes` -> unit normals (m, d) at the centres of the given facets that have this node."""
+    if not len(facets):
+        return {}
+    place = np.full(len(mesh.points), -1)
+    place[nodes] = np.arange(len(nodes))
+    near = facets[(place[facets] >= 0).any(axis=1)]
+    unit = _unit_normals(mesh, near)
+    found: dict[int, list[Floats]] = {}
+    for row, normal in zip(near, unit):
+        for at in place[row][place[row] >= 0]:
+            found.setdefault(int(at), []).append(normal)
+    return {at: np.array(normals) for at, normals in found.items()}
+
+
+def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
+    """(f, d) at the facets' centres, to either side."""
+    shape = FACET_SHAPE[mesh.shape]
+    ordered = facets[:, gmsh_permutation(shape, mesh.order)]
+    points = mesh.points[:, : mesh.dimension]
+    plain = Surface(points, points, ordered, shape, mesh.order, np.arange(len(points)))
+    centre = np.full((len(facets), 1, mesh.dimension - 1), 1.0 / 3.0 if shape == "triangle" else 0.5)
+    vectors = plain.area_vectors(np.arange(len(facets)), centre)[:, 0]
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+def _followed(mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow) -> Floats:
+    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`."""
+    K, order = _stiffness(mesh, follow)
+    shift = np.zeros((len(mesh.points), mesh.dimension))
+    shift[moved] = goal
+    given = np.zeros(shift.shape, dtype=bool)
+    given[moved] = given[still] = True
+    free = np.flatnonzero(~given.ravel())
+    K = K[order][:, order].tocsr()
+    right = -(K @ shift.ravel())[free]
+    shift.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
+    return shift
+
+
+def _stiffness(mesh: MeshData, follow: Follow):  # type: ignore[no-untyped-def]
+    """The equation's matrix and its order in terms of the mesh's nodes."""
+    domain = compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
+    space = compat.vector_space(domain, mesh.order)
+    blocks = compat.node_dofs(space, domain, len(mesh.points))
+    order = (mesh.dimension * blocks[:, None] + np.arange(mesh.dimension)).ravel()
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    stiff = 1.0 / abs(ufl.JacobianDeterminant(domain))
+    dx = ufl.Measure("dx", domain=domain, metadata={"quadrature_degree": 2 * mesh.order})
+    if follow == "harmonic":
+        form = stiff * ufl.inner(ufl.grad(u), ufl.grad(v)) * dx
+    else:
+        ε, λ = ufl.sym(ufl.grad(u)), 2.0 * POISSON / (1.0 - 2.0 * POISSON)
+        σ = λ * ufl.tr(ε) * ufl.Identity(mesh.dimension) + 2.0 * ε
+        form = stiff * ufl.inner(σ, ufl.sym(ufl.grad(v))) * dx
+    return compat.assemble_csr(form), order
+
+
+def _along_free_faces(mesh: MeshData, shift: Floats, moved: Ints) -> Floats:
+    """The shift with other boundary nodes kept within their faces."""
+    facets = boundary_facets(mesh.shape, mesh.order, mesh.cells)
+    nodes = np.setdiff1d(np.unique(facets), moved)
+    result = shift.copy()
+    for at, normals in _normals_at(mesh, facets, nodes).items():
+        within = np.linalg.pinv(normals, rcond=0.3) @ normals
+        result[nodes[at]] -= within @ shift[nodes[at]]
+    return result
+
+
+def _check(mesh: MeshData, least: float) -> None:
+    quality = scaled_jacobians(mesh)
+    worst = int(np.argmin(quality))
+    if not quality[worst] >= least:
+        centre = ", ".join(f"{x:.3f}" for x in mesh.points[mesh.cells[worst]].mean(axis=0))
+        raise MeshInverted(
+            f"mesh motion: wanted scaled Jacobians of at least {least:g}, found {quality[worst]:.3f} in cell {worst} "
+            f"at ({centre}) mm; the wear is deeper than the cells there can follow: take larger cells, or remesh"
+        )

@@ -1,0 +1,198 @@
+"""A wear study of a problem of the public API: blocks of cycles, the mesh following, every block's volume certified.
+
+    study = WearStudy(problem, (Archard(first=1.4e-10),), Cycle((Step(),), (Travel(1, translation=(1e3, 0, 0)),)))
+    for block in study.blocks(1000.0, BlockSettings(first=10.0)): ...
+
+In the example a cycle is 1 m of sliding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshes.data import Floats, MeshData
+from solver.body import Body
+from solver.prepared import PreparedBody, prepare
+from solver.statement import Problem, Side
+from wear.blocks import Block, BlockSettings, Evaluated, WearState, next_block, unworn
+from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
+from wear.law import Archard
+from wear.motion import Follow, WornSurface, worn_mesh
+
+VOLUME = 1e-6  # relative difference of a block's volume by nodes and by contact points that is an error
+
+
+class VolumeLost(RuntimeError):
+    """The depth at the nodes is not the volume that the contact took away."""
+
+
+@dataclass(frozen=True)
+class Refresh:
+    """When the mesh follows: where depth [mm] is more than this that the mesh does not know of; how its interior does,
+    and the least scaled Jacobian it may have."""
+
+    depth: float = np.inf
+    follow: Follow = "harmonic"
+    least_quality: float = 0.05
+
+
+@dataclass(frozen=True)
+class CycleState(Evaluated):
+    """A cycle solved on worn bodies: the contacts as they rub, volumes per cycle of every side that wears [mm³; mm² in
+    2D]: at the nodes, and K/H·∫∫p|v_s| dA dt at the contact points."""
+
+    rubbing: tuple[tuple[Rubbing, ...], ...]
+    volumes: dict[Side, float]
+    integrals: dict[Side, float]
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Bodies as meshed and condensed, and the depth (n,) [mm] that these meshes know of."""
+
+    problem: Problem
+    prepared: tuple[PreparedBody, ...]
+    known: Floats
+
+
+class WearStudy:
+    """A problem that wears, cycle after cycle. laws: one a contact. Raises ValueError."""
+
+    def __init__(
+        self, problem: Problem, laws: Sequence[Archard], cycle: Cycle, refresh: Refresh | None = None
+    ) -> None:
+        if len(laws) != len(problem.contacts):
+            raise ValueError(f"wear: wanted a law for each of {len(problem.contacts)} contacts, found {len(laws)}")
+        self.laws, self.cycle, self.refresh = tuple(laws), cycle, refresh or Refresh()
+        self.sides = _wearing_sides(problem, self.laws)
+        if not self.sides:
+            raise ValueError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
+        prepared = prepare(problem)
+        self._ends = np.cumsum([0] + [len(prepared[b].surfaces[g].points) for b, g in self.sides])
+        self.geometry = Geometry(problem, prepared, np.zeros(self._ends[-1]))
+        self.refreshed = 0
+
+    def evaluate(self, depth: Floats, before: CycleState | None = None) -> CycleState:
+        """One cycle at depths (n,), see `Wearable`."""
+        return self._solved(depth, 0.0)
+
+    def implicit(self, depth: Floats, now: CycleState, length: float) -> tuple[Floats, CycleState]:
+        """A block with the contact law itself wearing, see `Wearable`. Only for cycles with travel."""
+        end = self._solved(depth, length)
+        return length * end.rate, end
+
+    def _solved(self, depth: Floats, ahead: float) -> CycleState:
+        own = self.geometry
+        worn = Worn(own.problem, self.laws, self.cycle, self.by_side(depth - own.known), ahead)
+        states = rubbings(worn, own.prepared)
+        rates = added(self.laws, own.problem, states)
+        rate = np.concatenate([rates[side] for side in self.sides])
+        return CycleState(
+            rate, self.areas, _deformation(own.problem, states), tuple(map(tuple, states)), self._volumes(rates),
+            self._integrals(states),
+        )  # fmt: skip
+
+    def blocks(
+        self, cycles: float, settings: BlockSettings, begin: Floats | None = None
+    ) -> Iterator[Block[CycleState]]:
+        """Blocks until so many cycles are done; begin: depths to start from. Raises WearStopped, VolumeLost,
+        MeshInverted."""
+        state: WearState[CycleState] = unworn(self, np.zeros(self._ends[-1]) if begin is None else begin, settings)
+        while state.cycles < cycles * (1.0 - 1e-12):
+            block = next_block(self, state, cycles, settings)
+            state = block.state
+            _certify(state.now)
+            if np.abs(state.depth - self.geometry.known).max() > self.refresh.depth:
+                self.follow(state.depth)
+            yield block
+
+    def follow(self, depth: Floats) -> None:
+        """Moves the meshes to these depths, and condenses the bodies anew. Raises MeshInverted."""
+        self.geometry = self._moved(depth)
+        self.refreshed += 1
+
+    @property
+    def areas(self) -> Floats:
+        """(n,) of all nodes that wear [mm²; mm in 2D]."""
+        return np.concatenate([self.geometry.prepared[b].surfaces[g].weights() for b, g in self.sides])
+
+    def by_side(self, depth: Floats) -> Depths:
+        """Depths (n,) as one array a side."""
+        return {side: depth[a:b] for side, a, b in zip(self.sides, self._ends, self._ends[1:])}
+
+    def meshes(self, depth: Floats) -> tuple[MeshData, ...]:
+        """The bodies' meshes moved to these depths. Raises MeshInverted."""
+        return tuple(body.mesh for body in self._moved_problem(depth).bodies)
+
+    def _moved(self, depth: Floats) -> Geometry:
+        problem = self._moved_problem(depth)
+        return Geometry(problem, prepare(problem), depth.copy())
+
+    def _moved_problem(self, depth: Floats) -> Problem:
+        new, own = self.by_side(depth - self.geometry.known), self.geometry
+        bodies = tuple(self._moved_body(i, body, new) for i, body in enumerate(own.problem.bodies))
+        return replace(own.problem, bodies=bodies)
+
+    def _moved_body(self, index: int, body: Body, new: Depths) -> Body:
+        surfaces = self.geometry.prepared[index].surfaces
+        worn = [WornSurface(surfaces[group], new[b, group]) for b, group in self.sides if b == index]
+        if not worn:
+            return body
+        held = _resting(body)
+        mesh = worn_mesh(body.mesh, worn, held, self.refresh.follow, self.refresh.least_quality)
+        return replace(body, mesh=mesh)
+
+    def _volumes(self, rates: Depths) -> dict[Side, float]:
+        surfaces = {side: self.geometry.prepared[side[0]].surfaces[side[1]] for side in self.sides}
+        return {side: float(surfaces[side].weights() @ rates[side]) for side in self.sides}
+
+    def _integrals(self, states: list[list[Rubbing]]) -> dict[Side, float]:
+        total = dict.fromkeys(self.sides, 0.0)
+        for contact, law, own in zip(self.geometry.problem.contacts, self.laws, states):
+            for side, K in zip((contact.first, contact.second), law.both):
+                if K > 0.0:
+                    total[side] += K * sum(float(state.work.sum()) for state in own)
+        return total
+
+
+def _wearing_sides(problem: Problem, laws: Sequence[Archard]) -> tuple[Side, ...]:
+    sides = []
+    for contact, law in zip(problem.contacts, laws):
+        sides += [side for side, K in zip((contact.first, contact.second), law.both) if K > 0.0]
+    return tuple(dict.fromkeys(sides))
+
+
+def _resting(body: Body) -> list[str]:
+    """Facet groups that stay where they are when the mesh moves."""
+    rigid = [body.rigid.group] if body.rigid else []
+    return [*{*(s.group for s in body.supports), *(t.group for t in body.loads), *rigid}]
+
+
+def _deformation(problem: Problem, states: list[list[Rubbing]]) -> float:
+    """Largest p̄ ℓ/E* [mm] of all contacts, p̄ the mean pressure on the pressed length or area ℓ or ℓ²: what an elastic
+    half-space gives way, π/2 times b²/2R under a Hertzian line."""
+    found = 0.0
+    for contact, own in zip(problem.contacts, states):
+        one, other = (problem.bodies[index].material for index, _ in (contact.first, contact.second))
+        modulus = 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
+        for result in (state.result for state in own):
+            pressed = float(result.weights[result.pressure > 0.0].sum())
+            length = pressed ** (1.0 / (result.points.shape[1] - 1))
+            mean = float(result.weights @ result.pressure) / pressed if pressed else 0.0
+            found = max(found, mean * length / modulus)
+    return found
+
+
+def _certify(state: CycleState) -> None:
+    """Raises VolumeLost."""
+    for side, volume in state.volumes.items():
+        wanted = state.integrals[side]
+        if abs(volume - wanted) > VOLUME * abs(wanted):
+            raise VolumeLost(
+                f"wear of body {side[0]}, {side[1]!r}: wanted the volume K/H·∫∫p|v_s| = {wanted:.9g}, found "
+                f"{volume:.9g} at the nodes; the surface does not cover its contact: put all facets that may touch into "
+                "the group"
+            )

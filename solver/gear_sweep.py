@@ -28,8 +28,8 @@ class SweepState:
     """Where a sweep stands: everything that the next position needs.
 
     extra: rotations [rad] to start the next search from. memories: one per friction coefficient (None: no past).
-    footprint: where the flanks were pressed; without it Newton's method takes more iterations to the same solution.
-    Extra and footprint are of the last position that `alike` does not count with the next.
+    footprint: where the flanks were pressed. Without extra and footprint the next position is the same, but takes more
+    searches and iterations.
     """
 
     extra: tuple[float, float]
@@ -67,15 +67,6 @@ def initial_state(frictions: Sequence[float]) -> SweepState:
     return SweepState((0.0, 0.0), tuple(None for _ in frictions))
 
 
-def alike(k: int, count: int) -> range:
-    """Which of `count` positions, from number k on, are searched from the same state: pairs but for the first one.
-
-    It lets two ranks prepare one each, and on one rank it is done likewise, as results depend on where a search starts
-    as far as `gear_position.RELOCATE` lets them.
-    """
-    return range(k, min(count, k + 1 + k % 2))
-
-
 def sweep_pitch(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0,
     common: SharedPosition | None = None,
@@ -89,11 +80,8 @@ def sweep_pitch(
     span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
     for k in range(begin, len(pitch.angles)):
         position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
-        after, common = position.state, None
-        if k + 1 in alike(k, len(pitch.angles)):
-            after = replace(after, extra=state.extra, footprint=state.footprint)
-        state = after
-        yield replace(position, warm_up=k < pitch.warm_up, state=after)
+        state, common = position.state, None
+        yield replace(position, warm_up=k < pitch.warm_up)
 
 
 def _advance(

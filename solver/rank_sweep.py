@@ -1,8 +1,8 @@
 """A pitch of gear positions on several ranks: two prepare a position each, then all solve friction.
 
 Search, compliance and the frictionless equilibrium are most of a position and ask for nothing that friction made of the
-one before; `gear_sweep` lets two neighbours start from the same state. Friction follows position by position, the
-coefficients divided among the ranks, which read what was prepared from the same memory.
+one before, and where their search starts makes no difference. Friction follows position by position, the coefficients
+divided among the ranks, which read what was prepared from the same memory.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from mpi4py import MPI
 from solver.cores import Cores
 from solver.gear_model import GearModel
 from solver.gear_position import SharedPosition, shared_position
-from solver.gear_sweep import Pitch, SweepState, SweptPosition, alike, sweep_pitch
+from solver.gear_sweep import Pitch, SweepState, SweptPosition, sweep_pitch
 from solver.newton import NotConverged
 from solver.parallel import Board, together
 
-PREPARING = 2  # ranks, as `alike` makes pairs
+PREPARING = 2  # ranks: from further away a search takes longer
 
 
 def sweep_on_ranks(
@@ -58,7 +58,7 @@ class _Crew:
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
         while begin < len(self.pitch.angles):
-            numbers = alike(begin, len(self.pitch.angles))
+            numbers = range(begin, min(begin + PREPARING, len(self.pitch.angles)))
             own = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
             prepared = [self._handed_over(own, root) for root in range(len(numbers))]
             del own  # a compliance that was handed over is not needed twice

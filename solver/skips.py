@@ -17,9 +17,6 @@ ROUND_OFF = 1e-8
 """Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
 REPEATED = 1e-10
 """Nothing is computed otherwise, but two runs differ by rounding as their arrays lie elsewhere (6e-12 was seen)."""
-SEARCH = 1e-4
-"""Of what starts from another guess of the free rotation. The gap is linear in up to 0.5 µm of it, which makes it wrong
-by up to 1e-7 mm (`gear_position.RELOCATE`), and flanks approach each other by some µm. Found: 2e-5 in the pressure."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +101,7 @@ SKIPS: tuple[Skip, ...] = (
         "warm-up",
         _is_frictionless,
         lambda scene: f"The {scene.sweep.warm_up_positions} warm-up positions: without friction there is no history.",
-        tolerance=SEARCH,
+        tolerance=ROUND_OFF,
     ),
     Skip("one-pitch", _always, _pitch_sentence, tolerance=1e-4),  # friction's history at its start: warmed up or known
     Skip("one-sector", _always, _sector_sentence, tolerance=ROUND_OFF),  # the ring's coupling is compressed to 1e-10

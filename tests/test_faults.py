@@ -39,14 +39,14 @@ def test_difference_is_seen(whole: Path, tmp_path: Path) -> None:
 
 
 def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) -> None:
-    """kill -9 of one of two ranks in its third turn, after one position and a pair: the run ends at once with a status
+    """kill -9 of one of two ranks in its third turn, after two pairs of positions: the run ends at once with a status
     that is not 0, what was complete is whole, and resumed on one rank it is the undisturbed run."""
     out = tmp_path / "out"
     script = "tests/broken_run.py"
     done = run_script(script, "killrank-1-3", *arguments(out), ranks=2)
     assert done.returncode != 0
     assert not (out / "summary.json").exists()
-    assert read_arrays(out / "results" / "state.npz")["complete"] == 3
+    assert read_arrays(out / "results" / "state.npz")["complete"] == 4
     assert run(out, "--resume").returncode == 0
     assert differs(out, whole) < 1e-7
 

@@ -34,7 +34,7 @@ from wear.study import CycleState, WearStudy
 
 DIAMETER, LENGTH, LOAD, FRICTION = 6.0, 8.0, 500.0, 0.1  # mm, mm, N; length and μ are not printed
 TRACK = 40.0  # radius of the track on the disc [mm], not printed
-COEFFICIENT = 1.3832e-10  # mm²/N
+COEFFICIENT, RATE = 1.3832e-10, 2.446  # mm²/N; µm per km
 DRAG = 0.05  # mm of sliding until friction has its direction everywhere
 KILOMETRE = 1e6 / TRACK  # rad
 
@@ -79,7 +79,7 @@ def turning() -> Cycle:
     return Cycle(steps, (Travel(1, rotation=(0.0, 0.0, KILOMETRE), centre=(0.0, -TRACK, 0.0)),))
 
 
-def run(size: float, distance: float) -> tuple[WearStudy, list[Stage]]:
+def run(size: float, distance: float) -> list[Stage]:
     """Stages after every block."""
     study = WearStudy(problem(size), (Archard(COEFFICIENT),), turning())
     areas = study.geometry.prepared[0].surfaces["top"].weights()
@@ -88,8 +88,7 @@ def run(size: float, distance: float) -> tuple[WearStudy, list[Stage]]:
     for block in study.blocks(distance, BlockSettings(first=0.01, tolerance=0.1)):
         depth = 1e3 * float(areas @ block.state.depth) / float(areas.sum())
         stages.append(Stage(block.state.cycles, depth, block.state.now))
-        print(f"{block.state.cycles:8.3f} km, {depth:8.4f} µm, error {block.error:.3f}", flush=True)
-    return study, stages
+    return stages
 
 
 def draw(stages: list[Stage], out: Path) -> None:
@@ -106,7 +105,7 @@ def draw(stages: list[Stage], out: Path) -> None:
             )
             axis.set(aspect="equal", title=f"{stage.distance:.3g} km", xlabel="x, sliding [mm]")
         figure.colorbar(shown, ax=axes, label="pressure [MPa]")
-        save(figure, out / "pressure.png")
+        save(figure, out / "pin_on_disc.png")
         figure = sheet("Wear depth of the pin", f"{rate(stages):.3f} µm per km; F/A · K/H is 2.446")
         axis = figure.add_subplot()
         axis.plot([s.distance for s in stages], [s.depth for s in stages], "o-", ms=3)
@@ -137,27 +136,33 @@ def evenness(stage: Stage) -> tuple[float, float]:
     return found[0], found[1]
 
 
+def check(stages: list[Stage]) -> None:
+    """Raises AssertionError where the wear is not what Archard's law asks for."""
+    first, last = stages[0], stages[-1]
+    (p_first, _), (p_last, pv_last) = evenness(first), evenness(last)
+    print(f"{rate(stages):.4f} µm per km; force {skew(first):+.3f} mm off the middle, in the end {skew(last):+.4f} mm")
+    print(f"pressure even to {100 * p_first:.1f} %, in the end {100 * p_last:.1f} %, p v to {100 * pv_last:.2f} %")
+    assert abs(rate(stages) / RATE - 1.0) < 0.005, f"wanted {RATE} µm per km, found {rate(stages):.4f}"
+    assert skew(first) > 0.1, f"wanted the unworn pin to press ahead of its middle, found {skew(first):.3f} mm"
+    assert pv_last < 0.02, f"wanted the same depth a turn everywhere, found p v uneven by {100 * pv_last:.1f} %"
+
+
 def main(
     out: Annotated[Path, typer.Option()] = Path("out/pin_on_disc"), quick: bool = False, km: float = 10.0
 ) -> None:
-    """Compute, print, write depth.csv and the pictures."""
+    """Compute, check, write table.csv and the pictures."""
     compat.silence_logs()
-    _, stages = run(0.8 if quick else 0.4, km)
+    stages = run(0.8 if quick else 0.4, km)
     if MPI.COMM_WORLD.rank:
         return
+    check(stages)
     out.mkdir(parents=True, exist_ok=True)
-    with open(out / "depth.csv", "w", newline="", encoding="utf-8") as file:
+    with open(out / "table.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["sliding_distance_km", "depth_um"])
         table.writerows([f"{s.distance:.6g}", f"{s.depth:.6g}"] for s in stages)
-    for stage in (stages[0], stages[-1]):
-        p, pv = evenness(stage)
-        print(f"{stage.distance:.3g} km: force {skew(stage):+.3f} mm off the middle, p even to {100 * p:.1f} %, p v to "
-              f"{100 * pv:.1f} %")  # fmt: skip
-    print(f"rate {rate(stages):.4f} µm per km")
     draw(stages, out)
 
 
 if __name__ == "__main__":
     typer.run(main)
-

@@ -33,3 +33,12 @@ def test_gear_demo(run_script, tmp_path, ranks):
     assert max(row["balance_error"] for row in summary["positions"]) < 1e-2
     assert (tmp_path / "fields" / "contact.pvd").exists()
     assert len(list((tmp_path / "pictures").glob("*.png"))) >= 10
+
+
+@pytest.mark.parametrize("demo", ["pin_on_disc", "he2022_wear"])
+def test_wear_demo(run_script, tmp_path, demo):
+    """Status 0, a table of at least ten rows and a picture; the demo itself asserts what Archard's law asks for."""
+    done = run_script(f"demos/{demo}.py", "--quick", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert (tmp_path / f"{demo}.png").stat().st_size > 20_000
+    assert len((tmp_path / "table.csv").read_text().splitlines()) > 10

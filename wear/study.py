@@ -193,6 +193,5 @@ def _certify(state: CycleState) -> None:
         if abs(volume - wanted) > VOLUME * abs(wanted):
             raise VolumeLost(
                 f"wear of body {side[0]}, {side[1]!r}: wanted the volume K/H·∫∫p|v_s| = {wanted:.9g}, found "
-                f"{volume:.9g} at the nodes; the surface does not cover its contact: put all facets that may touch into "
-                "the group"
+                f"{volume:.9g} at the nodes; put all facets that may touch into the group"
             )

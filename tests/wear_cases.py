@@ -29,21 +29,21 @@ SPHERE_DEPTH = float(brentq(lambda h: np.pi * h**2 * (RADIUS - h / 3.0) - K * PO
 SPHERE_WIDTH = float(np.sqrt(2.0 * RADIUS * SPHERE_DEPTH - SPHERE_DEPTH**2))
 
 
-def cylinder(cells: float = 8.0, order: int = 2, friction: float = 0.0, shape: str = "quadrilateral") -> Problem:
+def cylinder(cells: float = 8.0, order: int = 2, friction: float = 0.0, material: Material = RIGID) -> Problem:
     """A half cylinder (body 0) on a slab, `cells` cells over the worn half-width."""
     size, fine = CYLINDER_WIDTH / cells, 1.3 * CYLINDER_WIDTH
     pin = Body(
-        cylinder_2d(RADIUS, size, fine, order, shape, contact=fine),
-        RIGID, rigid=Rigid("top", (Freedom("y", load=-LINE_LOAD),)), name="cylinder",
+        cylinder_2d(RADIUS, size, fine, order, contact=fine),
+        material, rigid=Rigid("top", (Freedom("y", load=-LINE_LOAD),)), name="cylinder",
     )  # fmt: skip
-    slab = graded_rectangle(4.0, 2.0, size / 1.25, 1.5 * fine, order, shape)
+    slab = graded_rectangle(4.0, 2.0, size / 1.25, 1.5 * fine, order)
     return Problem(
-        (pin, Body(near(slab, 1.5 * fine), RIGID, (Fixed("bottom"),), name="slab")),
+        (pin, Body(near(slab, 1.5 * fine), material, (Fixed("bottom"),), name="slab")),
         (Contact((0, "arc"), (1, "near"), friction, reach=0.05),),
     )
 
 
-def sphere(cells: float = 5.0) -> Problem:
+def sphere(cells: float = 4.0) -> Problem:
     """A quarter of a half sphere (body 0) on a slab, `cells` cells over the worn radius."""
     size, fine = SPHERE_WIDTH / cells, 1.25 * SPHERE_WIDTH
     ball = ring_sphere(RADIUS, 1.5, 1.5, SPHERE_WIDTH, size, fine, growth=1.7)

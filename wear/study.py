@@ -70,6 +70,7 @@ class WearStudy:
         self.sides = _wearing_sides(problem, self.laws)
         if not self.sides:
             raise ValueError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
+        _refuse_tracks(self.sides, cycle)
         prepared = prepare(problem)
         self._ends = np.cumsum([0] + [len(prepared[b].surfaces[g].points) for b, g in self.sides])
         self.geometry = Geometry(problem, prepared, np.zeros(self._ends[-1]))
@@ -163,6 +164,16 @@ def _wearing_sides(problem: Problem, laws: Sequence[Archard]) -> tuple[Side, ...
     for contact, law in zip(problem.contacts, laws):
         sides += [side for side, K in zip((contact.first, contact.second), law.both) if K > 0.0]
     return tuple(dict.fromkeys(sides))
+
+
+def _refuse_tracks(sides: Sequence[Side], cycle: Cycle) -> None:
+    """Raises ValueError where a body wears that travels: it would wear on its whole track, not where it is touched."""
+    for travel in cycle.travel:
+        if any(body == travel.body for body, _ in sides):
+            raise ValueError(
+                f"wear: wanted bodies that stay where they are, found body {travel.body}, which travels and wears; "
+                "give it no K/H, or let it go to and fro in the cycle's steps"
+            )
 
 
 def _resting(body: Body) -> list[str]:

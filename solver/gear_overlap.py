@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from meshes.data import Floats, Ints
-from solver.gear_contact import PENETRATION, GearContact, facets_in_window, placed_flanks
+from solver.gear_contact import PENETRATION, GearContact
+from solver.gear_window import facets_in_window, placed_flanks
 from solver.lagrange import tabulate
 from solver.search import Pairing, pair_surfaces
 from solver.surface import Surface

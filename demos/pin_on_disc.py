@@ -120,7 +120,7 @@ def rate(stages: list[Stage]) -> float:
 
 
 def skew(stage: Stage) -> float:
-    """Offset [mm] of the force's line of action in the direction in which the disc moves under the pin."""
+    """Offset [mm] of the force's line of action towards the edge that the disc comes from (it moves to −x)."""
     result = stage.state.rubbing[0][-1].result
     force = result.weights * result.pressure
     return float(force @ result.points[:, 0] / force.sum())

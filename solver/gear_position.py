@@ -181,15 +181,19 @@ def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
 def worn_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
     """The same position after the model's flanks have worn on: search and compliance stay, the gap and the frictionless
     state are new. None where the gears have moved so far, or the contact so near to the window's rim, that the position
-    has to be searched again. Raises NotConverged."""
+    has to be searched again, or where no solution is found."""
     contact = shared.contact.on(model.bodies)
     system = replace(shared.system, operator=contact.operator)
     pressed = shared.smooth.traction[:, 0] > 0.0
-    smooth = frictionless(system if system.k == 1 else normal_part(system), pressed if pressed.any() else None)
-    shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
-    if abs(shift) > STALE * model.pair.pinion.normal_module or contact.reaches_rim(smooth.traction[:, 0] > 0.0):
+    try:
+        smooth = frictionless(system if system.k == 1 else normal_part(system), pressed if pressed.any() else None)
+    except NotConverged:
         return None
-    return SharedPosition(contact, system, smooth)
+    shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+    good = abs(shift) <= STALE * model.pair.pinion.normal_module
+    good = good and not contact.reaches_rim(smooth.traction[:, 0] > 0.0)
+    good = good and overlap_outside(contact, smooth.force, model.teeth) == 0.0
+    return SharedPosition(contact, system, smooth) if good else None
 
 
 def _foreseen(contact: GearContact, before: Footprint | None) -> np.ndarray:

@@ -22,6 +22,8 @@ from solver.lagrange import tabulate as shape_functions
 
 # Degree of the rule on each sub-facet for ∫ψ_j N_k: exact on plane facets (also distorted ones), ample on curved ones.
 MASS_DEGREE = 6
+INNER_NODES = {("interval", 2): [2], ("quadrilateral", 2): [8], ("triangle", 2): [3, 4, 5]}
+"""Of second-order facets in basix's order: nodes that a facet has for itself; of a triangle those of its edges."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,20 @@ class Surface:
         k = self.facets.shape[1]
         rows, columns = np.repeat(self.facets, k, axis=1).ravel(), np.tile(self.facets, (1, k)).ravel()
         return csr_matrix((local.ravel(), (rows, columns)), shape=(len(self.points),) * 2)
+
+    def with_volume_of_hats(self, field: Floats) -> Floats:
+        """A nodal field (n,) whose interpolation by shape functions has, facet by facet, the integral that the hats
+        give the one it comes from; only inner nodes of facets (edge nodes of triangles) differ. In order 1 both are
+        the same."""
+        inner = INNER_NODES.get((self.shape, self.order))
+        if inner is None:
+            return field
+        psi, shape, measure = self._rule()
+        missing = np.einsum("mk,mk->m", measure @ (psi - shape), field[self.facets])
+        share = (measure @ shape)[:, inner]
+        result = field.copy()
+        np.add.at(result, self.facets[:, inner], (missing / share.sum(axis=1))[:, None])
+        return result
 
     def hat_matrix(self, facets: Ints, xi: Floats) -> csr_matrix:
         """(q, n) ψ_j at xi (q, dt) of the facets (q,); a point that lies a little outside counts to the rim."""

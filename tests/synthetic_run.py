@@ -143,7 +143,8 @@ def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, fricti
     rate[:, 1] = (1.0 + 1.0 / pair.ratio) * ξ
     start, end = pair.path_of_contact
     edge = (ξ < start + LAST_ROW) | (ξ > end - LAST_ROW)
-    return ContactPoints(np.full(len(z), tooth), z, ξ, s, weights, traction, rate, np.zeros(len(z), dtype=bool), edge)
+    slides = np.zeros(len(z), dtype=bool)
+    return ContactPoints(np.full(len(z), tooth), z, ξ, s, -s, weights, traction, rate, slides, edge)
 
 
 def layer_points(flank: Surface) -> tuple[Floats, Floats]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from surface_shapes import curve, lattice
 
+from meshes.blocks import box, rectangle
 from meshes.data import MeshData
 from solver.facet import TURNED_OVER, reference_cell, subcell_rule
 from solver.surface import Surface, hats, shape_functions, surface_of
@@ -193,3 +194,18 @@ def test_surface_of_says_what_is_wrong():
         surface_of(mesh, "cut")
     with pytest.raises(ValueError, match="not finite"):
         Surface.from_arrays([[0, 0], [np.nan, 1]], [[0, 1]], "interval", 1)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("shape", ["quadrilateral", "hexahedron", "tetrahedron"])
+def test_with_volume_of_hats(shape: str, order: int) -> None:
+    """A random field: ∫N·(changed) = ∫ψ·(field) over the whole surface to rounding; in order 1 nothing changes, and a
+    constant never does."""
+    plane = shape == "quadrilateral"
+    mesh = rectangle(2.0, 1.0, 5, 3, order) if plane else box((2.0, 1.0, 1.0), (4, 3, 2), order, shape)
+    top = surface_of(mesh, "top")
+    field = np.random.default_rng(1).uniform(0.0, 1.0, len(top.points))
+    changed = top.with_volume_of_hats(field)
+    assert float(np.ones(len(field)) @ (top.mass() @ changed)) == pytest.approx(float(top.weights() @ field), rel=1e-12)
+    assert (order == 1) == bool((changed == field).all())
+    np.testing.assert_allclose(top.with_volume_of_hats(np.ones(len(field))), 1.0, rtol=1e-13)

@@ -60,6 +60,7 @@ BAD = {
     "unsorted": ("sliding_distance_m,depth_um\n0,0\n2000,2\n1000,1\n3000,3\n4000,4\n", "rises from line to line"),
     "no unit": ("sliding_distance,depth\n0,0\n1,1\n", "wanted one column named sliding_distance_mm or"),
     "unknown unit": ("sliding_distance_mi,depth_um\n0,0\n1,1\n", "wanted one column named sliding_distance_mm or"),
+    "twice": ("sliding_distance_m,depth_um,depth_um\n0,0,0\n1,1,1\n", "wanted one column named depth_um or depth_mm"),
     "empty": ("", "wanted a header and lines of numbers"),
     "too few": ("sliding_distance_m,depth_um\n0,0\n1000,1\n", "wanted at least 5 lines from 0 m on, found 2"),
     "grows thinner": ("sliding_distance_m,depth_um\n0,5\n1000,4\n2000,3\n3000,2\n4000,1\n", "is the record's depth"),

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wear_cases import mesh_volume
 
 from meshes.blocks import box, cylinder_2d, rectangle
 from meshes.data import MeshData
 from meshes.quality import scaled_jacobians
 from solver.surface import surface_of
-from wear.motion import MeshInverted, WornSurface, directions, worn_mesh
+from wear.motion import MeshInverted, WornSurface, directions, mesh_volume, worn_mesh
 
 
 def block(shape: str, order: int) -> MeshData:

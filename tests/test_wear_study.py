@@ -8,11 +8,11 @@ from wear_cases import (
     CYLINDER_DEPTH,
     CYLINDER_WIDTH,
     LINE_LOAD,
+    POINT_LOAD,
     SLIDING,
     SPHERE_DEPTH,
     K,
     cylinder,
-    mesh_volume,
     sphere,
 )  # fmt: skip
 
@@ -21,6 +21,7 @@ from solver.problem import Placement, Step
 from wear.blocks import BlockSettings
 from wear.cycle import Cycle, Travel
 from wear.law import Archard
+from wear.motion import mesh_volume
 from wear.study import Refresh, WearStudy
 
 MILLIMETRE = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
@@ -64,11 +65,11 @@ def to_and_fro(stroke: float) -> Cycle:
 @pytest.mark.parametrize("laws", [Archard(K), Archard(0.0, K), Archard(K, 3.0 * K)])
 @pytest.mark.parametrize(("order", "friction"), [(1, 0.0), (1, 0.3), (2, 0.0), (2, 0.3)])
 def test_both_sides(laws: Archard, order: int, friction: float) -> None:
-    """One or both bodies wear as the slab goes to and fro by 0.02 mm: on every side that wears, and on no other, the
+    """One or both bodies wear as the slab goes to and fro by 0.0005 mm: on every side that wears, and on no other, the
     volume at the nodes is K/H ∫∫p|v_s| within 1e-6 in every block, and with friction that is what friction takes over
     μ. The sliding is the stroke less what the bodies give way."""
-    study, stroke = WearStudy(cylinder(5.0, order, friction), (laws,), to_and_fro(0.02)), 0.02
-    blocks = list(study.blocks(3e4, BlockSettings(first=1e4, implicit=False)))
+    study, stroke = WearStudy(cylinder(5.0, order, friction), (laws,), to_and_fro(5e-4)), 5e-4
+    blocks = list(study.blocks(9e5, BlockSettings(first=3e5, implicit=False)))
     assert len(blocks) == 3
     assert set(blocks[-1].state.now.volumes) == {s for s, k in zip(((0, "arc"), (1, "near")), laws.both) if k > 0.0}
     for state in (block.state.now for block in blocks):
@@ -76,7 +77,7 @@ def test_both_sides(laws: Archard, order: int, friction: float) -> None:
             if K_own > 0.0:
                 work = sum(float(own.work.sum()) for own in state.rubbing[0])
                 assert state.volumes[side] == pytest.approx(K_own * work, rel=1e-6)
-                assert work == pytest.approx(4.0 * stroke * LINE_LOAD, rel=0.01)
+                assert 0.97 < work / (4.0 * stroke * LINE_LOAD) < 1.0 + 1e-5
         if friction:
             results = [own.result for own in state.rubbing[0]]
             drag = [r.traction - r.pressure[:, None] * r.normals for r in results]
@@ -111,3 +112,43 @@ def test_explicit_and_implicit_agree() -> None:
         *_, block = study.blocks(2e4, settings)
         depths.append(block.state.depth)
     assert study.areas @ np.abs(depths[0] - depths[1]) < 0.02 * study.areas @ depths[1]
+
+
+def test_the_loop_goes_on() -> None:
+    """Steel that goes to and fro by little more than it sticks: each leg slides as in a loop that has gone on for ever,
+    the way out as far as the way back, and pressing wears nothing."""
+    steel = Material(2.1e5, 0.3)
+    study = WearStudy(cylinder(4.0, 1, 0.3, steel), (Archard(K),), to_and_fro(2e-4))
+    state = study.evaluate(np.zeros(len(study.areas)))
+    work = [float(own.work.sum()) for own in state.rubbing[0]]
+    assert work[0] == pytest.approx(0.0, abs=1e-9 * max(work))
+    assert work[2] == pytest.approx(work[4], rel=1e-3)
+
+
+def test_long_steps_are_refused() -> None:
+    """A step of 0.3 mm over a contact of 0.05 mm: what lies between would not wear."""
+    steel = Material(2.1e5, 0.3)
+    study = WearStudy(cylinder(4.0, 1, 0.0, steel), (Archard(K),), to_and_fro(0.3))
+    with pytest.raises(ValueError, match="wanted steps that slide less than the contact is wide"):
+        study.evaluate(np.zeros(len(study.areas)))
+
+
+def test_travel_of_nothing() -> None:
+    """A body that there is not, and a cycle in which nothing slides."""
+    with pytest.raises(ValueError, match="wanted travel of a body below 2, found body 5"):
+        WearStudy(cylinder(3.0), (Archard(K),), Cycle(travel=(Travel(5, translation=(1.0, 0.0, 0.0)),)))
+    still = WearStudy(cylinder(3.0), (Archard(K),), Cycle(travel=(Travel(1),)))
+    with pytest.raises(ValueError, match="wanted a cycle in which something slides"):
+        still.evaluate(np.zeros(len(still.areas)))
+
+
+def test_sphere_whose_mesh_follows() -> None:
+    """A quarter of a sphere, whose planes of symmetry come down with it: the mesh loses what the contact took away
+    within 0.1 %."""
+    whole = mesh_volume(sphere().bodies[0].mesh)
+    study = WearStudy(sphere(), (Archard(K),), MILLIMETRE, Refresh(depth=3e-3))
+    *_, block = study.blocks(5e4, BlockSettings(first=5e3, tolerance=0.3))
+    study.follow(block.state.depth)
+    assert study.refreshed >= 1
+    lost = whole - mesh_volume(study.geometry.problem.bodies[0].mesh)
+    assert lost == pytest.approx(K * POINT_LOAD / 4.0 * 5e4, rel=1e-3)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import ufl
 from scipy.optimize import brentq
 
 from meshes.blocks import cylinder_2d, graded_rectangle
 from meshes.data import MeshData
 from meshes.rings import ring_block, ring_sphere
-from solver import compat
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.problem import Contact, Problem
@@ -55,13 +53,6 @@ def sphere(cells: float = 4.0) -> Problem:
         Body(near(slab, 1.5 * fine), RIGID, (*symmetry, Fixed("bottom")), name="slab"),
     )
     return Problem(bodies, (Contact((0, "near"), (1, "near"), reach=0.05),))
-
-
-def mesh_volume(mesh: MeshData) -> float:
-    """By dolfinx [mm³; mm²]."""
-    domain = compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
-    dx = ufl.Measure("dx", domain=domain, metadata={"quadrature_degree": 2 * mesh.order + 2})
-    return compat.assemble_number(compat.constant(domain, 1.0) * dx)
 
 
 def near(mesh: MeshData, width: float, group: str = "top") -> MeshData:

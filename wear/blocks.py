@@ -3,7 +3,7 @@
 Explicit: the rates of this block's start and of the last one foretell the block's end, the rate there corrects it by
 the trapezoid rule; their difference is the error. One rate a block, but ripples where a block is longer than the
 contact takes to wear them off. Implicit: the rate is that of the block's end (Euler), stable for any length; the error
-is half the difference of the rates at both ends. A state is a value: a block that is refused leaves nothing behind.
+is the difference from the trapezoid rule. A state is a value: a block that is refused leaves nothing behind.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from solver.search import SearchError
 LOG = logging.getLogger("evolvent")
 SAFETY, LONGER, SHORTER = 0.8, 2.0, 0.2  # of the next block's length over this one's
 HALVINGS = 12  # of a block before it is given up
+NEGATIVE = 1e-6  # of a block's largest depth: a depth below minus that is no rounding
 
 
 class WearStopped(RuntimeError):
@@ -33,7 +34,7 @@ class BlockSettings:
 
     first: length of the first block [cycles]; none is made shorter because of its error. tolerance: the share of a
     block's volume that may be worn off in the wrong place. implicit: see above. deformation_share: largest depth of an
-    explicit block over the contact's deformation.
+    explicit block over the contact's deformation, where the cycle tells it (that of a problem does, a pitch not).
     """
 
     first: float
@@ -133,13 +134,15 @@ def _tried(
     begin = state.now.rate
     if settings.implicit:
         gained, end = wearable.implicit(state.depth, state.now, length)
-        error = 0.5 * length * (end.rate - begin)
+        error = gained - 0.5 * length * (begin + end.rate)
     else:
         slope = 0.0 if state.last is None else (begin - state.last[0]) / state.last[1]
         foretold = length * np.maximum(begin + 0.5 * length * slope, 0.0)
         end = wearable.evaluate(state.depth + foretold, state.now)
         gained = 0.5 * length * (begin + end.rate)
         error = gained - foretold
+    if not (np.isfinite(gained).all() and gained.min(initial=0.0) >= -NEGATIVE * gained.max(initial=0.0)):
+        raise NotConverged(f"a block of {length:.6g} cycles would put {-gained.min():.2g} mm of material on")
     areas, volume = state.now.areas, float(state.now.areas @ gained)
     share = float(areas @ np.abs(error)) / volume if volume > 0.0 else 0.0
     return WearState(state.cycles + length, state.depth + gained, end, (begin, length), length), share

@@ -2,6 +2,8 @@
 
 A cycle is a few steps, solved one after the other. Surfaces rub by the slip of the steps, or by *travel*: a rigid
 motion of a body that goes on through the last state while this stays as it is, such as a disc that turns under its pin.
+Cycles of slip follow one another without end: the steps are gone through twice, and the second time counts. What a step
+wears is put where it ends, so that a step may not be longer than the contact is wide.
 """
 
 from __future__ import annotations
@@ -43,7 +45,8 @@ class Travel:
 
 @dataclass(frozen=True)
 class Cycle:
-    """Steps, and what goes on through the last of them. Without travel the slip of all steps wears."""
+    """Steps, and what goes on through the last of them. Without travel the slip of all steps wears, and the cycle has
+    to end where it begins."""
 
     steps: tuple[Step, ...] = (Step(),)
     travel: tuple[Travel, ...] = ()
@@ -92,12 +95,15 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
         raise ValueError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
     before: History | None = None
     found: list[list[Rubbing]] = [[] for _ in worn.laws]
-    for number, step in enumerate(worn.cycle.steps):
+    count, steps = len(worn.cycle.steps), worn.cycle.steps if worn.cycle.travel else 2 * worn.cycle.steps
+    for number, step in enumerate(steps):
         position = _Wearing(worn, prepared, step)
         solution, before = position.solve(before)
-        if not worn.cycle.travel or number == len(worn.cycle.steps) - 1:
+        if number == len(steps) - 1 if worn.cycle.travel else number >= count:
             for i, result in enumerate(solution.contacts):
                 found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
+    if not any(state.sliding.any() for own in found for state in own):
+        raise ValueError("wear: wanted a cycle in which something slides, found none; give it travel or moving steps")
     return found
 
 
@@ -132,7 +138,16 @@ class _Wearing(Position):
         """(q,) [mm per cycle]."""
         if self.wear.cycle.travel:
             return self._travelled(index, result.points, result.normals)
-        return np.linalg.norm(result.slip, axis=1)
+        slid = np.linalg.norm(result.slip, axis=1)
+        pressed = result.pressure > 0.0
+        width = float(result.weights[pressed].sum()) ** (1.0 / (self.d - 1))
+        longest = float(slid[pressed].max(initial=0.0))
+        if longest > width:
+            raise ValueError(
+                f"wear: wanted steps that slide less than the contact is wide, found {longest:.3g} mm on {width:.3g} "
+                "mm; what lies between would be left out: take more steps"
+            )
+        return np.asarray(slid)
 
     def _travelled(self, contact: int, points: Floats, normals: Floats) -> Floats:
         """(q,) tangential part of the first body's path over the second one per cycle."""

@@ -71,6 +71,14 @@ class GearWear:
     """
 
     def __init__(self, model: GearModel, pitch: Pitch, friction: float, law: Archard) -> None:
+        """Raises ValueError unless the positions are equal steps of one pitch: they are one tooth's passage."""
+        angles = np.array(pitch.angles[pitch.warm_up :])
+        step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
+        if len(angles) < 2 or not np.allclose(np.diff(angles), step, rtol=1e-6):
+            raise ValueError(
+                f"wear: wanted at least two positions in equal steps over one pitch, found {len(angles)} over "
+                f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; see gear_sweep.uniform_pitch"
+            )
         self.model, self.pitch, self.friction, self.law = model, pitch, friction, law
         self.grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         self._first = len(model.bodies[0].flank.points)

@@ -49,7 +49,8 @@ def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
 
 
 def _place(path: Path, header: list[str], column: Column) -> tuple[int, float]:
-    found = [(header.index(name), factor) for name, factor in column.headers.items() if name in header]
+    known = column.headers
+    found = [(at, known[name]) for at, name in enumerate(header) if name in known]
     if len(found) != 1:
         raise TableError(
             f"{path}: wanted one column named {' or '.join(column.headers)}, found {', '.join(header) or 'no header'}; "

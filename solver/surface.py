@@ -96,17 +96,17 @@ class Surface:
         return csr_matrix((local.ravel(), (rows, columns)), shape=(len(self.points),) * 2)
 
     def with_volume_of_hats(self, field: Floats) -> Floats:
-        """A nodal field (n,) whose interpolation by shape functions has, facet by facet, the integral that the hats
-        give the one it comes from; only inner nodes of facets (edge nodes of triangles) differ. In order 1 both are
-        the same."""
+        """A nodal field (n,) whose interpolation by shape functions has the integral that the hats give the one it
+        comes from, nearly facet by facet; only inner nodes of facets (edge nodes of triangles) differ. In order 1 both
+        are the same."""
         inner = INNER_NODES.get((self.shape, self.order))
         if inner is None:
             return field
         psi, shape, measure = self._rule()
         missing = np.einsum("mk,mk->m", measure @ (psi - shape), field[self.facets])
-        share = (measure @ shape)[:, inner]
-        result = field.copy()
-        np.add.at(result, self.facets[:, inner], (missing / share.sum(axis=1))[:, None])
+        whole = np.bincount(self.facets.ravel(), (measure @ shape).ravel(), minlength=len(field))  # ∫N_k
+        nodes, result = self.facets[:, inner], field.copy()
+        np.add.at(result, nodes, (missing / whole[nodes].sum(axis=1))[:, None])
         return result
 
     def hat_matrix(self, facets: Ints, xi: Floats) -> csr_matrix:

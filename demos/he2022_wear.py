@@ -42,8 +42,6 @@ class Report:
     meshes: float
     depths: tuple[Floats, Floats]
     pitch: PitchState
-    blocks: int
-    searched: int
 
 
 def study(level: str, positions: int) -> tuple[GearWear, list[Report]]:
@@ -51,13 +49,12 @@ def study(level: str, positions: int) -> tuple[GearWear, list[Report]]:
     settings = BlockSettings(first=MESHES / 100.0)
     model = prepare_model(load_scene(SCENE, [f"mesh.level={level}"]), MPI.COMM_SELF).model
     gears = GearWear(model, uniform_pitch(model.pair.pinion.z, positions, 0), 0.0, Archard(COEFFICIENT, COEFFICIENT))
-    state, blocks, searched = unworn(gears, gears.unworn, settings), 0, 0
-    reports = [Report(0.0, gears.by_gear(state.depth), state.now, 0, state.now.searched)]
+    state = unworn(gears, gears.unworn, settings)
+    reports = [Report(0.0, gears.by_gear(state.depth), state.now)]
     for end in np.linspace(0.0, MESHES, REPORTS + 1)[1:]:
         while state.cycles < end * (1.0 - 1e-12):
-            block = next_block(gears, state, float(end), settings)
-            state, blocks, searched = block.state, blocks + 1, searched + block.state.now.searched
-        reports.append(Report(state.cycles, gears.by_gear(state.depth), state.now, blocks, searched))
+            state = next_block(gears, state, float(end), settings).state
+        reports.append(Report(state.cycles, gears.by_gear(state.depth), state.now))
     return gears, reports
 
 

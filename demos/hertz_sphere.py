@@ -16,7 +16,7 @@ error is a third; the table shows it.
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -28,6 +28,7 @@ from mpi4py import MPI
 from meshes.blocks import graded_box, sphere_quarter
 from meshes.data import Floats, MeshData
 from meshes.rings import ring_block, ring_sphere
+from meshes.variants import with_part
 from solver import compat, hertz
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import STEEL
@@ -89,18 +90,11 @@ def ball_on_block(
     symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
     down = Rigid("top", (Freedom("z", load=-LOAD / 4),))
     bodies = (
-        Body(near_contact(ball, "arc"), STEEL, symmetry, rigid=down, name="ball"),
-        Body(near_contact(block, "top"), STEEL, (*symmetry, Fixed("bottom")), name="block"),
+        Body(with_part(ball, "arc", "contact", 1.5 * HERTZ.radius), STEEL, symmetry, rigid=down, name="ball"),
+        Body(with_part(block, "top", "contact", 1.5 * HERTZ.radius), STEEL, (*symmetry, Fixed("bottom")), name="block"),
     )
     sides = ((1, "contact"), (0, "contact")) if first == "block" else ((0, "contact"), (1, "contact"))
     return Problem(bodies, (Contact(*sides, friction, reach=0.1 * HERTZ.radius),), nitsche)
-
-
-def near_contact(mesh: MeshData, group: str) -> MeshData:
-    """The mesh with a facet group "contact": the facets of `group` within 1.5 a. What cannot touch costs nothing."""
-    facets = mesh.facets[group]
-    near = np.hypot(*mesh.points[facets, :2].mean(axis=1).T) < 1.5 * HERTZ.radius
-    return replace(mesh, facets={**mesh.facets, "contact": facets[near]})
 
 
 def cases(quick: bool) -> dict[str, Problem]:

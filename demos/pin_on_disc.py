@@ -20,7 +20,7 @@ from mpi4py import MPI
 
 from meshes.data import MeshData
 from meshes.rings import ring_block
-from meshes.variants import doubled
+from meshes.variants import doubled, with_part
 from solver import compat
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.kinematics import turn
@@ -60,9 +60,7 @@ def problem(size: float) -> Problem:
     pin = whole(ring_block(radius, LENGTH, ring, size, 0.5 * (ring + radius), growth=1.2, fine_depth=size))
     pin = replace(pin, points=pin.points * (-1.0, 1.0, -1.0))  # upside down
     slab = whole(ring_block(3.0 * radius, 2.0 * radius, radius, size, 1.3 * radius, growth=1.5, fine_depth=size))
-    near = slab.facets["top"]
-    near = near[np.hypot(*slab.points[near, :2].mean(axis=1).T) < 1.2 * radius]
-    slab = replace(slab, facets={**slab.facets, "track": near})
+    slab = with_part(slab, "top", "track", 1.2 * radius)
     down = Rigid("bottom", (Freedom("z", load=-LOAD),))
     return Problem(
         (Body(pin, STEEL, rigid=down, name="pin"), Body(slab, STEEL, (Fixed("bottom"),), name="disc")),

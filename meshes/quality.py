@@ -34,7 +34,7 @@ def check_quality(mesh: MeshData, minimum: float) -> None:
     """Raise MeshError, with the place of the worst cell, if a scaled Jacobian is below `minimum`."""
     values = scaled_jacobians(mesh)
     worst = int(np.argmin(values))
-    if values[worst] < minimum:
+    if not values[worst] >= minimum:
         x, y, z = mesh.points[mesh.cells[worst]].mean(axis=0)
         raise MeshError(
             f"mesh quality: wanted scaled Jacobians of at least {minimum:g}, found {values[worst]:.4f} in cell {worst} "

@@ -12,14 +12,16 @@ from meshes.reference import node_positions
 
 
 def with_part(mesh: MeshData, group: str, part: str, reach: float) -> MeshData:
-    """The mesh with a further facet group `part`: the facets of `group` whose middle has |x| < reach [mm].
+    """The mesh with a further facet group `part`: the facets of `group` whose middle is nearer than `reach` [mm] to the
+    z axis, in 2D to the y axis.
 
     What cannot touch then costs no compliance. Raises MeshError where there is none.
     """
     facets = mesh.facets[group]
-    inside = facets[np.abs(mesh.points[facets, 0].mean(axis=1)) < reach]
+    away = np.linalg.norm(mesh.points[facets, : mesh.dimension - 1].mean(axis=1), axis=1)
+    inside = facets[away < reach]
     if len(inside) == 0:
-        raise MeshError(f"part of {group!r}: wanted facets with |x| < {reach} mm, found none; take a larger reach")
+        raise MeshError(f"part of {group!r}: wanted facets within {reach} mm of the axis, found none; reach further")
     return replace(mesh, facets={**mesh.facets, part: inside})
 
 

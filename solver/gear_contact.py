@@ -43,6 +43,8 @@ class ToothContact:
     @staticmethod
     def between(bodies: Sequence[GearBody], tooth: int, as_made: ContactOperator, pairing: Pairing) -> ToothContact:
         """Of flanks worn as the bodies say."""
+        if all(body.worn is None for body in bodies):
+            return ToothContact(tooth, as_made, as_made, pairing)
         sides = (pairing.facet1, pairing.xi1), (pairing.facet2, pairing.xi2)
         lost = np.sum([body.lost(*side) for body, side in zip(bodies, sides)], axis=0)
         return ToothContact(tooth, as_made.worn(lost, np.zeros_like(lost)), as_made, pairing)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshes.blocks import graded_box, rectangle
+from meshes.blocks import box, graded_box, rectangle
 from meshes.data import MeshError
 from meshes.quality import scaled_jacobians
 from meshes.rings import ring_sphere
@@ -22,6 +22,14 @@ def test_with_part() -> None:
     assert len(mesh.facets["top"]) == 10
     with pytest.raises(MeshError, match="wanted facets"):
         with_part(mesh, "top", "none", 0.05)
+
+
+def test_with_part_of_a_body() -> None:
+    """The top of a box of 2 × 2 mm in 4 × 4 facets: within 0.4 mm of the z axis are the four middles at ±0.25 mm."""
+    mesh = with_part(box((2.0, 2.0, 1.0), (4, 4, 2), origin=(-1.0, -1.0, 0.0)), "top", "near", 0.4)
+    middles = mesh.points[mesh.facets["near"], :2].mean(axis=1)
+    assert len(middles) == 4
+    np.testing.assert_allclose(np.abs(middles), 0.25, atol=1e-12)
 
 
 @pytest.mark.parametrize("order", [1, 2])

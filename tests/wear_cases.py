@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.optimize import brentq
 
 from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import MeshData
 from meshes.rings import ring_block, ring_sphere
+from meshes.variants import with_part
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.problem import Contact, Problem
@@ -36,7 +34,7 @@ def cylinder(cells: float = 8.0, order: int = 2, friction: float = 0.0, material
     )  # fmt: skip
     slab = graded_rectangle(4.0, 2.0, size / 1.25, 1.5 * fine, order)
     return Problem(
-        (pin, Body(near(slab, 1.5 * fine), material, (Fixed("bottom"),), name="slab")),
+        (pin, Body(with_part(slab, "top", "near", 1.5 * fine), material, (Fixed("bottom"),), name="slab")),
         (Contact((0, "arc"), (1, "near"), friction, reach=0.05),),
     )
 
@@ -49,15 +47,7 @@ def sphere(cells: float = 4.0) -> Problem:
     symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
     down = Rigid("top", (Freedom("z", load=-POINT_LOAD / 4.0),))
     bodies = (
-        Body(near(ball, fine, "arc"), RIGID, symmetry, rigid=down, name="ball"),
-        Body(near(slab, 1.5 * fine), RIGID, (*symmetry, Fixed("bottom")), name="slab"),
+        Body(with_part(ball, "arc", "near", fine), RIGID, symmetry, rigid=down, name="ball"),
+        Body(with_part(slab, "top", "near", 1.5 * fine), RIGID, (*symmetry, Fixed("bottom")), name="slab"),
     )
     return Problem(bodies, (Contact((0, "near"), (1, "near"), reach=0.05),))
-
-
-def near(mesh: MeshData, width: float, group: str = "top") -> MeshData:
-    """With a facet group "near": facets of `group` whose middle is within `width` of the y or z axis."""
-    facets = mesh.facets[group]
-    middle = mesh.points[facets].mean(axis=1)
-    away = np.linalg.norm(middle[:, : mesh.dimension - 1], axis=1)
-    return replace(mesh, facets={**mesh.facets, "near": facets[away < width]})

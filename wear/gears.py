@@ -27,7 +27,7 @@ from solver.pressure_response import PressureResponse
 from wear.blocks import Evaluated
 from wear.flank_grid import FlankGrid
 from wear.law import Archard
-from wear.passage import Passage, passage
+from wear.passage import Passage, line_arc, passage
 
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 
@@ -148,11 +148,9 @@ class GearWear:
 
     def _opened(self, points: ContactPoints) -> sp.csr_matrix:
         """(q, n) by how much depths open the gap at points."""
-        pair, parts = self.model.pair, []
-        for gear, sign, s in ((0, 1.0, points.across), (1, -1.0, points.opposite)):
-            ρ = pair.pitch_point_roll_lengths[gear] + sign * points.ξ
-            parts.append(self.grids[gear].hats(ρ**2 / (2.0 * pair.gears[gear].base_radius) + s, points.z))
-        return sp.hstack(parts).tocsr()
+        places = enumerate((points.across, points.opposite))
+        arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
+        return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()
 
     def _searched(
         self, model: GearModel, angle: float, state: SweepState, old: SharedPosition | None

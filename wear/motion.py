@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import connected_components
 
 from meshes.data import FACET_SHAPE, Floats, Ints, MeshData, MeshError
 from meshes.lattice import boundary_facets
-from meshes.quality import scaled_jacobians
+from meshes.quality import check_quality
 from meshes.reference import corner_count
 from solver import compat
 from solver.condense import Factor
@@ -66,7 +66,10 @@ def worn_mesh(
     points = mesh.points.copy()
     points[:, : mesh.dimension] += shift
     result = replace(mesh, points=points)
-    _check(result, least_quality)
+    try:
+        check_quality(result, least_quality)
+    except MeshError as error:
+        raise MeshInverted(f"the wear is deeper than the cells there can follow, take larger ones: {error}") from error
     return result
 
 
@@ -128,20 +131,19 @@ def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
 
 def _followed(mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow) -> Floats:
     """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`."""
-    K, order = _stiffness(mesh, follow)
     shift = np.zeros((len(mesh.points), mesh.dimension))
     shift[moved] = goal
     given = np.zeros(shift.shape, dtype=bool)
     given[moved] = given[still] = True
     free = np.flatnonzero(~given.ravel())
-    K = K[order][:, order].tocsr()
+    K = _stiffness(mesh, follow)
     right = -(K @ shift.ravel())[free]
     shift.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
     return shift
 
 
-def _stiffness(mesh: MeshData, follow: Follow):  # type: ignore[no-untyped-def]
-    """The equation's matrix and its order in terms of the mesh's nodes."""
+def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
+    """The equation's matrix, by the mesh's nodes."""
     domain = compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
     space = compat.vector_space(domain, mesh.order)
     blocks = compat.node_dofs(space, domain, len(mesh.points))
@@ -155,7 +157,7 @@ def _stiffness(mesh: MeshData, follow: Follow):  # type: ignore[no-untyped-def]
         ε, λ = ufl.sym(ufl.grad(u)), 2.0 * POISSON / (1.0 - 2.0 * POISSON)
         σ = λ * ufl.tr(ε) * ufl.Identity(mesh.dimension) + 2.0 * ε
         form = stiff * ufl.inner(σ, ufl.sym(ufl.grad(v))) * dx
-    return compat.assemble_csr(form), order
+    return compat.assemble_csr(form)[order][:, order].tocsr()
 
 
 def _along_free_faces(mesh: MeshData, shift: Floats, moved: Ints) -> Floats:
@@ -174,14 +176,3 @@ def mesh_volume(mesh: MeshData) -> float:
     domain = compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
     dx = ufl.Measure("dx", domain=domain, metadata={"quadrature_degree": 2 * mesh.order + 2})
     return compat.assemble_number(compat.constant(domain, 1.0) * dx)
-
-
-def _check(mesh: MeshData, least: float) -> None:
-    quality = scaled_jacobians(mesh)
-    worst = int(np.argmin(quality))
-    if not quality[worst] >= least:
-        centre = ", ".join(f"{x:.3f}" for x in mesh.points[mesh.cells[worst]].mean(axis=0))
-        raise MeshInverted(
-            f"mesh motion: wanted scaled Jacobians of at least {least:g}, found {quality[worst]:.3f} in cell {worst} "
-            f"at ({centre}) mm; the wear is deeper than the cells there can follow: take larger cells, or remesh"
-        )

@@ -54,11 +54,16 @@ def passage(pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[Fla
     z, ξ, across, opposite, w, λ = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
     works = _shares(pair, ξ, η, step) * w[:, None]
     depths = []
-    for gear, sign, s in ((0, 1.0, across), (1, -1.0, opposite)):
-        ρ = pair.pitch_point_roll_lengths[gear] + sign * (ξ[:, None] + η)
-        u = ρ**2 / (2.0 * pair.gears[gear].base_radius) + s[:, None]
+    for gear, s in enumerate((across, opposite)):
+        u = line_arc(pair, gear, ξ[:, None] + η) + s[:, None]
         depths.append(grids[gear].gathered(u, z, works))
     return Passage((depths[0], depths[1]), works.sum(axis=1), λ)
+
+
+def line_arc(pair: GearPair, gear: int, ξ: Floats) -> Floats:
+    """Arc u [mm] of the contact line on a gear's flank at roll distances ξ."""
+    ρ = pair.pitch_point_roll_lengths[gear] + (1.0 - 2.0 * gear) * ξ
+    return np.asarray(ρ**2 / (2.0 * pair.gears[gear].base_radius))
 
 
 def _shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:

@@ -154,8 +154,7 @@ class WearStudy:
         return replace(body, mesh=mesh)
 
     def _volumes(self, rates: Depths) -> dict[Side, float]:
-        surfaces = {side: self.geometry.prepared[side[0]].surfaces[side[1]] for side in self.sides}
-        return {side: float(surfaces[side].weights() @ rates[side]) for side in self.sides}
+        return {side: float(own @ rates[side]) for side, own in self.by_side(self.areas).items()}
 
     def _integrals(self, states: list[list[Rubbing]]) -> dict[Side, float]:
         total = dict.fromkeys(self.sides, 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from meshes.blocks import cylinder_2d, graded_rectangle
 from meshes.data import Floats, MeshData
 from meshes.lattice import split_to_simplices
 from meshes.rings import ring_block, ring_sphere
+from meshes.variants import with_part
 from solver import hertz
 
 STEEL, ALUMINIUM = (210e3, 0.3), (70e3, 0.3)
@@ -46,7 +47,8 @@ def cylinder(cells: float, order: int, shape: str) -> Task:
     size, fine = case.half_width / cells, 1.5 * case.half_width
     upper = cylinder_2d(case.radius, size, fine, order, shape, growth=GROWTH)
     lower = graded_rectangle(200.0, 200.0, size / FINER, fine, order, shape, GROWTH)
-    bodies = _near(upper, "arc", 2 * case.half_width), _near(lower, "top", 2 * case.half_width)
+    reach = 2 * case.half_width
+    bodies = with_part(upper, "arc", "contact", reach), with_part(lower, "top", "contact", reach)
     return Task(
         bodies, (STEEL, ALUMINIUM), "top", Push(-case.approach), ((1, "bottom", "xy"),), ("contact", "contact")
     )
@@ -78,15 +80,7 @@ def ball_and_block(
     lower = ring_block(side, side, edge * a, size * ratio, fine, order, growth, depth)
     if shape == "tetrahedron":
         upper, lower = (split_to_simplices(mesh, _columns(mesh.points)) for mesh in (upper, lower))
-    return _near(upper, "arc", 1.5 * a), _near(lower, "top", 1.5 * a)
-
-
-def _near(mesh: MeshData, group: str, distance: float) -> MeshData:
-    """The mesh with a facet group "contact": the facets of `group` that close to the z axis (in 2D: the y axis)."""
-    facets = mesh.facets[group]
-    centre = mesh.points[facets].mean(axis=1)
-    near = np.hypot(*centre[:, : mesh.dimension - 1].T) if mesh.dimension == 3 else np.abs(centre[:, 0])
-    return replace(mesh, facets={**mesh.facets, "contact": facets[near < distance]})
+    return with_part(upper, "arc", "contact", 1.5 * a), with_part(lower, "top", "contact", 1.5 * a)
 
 
 def _columns(points: Floats) -> np.ndarray:

@@ -49,7 +49,7 @@ def study(level: str, positions: int) -> tuple[GearWear, list[Report]]:
     settings = BlockSettings(first=MESHES / 100.0)
     model = prepare_model(load_scene(SCENE, [f"mesh.level={level}"]), MPI.COMM_SELF).model
     gears = GearWear(model, uniform_pitch(model.pair.pinion.z, positions, 0), 0.0, Archard(COEFFICIENT, COEFFICIENT))
-    state = unworn(gears, gears.unworn, settings)
+    state = unworn(gears, gears.begin, settings)
     reports = [Report(0.0, gears.by_gear(state.depth), state.now)]
     for end in np.linspace(0.0, MESHES, REPORTS + 1)[1:]:
         while state.cycles < end * (1.0 - 1e-12):

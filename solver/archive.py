@@ -27,13 +27,13 @@ from solver.gear_memory import Memory
 from solver.gear_position import ContactPoints, PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
-from solver.scene import Scene
+from solver.scene import GEARS, Scene
 from solver.schema_output import Output, Skipping
 from solver.skips import OF_OUTPUT
 
 EARLIER = (
     "results/*.npz", "results/*.tmp", "summary.json", "positions.csv", "teeth.csv", "fields/contact*",
-    "pictures/*.png", "pictures/animation.gif",
+    "pictures/*.png", "pictures/animation.gif", "wear.csv", "wear.json",
 )  # fmt: skip
 """What an earlier run has left in its folder."""
 
@@ -71,8 +71,9 @@ class Archive:
         """Removes what an earlier run has left, its state first; other files stay. Raises OSError."""
         if not self.folder.is_dir():
             return  # nothing that looks like ours is
-        (self.folder / "state.npz").unlink(missing_ok=True)
-        for pattern in EARLIER:
+        for first in ("wear.npz", "state.npz"):
+            (self.folder / first).unlink(missing_ok=True)
+        for pattern in (*EARLIER, *(f"worn_*/{earlier}" for earlier in EARLIER)):
             for path in self.out.glob(pattern):
                 path.unlink()
 
@@ -129,12 +130,16 @@ class Archive:
 
     def _state(self) -> dict[str, Any]:
         arrays = read_arrays(self.folder / "state.npz")
+        self.require_own(arrays)
+        return arrays
+
+    def require_own(self, arrays: dict[str, Any]) -> None:
+        """Raises ArchiveError where what was kept is another scene's."""
         if str(arrays["fingerprint"]) != self.fingerprint:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this scene, found those of another one (or of another level); "
                 "name another folder with --out, run the same scene, or leave --resume out to start again"
             )
-        return arrays
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
         arrays: dict[str, Any] = {
@@ -158,10 +163,13 @@ class Archive:
 
 
 def fingerprint(scene: Scene) -> str:
-    """A hash of all that results depend on: of the scene without its title and what says what else is written."""
+    """A hash of all that results depend on: of the scene without its title and what says what else is written, and of
+    what its flank charts say, wherever these lie."""
     ways = Skipping(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
-    essence = scene.model_copy(update={"title": "", "output": Output(), "skip": ways})
-    return hashlib.sha256(essence.resolved_toml().encode()).hexdigest()
+    bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
+    essence = scene.model_copy(update={"title": "", "output": Output(), "skip": ways, **bare})
+    charts = [chart.text() if (chart := scene.flank_chart(name)) else "" for name in GEARS]
+    return hashlib.sha256("".join([essence.resolved_toml(), *charts]).encode()).hexdigest()
 
 
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:

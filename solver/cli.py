@@ -40,9 +40,11 @@ class Exit(IntEnum):
 
 MEANINGS = (
     ("solver.newton", "NotConverged", Exit.NOT_CONVERGED),
-    ("solver.run", "BalanceError", Exit.NOT_CONVERGED),
+    ("solver.run_output", "BalanceError", Exit.NOT_CONVERGED),
     ("solver.archive", "ArchiveError", Exit.BAD_INPUT),
-    ("wear.tables", "TableError", Exit.BAD_INPUT),
+    ("solver.tables", "TableError", Exit.BAD_INPUT),
+    ("wear.blocks", "WearStopped", Exit.NOT_CONVERGED),
+    ("wear.law", "VolumeLost", Exit.NOT_CONVERGED),
 )
 """Exceptions of modules that may not have been imported; then nothing can have raised them."""
 
@@ -162,6 +164,11 @@ def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a 
         from solver.plots import plot_directory
 
         plot_directory(directory)
+        if (directory / "wear.json").is_file():
+            from wear.plots import draw_wear
+            from wear.report import read_worn
+
+            draw_wear(read_worn(directory), directory / "pictures")
 
 
 @app.command(

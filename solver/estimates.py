@@ -64,6 +64,16 @@ class HertzEstimate:
         load = np.asarray(self.normal_force / (line_length or self.line_lengths[1]))
         return line_peak_pressure(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 
+    def wear_per_cycle(self, pinion: float, wheel: float) -> tuple[float, float]:
+        """Depth [mm] that a revolution of the pinion takes off pinion and wheel where it is most, K/H [mm²/N] of both:
+        (K/H)(F/L)|1 − v_2/v_1| (He et al. 2022, Eq. 24 without its 4/π) at the ends of the path of contact, with the
+        mean line length."""
+        load = self.normal_force / self.line_lengths[1]
+        speeds = np.array(self.pair.curvature_radii(np.array(self.pair.path_of_contact)))
+        speeds[1] /= self.pair.ratio
+        slides = [float(np.abs(1.0 - speeds[1 - gear] / speeds[gear]).max()) for gear in (0, 1)]
+        return pinion * load * slides[0], wheel * load * slides[1] / self.pair.ratio
+
     def tooth_deflection(self, pinion: Material, wheel: Material) -> float:
         """Deflection [mm] of one tooth pair that carries the whole load over the whole face."""
         compliance = sum(STEEL_MODULUS / material.youngs_modulus for material in (pinion, wheel)) / 2

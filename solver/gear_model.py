@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -16,9 +16,10 @@ from meshes.data import MeshData
 from meshes.parameters import GearPair
 from solver.cores import Cores
 from solver.estimates import hertz_estimate
+from solver.flank_chart import FlankChart
 from solver.gear_body import GearBody, condensed_gear
 from solver.parallel import shared, together
-from solver.scene import Scene
+from solver.scene import GEARS, Scene
 from solver.sectors import gear_mesh
 from solver.skips import contact_teeth, is_plane, skips, switched_off
 
@@ -91,13 +92,19 @@ def prepare_model(
         )
 
     built = together(comm, lambda: {index: condensed(index) for index in own}, cores.lent)
-    pinion, wheel = (shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1))
+    bodies = [shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1)]
+    pinion, wheel = (_charted(body, scene.flank_chart(name)) for body, name in zip(bodies, GEARS))
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
         pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
         friction_terms="friction-terms" in switched_off(scene),
     )  # fmt: skip
     return Preparation(model, meshed - begin, time.perf_counter() - meshed)
+
+
+def _charted(body: GearBody, chart: FlankChart | None) -> GearBody:
+    """The gear with its flank as charted."""
+    return body if chart is None else replace(body, worn=chart.at(body.gear, body.roll_length, body.z))
 
 
 def _torque(scene: Scene) -> float:

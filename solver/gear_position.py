@@ -124,6 +124,16 @@ class SharedPosition:
 
 
 @dataclass(frozen=True)
+class SearchedAt:
+    """Where a position was searched: the pinion's angle and the rotations [rad] beyond the nominal ones, the half-width
+    of the window [mm]."""
+
+    angle: float
+    extra: tuple[float, float]
+    half_width: float
+
+
+@dataclass(frozen=True)
 class Solved:
     """The equilibrium of a position at one friction coefficient."""
 
@@ -169,6 +179,16 @@ def shared_position(
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
+
+
+def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float]) -> SharedPosition:
+    """A position as a search at this very place leaves it. Raises NotConverged, SearchError."""
+    stand = Stand(model.pair, place.angle, place.extra)
+    contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
+    normal_only = not any(map(model.has_friction_terms, frictions))
+    system = contact.system(model.load.on, model.load.torque, normal_only)
+    smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, None))
+    return SharedPosition(contact, system, smooth)
 
 
 def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:

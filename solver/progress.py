@@ -10,15 +10,15 @@ from rich.progress import Progress as Bar
 
 
 class Progress:
-    """`total` positions, of which `done` need not be computed any more."""
+    """`total` positions, or what `what` names, of which `done` need not be computed any more."""
 
-    def __init__(self, total: int, done: int = 0, hidden: bool = False) -> None:
+    def __init__(self, total: int, done: int = 0, what: str = "positions", hidden: bool = False) -> None:
         columns = (
-            TextColumn("positions"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("left"),
+            TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("left"),
             TimeRemainingColumn(),
         )  # fmt: skip
         self._bar = Bar(*columns, console=Console(stderr=True), disable=hidden)
-        self._task = self._bar.add_task("positions", total=total, completed=done)
+        self._task = self._bar.add_task(what, total=total, completed=done)
 
     def __enter__(self) -> Progress:
         self._bar.start()
@@ -32,3 +32,7 @@ class Progress:
     def advance(self) -> None:
         """One more position is done."""
         self._bar.advance(self._task)
+
+    def reach(self, done: int) -> None:
+        """So many are done."""
+        self._bar.update(self._task, completed=done)

@@ -200,13 +200,13 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
 def write_tables(folder: Path, run: RunData, facts: RunFacts) -> None:
     """Writes summary.json, positions.csv and teeth.csv. Raises OSError."""
     rows = position_rows(run)
-    write_text(folder / "positions.csv", _csv([_flat(asdict(row)) for row in rows]))
+    write_text(folder / "positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
     teeth = [
         {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
         for row in rows
         for tooth in row.teeth
     ]
-    write_text(folder / "teeth.csv", _csv(teeth))
+    write_text(folder / "teeth.csv", csv_text(teeth))
     text = json.dumps(_without_nan(summary(run, facts)), ensure_ascii=False, indent=1, allow_nan=False)
     write_text(folder / "summary.json", text + "\n")
 
@@ -225,7 +225,8 @@ def _flat(row: dict[str, object]) -> dict[str, object]:
     return row | {"teeth_in_contact": len(teeth)}
 
 
-def _csv(rows: Sequence[Mapping[str, object]]) -> str:
+def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
+    """Rows with the same keys as a CSV file."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
     writer.writeheader()

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
@@ -15,7 +16,7 @@ from solver.archive import Archive, GearShape, gear_shape
 from solver.gear_sweep import SweepState
 from solver.parallel import together
 from solver.results import write_text
-from solver.scene import Scene
+from solver.scene import GEARS, Scene
 from solver.sectors import sector_meshes
 from solver.surface import surface_of
 
@@ -54,7 +55,17 @@ def open_archive(scene: Scene, archive: Archive, meshes: Meshes, start: Start | 
         archive.write_gears(gear_shapes(meshes))
     else:
         archive.check_gears(gear_shapes(meshes))
-    write_text(archive.out / "scene.toml", scene.resolved_toml())
+    keep_scene(scene, archive.out)
+
+
+def keep_scene(scene: Scene, folder: Path) -> None:
+    """Writes OUT/scene.toml, and the flank charts that it names beside it. Raises OSError."""
+    local: dict[str, Any] = {}
+    for name in GEARS:
+        if chart := scene.flank_chart(name):
+            write_text(folder / f"flank_{name}.csv", chart.text())
+            local[name] = getattr(scene, name).model_copy(update={"flank_csv": f"flank_{name}.csv"})
+    write_text(folder / "scene.toml", scene.model_copy(update=local).resolved_toml())
 
 
 def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:

@@ -11,21 +11,26 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ValidationError, model_validator
 
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
+from solver.flank_chart import DEEPEST, FlankChart
 from solver.material import Material
-from solver.scene_errors import Problem, SceneError, problems_of, scene_problem, shown
+from solver.scene_errors import Problem, SceneError, problems_of, scene_problem, section_of, shown
 from solver.scene_gears import ImpossibleGears, make_pair
 from solver.schema import Contact, Gear, Load, Materials, Mesh, Pair, Section, Sweep, key
 from solver.schema_output import Output, Skipping
+from solver.schema_wear import Wear
+from solver.tables import TableError
 
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
 
 EXAMPLE = "demos/yang2022.toml is a complete example"
+GearName = Literal["pinion", "wheel"]
+GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 WIDEST_CONTACT = 0.2
 """Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
 LARGEST_DEFLECTION = 0.1
@@ -51,6 +56,7 @@ class Scene(Section):
     contact: Contact = Contact()
     load: Load
     sweep: Sweep = Sweep()
+    wear: Wear | None = None
     output: Output = Output()
     skip: Skipping = Skipping()
 
@@ -86,6 +92,49 @@ class Scene(Section):
             remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
             raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
         return self
+
+    @model_validator(mode="after")
+    def _flanks_are_charted(self) -> Self:
+        for name in GEARS:
+            try:
+                self.flank_chart(name)
+            except TableError as error:
+                allowed, remedy = "a chart of the whole flank (docs/scene.md)", "mend the file or delete the key"
+                raise scene_problem(Problem(f"{name}.flank_csv", str(error), allowed, remedy)) from error
+        return self
+
+    @model_validator(mode="after")
+    def _teeth_are_left(self) -> Self:
+        if self.wear is None:
+            return self
+        most, module = self.wear.cycles, self.pair.normal_module_mm
+        rates = hertz_estimate(self).wear_per_cycle(self.wear.pinion_mm2_per_N, self.wear.wheel_mm2_per_N)
+        worn = max(rates) * most / module
+        if worn > DEEPEST:
+            found = f"{shown(most)} (about {worn:.2g} modules of wear at the root)"
+            allowed = f"up to {most * DEEPEST / worn:.3g} for these K/H, where {DEEPEST:g} modules are gone"
+            remedy = "give fewer cycles, or check that K/H is in mm²/N"
+            raise scene_problem(Problem("wear.cycles", found, allowed, remedy))
+        return self
+
+    @model_validator(mode="after")
+    def _one_pitch_at_one_friction_wears(self) -> Self:
+        if self.wear is not None and len(self.contact.friction) > 1:
+            found, remedy = shown(self.contact.friction), "give one coefficient, and a scene for each other one"
+            raise scene_problem(Problem("contact.friction", found, "a single one where the flanks wear", remedy))
+        if self.wear is not None and "one-pitch" in self.skip.off:
+            allowed = "the other skips where the flanks wear: one pitch is one tooth's passage"
+            raise scene_problem(Problem("skip.off", shown(self.skip.off), allowed, "leave one-pitch out"))
+        return self
+
+    def flank_chart(self, name: GearName) -> FlankChart | None:
+        """What is missing of a gear's designed flank, None where nothing was charted. Raises TableError."""
+        given: Gear = getattr(self, name)
+        if given.flank_csv is None:
+            return None
+        pair, path, own = self.gear_pair(), Path(given.flank_csv), GEARS.index(name)
+        active = pair.active_start_diameters[own], pair.gears[own].tip_diameter
+        return FlankChart.read(path).checked(path, pair.gears[own], active)
 
     def gear_pair(self) -> GearPair:
         """The two gears at their centre distance, with every derived quantity."""
@@ -134,8 +183,8 @@ def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") 
     subsections = []
     for own, field in type(section).model_fields.items():
         value, dotted = getattr(section, own), f"{name}.{own}" if name else own
-        if isinstance(value, BaseModel):
-            subsections.append((dotted, value))
+        if optional := section_of(field):
+            subsections.append((dotted, value if value is not None else optional))
         elif value is not None:
             yield f"{own} = {_toml_value(value)}  # {field.description}"
         elif dotted in derived:
@@ -143,7 +192,13 @@ def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") 
         else:
             yield f"# {own}: not given  # {field.description}"
     for subname, value in subsections:
-        yield from _toml_lines(value, derived, subname)
+        yield from _toml_lines(value, derived, subname) if isinstance(value, BaseModel) else _not_given(value, subname)
+
+
+def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
+    """The lines of a section that a scene can do without."""
+    yield f"\n# [{name}]: not given"
+    yield from (f"# {own}: not given  # {field.description}" for own, field in section.model_fields.items())
 
 
 def _toml_value(value: object) -> str:
@@ -167,16 +222,22 @@ def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
         found = error.strerror if isinstance(error, OSError) else "bytes that are no UTF-8 text"
         remedy = f"check the path {path}; {EXAMPLE}"
         raise SceneError([Problem("scene file", str(found), "a readable TOML file", remedy)], str(path)) from error
-    return scene_from_text(text, overrides, source=str(path))
+    return scene_from_text(text, overrides, str(path), path.parent)
 
 
-def scene_from_text(text: str, overrides: Sequence[str] = (), source: str = "") -> Scene:
-    """A scene from TOML text; see load_scene."""
+def scene_from_text(
+    text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path()
+) -> Scene:
+    """A scene from TOML text; see load_scene. folder: where the files that the text names are looked for; those of
+    overrides are looked for where the program runs."""
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         remedy = f'mend that line; texts stand in "quotes", every key only once; {EXAMPLE}'
         raise SceneError([Problem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)], source) from error
+    for section in (values.get("pinion"), values.get("wheel")):
+        if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
+            section["flank_csv"] = str(folder / section["flank_csv"])
     try:
         for override in overrides:
             _apply(values, override)
@@ -217,7 +278,7 @@ def _parsed(name: str, text: str) -> Any:
         parsed = {}
     if list(parsed) == ["value"]:
         return parsed["value"]
-    if re.fullmatch(r"[A-Za-z][\w -]*", text):  # shells take the quotes away: --set mesh.level=quick
+    if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
         return text
     remedy = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
     raise SceneError([Problem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])

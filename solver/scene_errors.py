@@ -81,7 +81,7 @@ def _problem(details: ErrorDetails, model: type[BaseModel]) -> Problem:
         return _unknown_key(path, details["input"], model)
     missing = details["type"] == "missing"
     field = _declaration([part for part in path if isinstance(part, str)], model)
-    section = _section_of(field)
+    section = section_of(field)
     if section is not None:
         return _missing_section(path, section) if missing else _not_a_section(path, details["input"], section)
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
@@ -101,7 +101,7 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
     """All keys of a schema, dotted, with their declarations; sections come as their keys."""
     keys: dict[str, FieldInfo] = {}
     for name, field in model.model_fields.items():
-        section = _section_of(field)
+        section = section_of(field)
         if section is None:
             keys[prefix + name] = field
         else:
@@ -112,7 +112,7 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
 def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> Problem:
     """An unknown key or section: what was meant is looked for in its own section first, then everywhere."""
     name, parents = str(path[-1]), [str(part) for part in path[:-1]]
-    section = _section_of(_declaration(parents, model)) if parents else model
+    section = section_of(_declaration(parents, model)) if parents else model
     assert section is not None
     here, prefix = list(section.model_fields), f"{dotted(parents)}." if parents else ""
     similar = [prefix + match for match in difflib.get_close_matches(name, here, n=1, cutoff=0.6)]
@@ -137,11 +137,11 @@ def _missing_section(path: list[str | int], section: type[BaseModel]) -> Problem
 def _declaration(names: list[str], model: type[BaseModel]) -> FieldInfo:
     """The declaration of a key or section at the end of a path."""
     field = model.model_fields[names[0]]
-    section = _section_of(field)
+    section = section_of(field)
     return field if len(names) == 1 or section is None else _declaration(names[1:], section)
 
 
-def _section_of(field: FieldInfo) -> type[BaseModel] | None:
+def section_of(field: FieldInfo) -> type[BaseModel] | None:
     """The model of a field that is a section, also of `Section | None`."""
     candidates = [field.annotation, *getattr(field.annotation, "__args__", ())]
     return next((c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)), None)

@@ -137,6 +137,14 @@ class Gear(Section):
         ge=0,
         le=500,
     )
+    flank_csv: str | None = key(
+        "chart of the loaded flank as measured or worn, what is missing of the designed one; read from the scene's "
+        "folder",
+        "the name of a CSV file with diameter_mm, depth_um and perhaps z_mm",
+        "delete the key for flanks as designed",
+        default=None,
+        min_length=1,
+    )
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:

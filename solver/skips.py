@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from solver.scene import Scene
+from solver.scene import GEARS, Scene
 from solver.schema_output import Output, SkipName
 
 ROUND_OFF = 1e-8
@@ -45,7 +45,11 @@ class Skipped:
 def has_equal_sections(scene: Scene) -> bool:
     """True if every transverse section is the same: a spur pair of one face width without lead variation."""
     gears = scene.pinion, scene.wheel
-    varies = scene.pair.helix_angle_deg, scene.pair.misalignment_um, *(gear.lead_crowning_um for gear in gears)
+    charts = [scene.flank_chart(name) for name in GEARS]
+    varies = (
+        scene.pair.helix_angle_deg, scene.pair.misalignment_um, *(gear.lead_crowning_um for gear in gears),
+        *(chart is not None and chart.varies_over_the_face for chart in charts),
+    )  # fmt: skip
     return not any(varies) and gears[0].face_width_mm == gears[1].face_width_mm
 
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from solver import archive, gear_model, gear_sweep, rank_sweep, run
+from solver import archive, gear_model, gear_sweep, rank_sweep, run_output
 from solver.cli import main
 from solver.equilibrium import CondensedSystem
 from solver.gear_contact import GearContact
@@ -114,9 +114,9 @@ def break_it(how: str) -> None:
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":
-        run.STORED_LIMIT = 1e-9
+        run_output.STORED_LIMIT = 1e-9
     elif how == "leaking":
-        run.BALANCE_LIMIT = 1e-9
+        run_output.BALANCE_LIMIT = 1e-9
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ def without(text: str, start: str) -> str:
     return re.sub(rf"^{re.escape(start)}.*\n", "", text, count=1, flags=re.MULTILINE)
 
 
+WEAR = ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1e-10"]
 SHALLOW = HE.replace("dedendum_coefficient = 1.25", "dedendum_coefficient = 0.95")
 
 # a scene and its overrides; the key, what was found and a part of the remedy that the message must have
@@ -27,6 +28,24 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
     "no module": (without(YANG, "normal_module_mm"), [], "pair.normal_module_mm", "nothing", "normal (not the trans"),
     "no face width": (without(HE, "face_width_mm"), [], "pinion.face_width_mm", "nothing", "give a number"),
     "no load section": (YANG.replace("[load]", "[pair.load]"), [], "load", "nothing", "add a section [load]"),
+    # wear
+    "no cycles": (HE, ["wear.pinion_mm2_per_N=1e-10"], "wear.cycles", "nothing", "give a number"),
+    "nothing wears": (HE, ["wear.cycles=1e6"], "wear.pinion_mm2_per_N", "0 on both gears", "delete the section [wear]"),
+    "K/H in MPa·m": (HE, [*WEAR, "wear.wheel_mm2_per_N=1e-4"], "wear.wheel_mm2_per_N", "0.0001", "1e6 mm²/N"),
+    "K/H in m²/N": (HE, [*WEAR, "wear.wheel_mm2_per_N=1e-17"], "wear.wheel_mm2_per_N", "1e-17", "mind the unit"),
+    "negative K/H": (HE, [*WEAR, "wear.wheel_mm2_per_N=-1e-10"], "wear.wheel_mm2_per_N", "-1e-10", "mind the unit"),
+    "K/H not a number": (HE, [*WEAR, "wear.wheel_mm2_per_N=nan"], "wear.wheel_mm2_per_N", "nan", "mind the unit"),
+    "cycles a text": (HE, [*WEAR, 'wear.cycles="many"'], "wear.cycles", '"many"', "give a number"),
+    "reports unsorted": (HE, [*WEAR, "wear.report_at_cycles=[2e5, 1e5]"], "wear.report_at_cycles", "[200000", "sort"),
+    "report twice": (HE, [*WEAR, "wear.report_at_cycles=[2e5, 2e5]"], "wear.report_at_cycles", "[200000", "sort"),
+    "report too late": (HE, [*WEAR, "wear.report_at_cycles=1e6"], "wear.report_at_cycles", "[1000000", "the last"),
+    "tolerance in percent": (HE, [*WEAR, "wear.tolerance=5.0"], "wear.tolerance", "5", "give a number"),
+    "first block too long": (HE, [*WEAR, "wear.first_block_cycles=2e6"], "wear.first_block_cycles", "2000000", "short"),
+    "blocks of another kind": (HE, [*WEAR, "wear.blocks=midpoint"], "wear.blocks", "midpoint", "implicit"),
+    "wear at several μ": (YANG, WEAR, "contact.friction", "[0", "give one coefficient"),
+    "wear of all pitches": (HE, [*WEAR, "skip.off=one-pitch"], "skip.off", "one-pitch", "leave one-pitch out"),
+    "wear a number": (HE, ["wear=1e6"], "wear", "1000000", "[wear]"),
+    "worn away": (HE, [*WEAR, "wear.cycles=1e12"], "wear.cycles", "1e+12", "fewer cycles"),
     # unknown
     "misspelled key": (
         YANG,

@@ -12,7 +12,7 @@ from gear_cases import HELICAL
 from mpi4py import MPI
 
 from solver import parallel
-from solver.run import BALANCE_LIMIT
+from solver.run_output import BALANCE_LIMIT
 
 SPUR = "demos/he2022.toml"
 QUIET = (

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from solver.cli import Exit, main
+from solver.tables import TableError
 from wear.coefficient import PinOnDisc, Record, coefficient
-from wear.tables import TableError
 
 K = 1.3832e-10  # mm²/N, He 2022
 HE = PinOnDisc(500.0, 6.0)

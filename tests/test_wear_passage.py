@@ -65,7 +65,7 @@ def test_ridge_of_constant_load(gear: int, positions: int) -> None:
     ξ; there below 2 % of the largest. Work: F' ∫|v_s| dφ."""
     pair = spur_scene().gear_pair()
     grids = grid(pair, 0), grid(pair, 1)
-    found = passage(pair, ridges(pair, positions), grids)
+    found = passage(pair, ridges(pair, positions), grids, 2.0 * np.pi / pair.pinion.z / positions)
     u, h = grids[gear].arcs, K * (found.depths[gear] @ found.pressure)
     ξ, exact = line_contact(pair, gear, u, LINE_LOAD)
     start, end = pair.path_of_contact
@@ -93,7 +93,7 @@ def solved(positions: int, friction: float = 0.0, scene: str = "spur") -> tuple[
     model = model_of(make(f"contact.friction={friction}"))
     pitch = uniform_pitch(model.pair.pinion.z, positions, 4 if friction else 0)
     study = GearWear(model, pitch, friction, Archard(K, 2.0 * K))
-    return study, study.evaluate(study.unworn)
+    return study, study.evaluate(study.begin)
 
 
 def test_solved_pitch_against_line_contact() -> None:
@@ -133,7 +133,7 @@ def test_worn_flanks_open_the_gap() -> None:
     """Both flanks worn by 5 and 3 µm everywhere: the transmission error grows by 8 µm within 0.1 %, as the flanks are
     parallel curves of what they were, which are involutes of the same base circle."""
     study, fresh = solved(8)
-    pinion, wheel = study.by_gear(study.unworn)
+    pinion, wheel = study.by_gear(study.begin)
     worn = study.evaluate(np.concatenate([np.full_like(pinion, 5e-3), np.full_like(wheel, 3e-3)]))
     for old, new in zip(fresh.positions, worn.positions):
         assert new.transmission_error - old.transmission_error == pytest.approx(8e-3, rel=1e-3)
@@ -143,7 +143,7 @@ def test_kept_positions_are_as_good_as_searched_ones() -> None:
     """Flanks worn by 1 µm together, from the positions kept of unworn ones and searched anew: the same transmission
     error within 3e-4 of the wear and the same rates within 1 %, and nothing was searched in between."""
     study, fresh = solved(8)
-    depth = np.full_like(study.unworn, 0.5e-3)
+    depth = np.full_like(study.begin, 0.5e-3)
     kept, anew = study.evaluate(depth, fresh), study.evaluate(depth)
     assert kept.searched == 0 and anew.searched == 8
     for one, other in zip(kept.positions, anew.positions):
@@ -156,8 +156,8 @@ def test_implicit_block_against_many_explicit_ones() -> None:
     within a factor of two, no depth is negative, and the volume is that of the linearised pressures."""
     study, fresh = solved(20)
     length = 6e4
-    gained, end = study.implicit(study.unworn, fresh, length)
-    depth, now = study.unworn, fresh
+    gained, end = study.implicit(study.begin, fresh, length)
+    depth, now = study.begin, fresh
     for _ in range(24):
         half = study.evaluate(depth + length / 48.0 * now.rate, now)
         depth, now = depth + length / 24.0 * half.rate, half

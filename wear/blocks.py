@@ -118,6 +118,8 @@ def next_block(wearable: Wearable[E], state: WearState[E], end: float, settings:
             continue
         if error <= settings.tolerance or length <= settings.first:
             following = max(length * _change(error, settings), settings.first)
+            if refused == 0:  # a block that was cut off by the end says nothing against its length
+                following = max(following, state.length if length < state.length else 0.0)
             return Block(replace(tried, length=following), length, error, refused)
         length, refused, why = length * min(_change(error, settings), 0.7), refused + 1, f"error {error:.2g}"
         length = max(length, settings.first)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import stats
 
 from meshes.data import Floats
-from wear.tables import Column, TableError, read_columns, require_ascending
+from solver.tables import Column, TableError, read_columns, require_ascending
 
 DISTANCE = Column("sliding_distance", (("mm", 1.0), ("m", 1e3), ("km", 1e6)))
 DEPTH = Column("depth")

@@ -13,10 +13,25 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
+from meshes.parameters import GearPair
 from solver.gear_body import GearBody
 
 SAME = 1e-6  # of a module: heights that are one layer
+EDGE = 0.1  # modules of arc: next to a tip edge that bears, its own or its mate's, the pressure is a matter of the mesh
 UNEVEN = 1e-2  # of a module: how far the arcs of layers may differ, by modifications
+
+
+def line_arc(pair: GearPair, gear: int, ξ: Floats) -> Floats:
+    """Arc u [mm] of the contact line on a gear's flank at roll distances ξ."""
+    ρ = pair.pitch_point_roll_lengths[gear] + (1.0 - 2.0 * gear) * ξ
+    return np.asarray(ρ**2 / (2.0 * pair.gears[gear].base_radius))
+
+
+def inner_arcs(pair: GearPair, gear: int) -> tuple[float, float]:
+    """Arcs between which no tip edge bears: those of the path of contact, less EDGE at either end."""
+    low, high = sorted(line_arc(pair, gear, np.array(pair.path_of_contact)))
+    margin = EDGE * pair.pinion.normal_module
+    return float(low) + margin, float(high) - margin
 
 
 @dataclass(frozen=True)
@@ -42,6 +57,11 @@ class FlankGrid:
         if spread > UNEVEN * module:
             raise ValueError(f"flank of {body.gear.z} teeth: wanted the same arcs in all layers, found {spread:.2g} mm")
         return FlankGrid(u[node].mean(axis=0), body.z[node].mean(axis=1), node, body.flank.weights())
+
+    def inner(self, pair: GearPair, gear: int) -> Ints:
+        """The nodes between the tip-edge zones."""
+        low, high = inner_arcs(pair, gear)
+        return self.node[:, (self.arcs >= low) & (self.arcs <= high)].ravel()
 
     def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
         """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""

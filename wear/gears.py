@@ -1,12 +1,18 @@
-"""A gear pair whose flanks wear: the pitch solved on worn flanks, and what a mesh passage takes away."""
+"""A gear pair whose flanks wear: the pitch solved on worn flanks, and what a mesh passage takes away.
+
+On several ranks each has its own positions of the pitch: it searches and condenses them, keeps them from cycle to
+cycle, and gathers what they wear off; friction, which has a past, goes from rank to rank.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
+from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from meshes.data import Floats, Ints
@@ -15,19 +21,24 @@ from solver.gear_model import GearModel
 from solver.gear_position import (
     ContactPoints,
     PositionResult,
+    SearchedAt,
     SharedPosition,
     contact_points,
+    searched_at,
     shared_position,
     worn_on,
 )  # fmt: skip
 from solver.gear_sweep import Pitch, SweepState, initial_state, sweep_pitch
 from solver.newton import NotConverged
 from solver.newton_steps import RELATIVE
+from solver.parallel import together
 from solver.pressure_response import PressureResponse
+from solver.rank_sweep import division
+from solver.scene import GEARS
 from wear.blocks import Evaluated
-from wear.flank_grid import FlankGrid
-from wear.law import Archard
-from wear.passage import Passage, line_arc, passage
+from wear.flank_grid import FlankGrid, line_arc
+from wear.law import Archard, certify_volume
+from wear.passage import Passage, passage
 
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 
@@ -35,7 +46,7 @@ KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 @dataclass(frozen=True)
 class PitchState(Evaluated):
     """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
-    width in 2D]. shared: search and compliance of each angle of the pitch, for the next cycle."""
+    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were."""
 
     positions: tuple[PositionResult, ...]
     work: float
@@ -67,10 +78,12 @@ class Response:
 class GearWear:
     """A gear pair at one friction coefficient; a cycle is a revolution of the pinion. law: of pinion and wheel.
 
-    Depths (n,) are those of the pinion's flank nodes, then of the wheel's.
+    Depths (n,) are those of the pinion's flank nodes, then of the wheel's. All ranks of `comm` call every method.
     """
 
-    def __init__(self, model: GearModel, pitch: Pitch, friction: float, law: Archard) -> None:
+    def __init__(
+        self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF
+    ) -> None:
         """Raises ValueError unless the positions are equal steps of one pitch: they are one tooth's passage."""
         angles = np.array(pitch.angles[pitch.warm_up :])
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
@@ -81,7 +94,9 @@ class GearWear:
             )
         self.model, self.pitch, self.friction, self.law = model, pitch, friction, law
         self.grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
-        self._first = len(model.bodies[0].flank.points)
+        self._first, self._comm, self._step = len(model.bodies[0].flank.points), comm, step
+        self._often = 1.0, 1.0 / model.pair.ratio  # a tooth of each gear meets in a cycle
+        self._own = range(len(pitch.angles))[division(len(pitch.angles), comm.size)[comm.rank]]
 
     @property
     def areas(self) -> Floats:
@@ -89,9 +104,10 @@ class GearWear:
         return np.concatenate([grid.areas for grid in self.grids])
 
     @property
-    def unworn(self) -> Floats:
-        """Depths (n,) of flanks as made."""
-        return np.zeros(self._first + len(self.model.bodies[1].flank.points))
+    def begin(self) -> Floats:
+        """Depths (n,) to begin with: the model's own, as made or as charted."""
+        return np.concatenate([b.worn if b.worn is not None else np.zeros(len(b.flank.points))
+                               for b in self.model.bodies])  # fmt: skip
 
     def by_gear(self, depth: Floats) -> tuple[Floats, Floats]:
         """Depths of the pinion's and of the wheel's flank nodes."""
@@ -100,63 +116,117 @@ class GearWear:
     def evaluate(self, depth: Floats, before: PitchState | None = None) -> PitchState:
         """One pitch at depths (n,), see `Wearable`; positions near which the gears stood in the
         cycle `before` are not searched again."""
-        pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth)))
-        model, results, kept = replace(self.model, bodies=(pinion, wheel)), [], []
-        state, searched = initial_state([self.friction]), 0
-        for k, angle in enumerate(self.pitch.angles):
-            old = before.shared[k] if before is not None else None
-            shared = worn_on(model, old) if old is not None else None
-            if shared is None:
-                shared, searched = self._searched(model, angle, state, old), searched + 1
-            kept.append(shared)
-            swept = next(sweep_pitch(model, self.pitch, [self.friction], state, k, shared))
-            state = swept.state
-            if not swept.warm_up:
-                results.append(swept.results[0])
-        found = self._passage([r.contact for r in results])
-        return PitchState(
-            self._rates(found) @ found.pressure, self.areas, np.inf, tuple(results), found.work, tuple(kept), searched
-        )
+        model, kept = self._worn(depth), () if before is None else before.shared
+        shared, searched = together(self._comm, lambda: self._prepared(model, kept))
+        return self._solved(model, shared, self._comm.allreduce(searched))
+
+    def resumed(self, depth: Floats, searches: Sequence[SearchedAt]) -> PitchState:
+        """The pitch at depths (n,), from searches made where `searched` says that they were."""
+        model = self._worn(depth)
+        frictions = [self.friction]
+        shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._own])
+        return self._solved(model, shared, 0)
+
+    def searches(self, state: PitchState) -> list[SearchedAt]:
+        """Where each angle's search was made, on all ranks."""
+        own = [SearchedAt(s.contact.stand.angle, s.contact.stand.extra, s.contact.half_width) for s in state.shared]
+        return [search for part in self._comm.allgather(own) for search in part]
 
     def implicit(self, depth: Floats, now: PitchState, length: float) -> tuple[Floats, PitchState]:
         """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `Wearable`. The
         pressures follow the depth as they do without friction. Raises NotConverged."""
-        own = [shared for k, shared in enumerate(now.shared) if k >= self.pitch.warm_up]
-        responses = [Response.of(shared) for shared in own]
-        found = self._passage([r.points for r in responses])
-        rates, openings = self._rates(found), sp.vstack([self._opened(r.points) for r in responses]).tocsr()
-        ends = np.cumsum([len(r.points.weights) for r in responses])[:-1]
+        counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
+        responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
+        found, openings = self._passage([r.points for r in responses]), [self._opened(r.points) for r in responses]
+        rates = self._rates(found)
+
+        def follow(h: Floats) -> Floats:
+            """Pressures (q,) that depths h add."""
+            return np.concatenate([r(opened @ h) for r, opened in zip(responses, openings)] or [np.zeros(0)])
 
         def slope(h: Floats) -> Floats:
-            parts = zip(responses, np.split(openings @ h, ends))
-            return np.asarray(h - length * (rates @ np.concatenate([r(g) for r, g in parts])))
+            return h - length * self._summed(rates @ follow(h))
 
-        size = (len(depth), len(depth))
-        right = length * now.rate
-        gained, failed = gmres(LinearOperator(size, slope), right, x0=right, atol=0.0, **{RELATIVE: KRYLOV})
+        size, right = (len(depth), len(depth)), length * now.rate
+        solved, failed = gmres(LinearOperator(size, slope), right, x0=right, atol=0.0, **{RELATIVE: KRYLOV})
         if failed:
             raise NotConverged(f"a block of {length:.6g} cycles: its equations were not solved; take a shorter one")
+        more = follow(solved)  # gone through once more, the depths are exactly what these pressures wear off
+        gained = right + length * self._summed(rates @ more)
+        self._certify(gained, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
         return gained, self.evaluate(depth + gained, now)
 
+    def _worn(self, depth: Floats) -> GearModel:
+        pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth)))
+        return replace(self.model, bodies=(pinion, wheel))
+
+    def _prepared(self, model: GearModel, kept: Sequence[SharedPosition]) -> tuple[list[SharedPosition], int]:
+        """This rank's positions without friction, and how many of them had to be searched."""
+        found: list[SharedPosition] = []
+        searched = 0
+        for i, k in enumerate(self._own):
+            old = kept[i] if kept else None
+            shared = worn_on(model, old) if old is not None else None
+            if shared is None:
+                near = old or (found[-1] if found else None)  # where the gears stood in the cycle before
+                extra = (0.0, 0.0) if near is None else near.contact.stand.extra
+                footprint = None if near is None else near.footprint
+                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], footprint)
+                searched += 1
+            found.append(shared)
+        return found, searched
+
+    def _solved(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
+        """The pitch with friction, and what it wears off."""
+        own = self._rubbed(model, shared)
+        found = self._passage([result.contact for result in own])
+        rate, work = self._summed(self._rates(found) @ found.pressure), sum(self._comm.allgather(found.work))
+        self._certify(rate, work)
+        positions = tuple(result for part in self._comm.allgather(own) for result in part)
+        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched)
+
+    def _certify(self, depth: Floats, work: float) -> None:
+        """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""
+        pairs = zip(GEARS, self.by_gear(self.areas), self.by_gear(depth), self.law.both, self._often)
+        for name, areas, own, K, often in pairs:
+            certify_volume(name, float(areas @ own), K * often * work)
+
+    def _rubbed(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[PositionResult]:
+        """This rank's positions of the pitch. With friction the ranks take turns: each goes on from the one before."""
+        state = initial_state([self.friction])
+        if not model.has_friction_terms(self.friction):
+            return together(self._comm, partial(self._swept, model, shared, state))[0]
+        results: list[PositionResult] = []
+        for rank in range(self._comm.size):
+            own = shared if rank == self._comm.rank else ()
+            mine, state = together(self._comm, partial(self._swept, model, own, state))
+            state = self._comm.bcast(state, rank)
+            results += mine
+        return results
+
+    def _swept(
+        self, model: GearModel, shared: Sequence[SharedPosition], state: SweepState
+    ) -> tuple[list[PositionResult], SweepState]:
+        results = []
+        for k, common in zip(self._own, shared):
+            swept = next(sweep_pitch(model, self.pitch, [self.friction], state, k, common))
+            state = replace(swept.state, footprint=None)
+            results += [] if swept.warm_up else [swept.results[0]]
+        return results, state
+
     def _passage(self, positions: Sequence[ContactPoints]) -> Passage:
-        return passage(self.model.pair, positions, self.grids)
+        return passage(self.model.pair, positions, self.grids, self._step)
+
+    def _summed(self, own: Floats) -> Floats:
+        """(n,) over all ranks, to the last bit the same on each."""
+        return np.asarray(np.sum(self._comm.allgather(own), axis=0))
 
     def _rates(self, found: Passage) -> sp.csr_matrix:
         """(n, q) depth per cycle [mm] of pressures (q,)."""
-        often = 1.0, 1.0 / self.model.pair.ratio
-        return sp.vstack([K * n * D for K, n, D in zip(self.law.both, often, found.depths)]).tocsr()
+        return sp.vstack([K * n * D for K, n, D in zip(self.law.both, self._often, found.depths)]).tocsr()
 
     def _opened(self, points: ContactPoints) -> sp.csr_matrix:
         """(q, n) by how much depths open the gap at points."""
         places = enumerate((points.across, points.opposite))
         arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
         return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()
-
-    def _searched(
-        self, model: GearModel, angle: float, state: SweepState, old: SharedPosition | None
-    ) -> SharedPosition:
-        """From where the gears stood in the cycle before, without one from the last position."""
-        extra, footprint = state.extra, state.footprint
-        if old is not None:
-            extra, footprint = old.contact.stand.extra, old.footprint
-        return shared_position(model, angle, extra, [self.friction], footprint)

@@ -16,6 +16,21 @@ import scipy.sparse as sp
 from meshes.data import Floats, Ints
 from solver.surface import Surface
 
+VOLUME = 1e-6  # relative difference of a volume by nodes and by contact points that is an error
+
+
+class VolumeLost(RuntimeError):
+    """The depth at the nodes is not the volume that the contact took away."""
+
+
+def certify_volume(name: str, found: float, wanted: float) -> None:
+    """found: Σ m h at the nodes of what is named, wanted: (K/H)∫∫p|v_s| dA dt. Raises VolumeLost."""
+    if not abs(found - wanted) <= VOLUME * abs(wanted):
+        raise VolumeLost(
+            f"wear of {name}: wanted the volume K/H·∫∫p|v_s| = {wanted:.9g}, found {found:.9g} at the nodes; put all "
+            "facets that may touch into the worn surface"
+        )
+
 
 @dataclass(frozen=True)
 class Archard:

@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.gear_position import ContactPoints
-from wear.flank_grid import FlankGrid
+from wear.flank_grid import FlankGrid, line_arc
 
 FINE = 0.5  # of the grid's finest spacing a parcel goes at a time
 
@@ -39,15 +39,25 @@ class Passage:
     works: Floats
     pressure: Floats
 
+    @staticmethod
+    def nothing(grids: tuple[FlankGrid, FlankGrid]) -> Passage:
+        """Of no points."""
+        none, (pinion, wheel) = np.zeros(0), (sp.csr_matrix((grid.node.size, 0)) for grid in grids)
+        return Passage((pinion, wheel), none, none)
+
     @property
     def work(self) -> float:
         """∫∫p|v_s| dA dt [N·mm; per mm of width in 2D]."""
         return float(self.works @ self.pressure)
 
 
-def passage(pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[FlankGrid, FlankGrid]) -> Passage:
-    """Of equally spaced positions over one pitch."""
-    step = pair.pinion.base_radius * 2.0 * np.pi / pair.pinion.z / len(positions)
+def passage(
+    pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[FlankGrid, FlankGrid], turn: float
+) -> Passage:
+    """Of some of the positions that stand equal steps `turn` [rad of the pinion] apart over one pitch."""
+    if not positions:
+        return Passage.nothing(grids)
+    step = pair.pinion.base_radius * turn
     count = max(int(np.ceil(step / (FINE * np.diff(grid.arcs).min()))) for grid in grids)
     η = step * ((np.arange(-count, count) + 0.5) / count)
     names = ("z", "ξ", "across", "opposite", "weights", "pressure")
@@ -58,12 +68,6 @@ def passage(pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[Fla
         u = line_arc(pair, gear, ξ[:, None] + η) + s[:, None]
         depths.append(grids[gear].gathered(u, z, works))
     return Passage((depths[0], depths[1]), works.sum(axis=1), λ)
-
-
-def line_arc(pair: GearPair, gear: int, ξ: Floats) -> Floats:
-    """Arc u [mm] of the contact line on a gear's flank at roll distances ξ."""
-    ρ = pair.pitch_point_roll_lengths[gear] + (1.0 - 2.0 * gear) * ξ
-    return np.asarray(ρ**2 / (2.0 * pair.gears[gear].base_radius))
 
 
 def _shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:

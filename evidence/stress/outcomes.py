@@ -16,7 +16,7 @@ from solver.gear_model import prepare_model
 from solver.gear_results import pitch_imbalance
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from solver.newton import NotConverged
-from solver.run import BalanceError, certify, certify_pitch
+from solver.run_output import BalanceError, certify, certify_pitch
 from solver.scene import Scene
 from solver.search import SearchError
 

@@ -35,6 +35,19 @@ def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
     Raises TableError for a file that cannot be read, a column that is missing or named twice, a line of another length,
     and a cell that is empty or no finite number.
     """
+    header, numbered = _lines(path)
+    places = [_place(path, header, column) for column in wanted]
+    values = [[_number(path, n, header, row, at) * factor for at, factor in places] for n, row in numbered]
+    return list(np.array(values).T)
+
+
+def has_column(path: Path, wanted: Column) -> bool:
+    """Whether a file has this column. Raises TableError for a file that cannot be read."""
+    return any(name in wanted.headers for name in _lines(path)[0])
+
+
+def _lines(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The header, and the lines below it with their numbers. Raises TableError."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -42,10 +55,7 @@ def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
     numbered = [(n, row) for n, row in enumerate(csv.reader(text.splitlines()), 1) if any(row) and row[0][:1] != "#"]
     if len(numbered) < 2:
         raise TableError(f"{path}: wanted a header and lines of numbers, found {len(numbered)} lines with anything")
-    header = [cell.strip() for cell in numbered[0][1]]
-    places = [_place(path, header, column) for column in wanted]
-    values = [[_number(path, n, header, row, at) * factor for at, factor in places] for n, row in numbered[1:]]
-    return list(np.array(values).T)
+    return [cell.strip() for cell in numbered[0][1]], numbered[1:]
 
 
 def _place(path: Path, header: list[str], column: Column) -> tuple[int, float]:

@@ -1,0 +1,133 @@
+"""What a run writes once its positions are there: fields, pictures, tables; nothing that does not balance."""
+
+from __future__ import annotations
+
+import logging
+import resource
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from meshes.quality import scaled_jacobians
+from solver import compat
+from solver.archive import Archive
+from solver.companion import Companion
+from solver.error_bars import with_errors
+from solver.fields import write_fields
+from solver.gear_model import Preparation
+from solver.gear_position import PositionResult
+from solver.gear_results import balance_error, pitch_imbalance
+from solver.gear_sweep import SweptPosition
+from solver.results import MeshFacts, RunFacts, Timings, write_tables
+from solver.run_data import RunData, run_data
+from solver.run_start import Meshes, keep_scene
+from solver.scene import Scene
+from solver.skips import skipped, wanted_output
+
+BALANCE_LIMIT = 1e-2
+"""A pitch whose energy does not balance better is an error, not a result."""
+STORED_LIMIT = 0.1
+"""A position whose teeth store or give back more of the input power bends them too far for small strain."""
+REMEDY = (
+    "where a tip's edge bears relieve it (tip_relief_um) or lower the torque, else refine the sweep (sweep.positions) "
+    "or the mesh (mesh.level)"
+)
+
+
+class BalanceError(RuntimeError):
+    """A converged position or pitch that fails its balance certificate."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What sweeping took: the meshes it stood on, and wall seconds."""
+
+    meshes: Meshes
+    timings: Timings
+
+
+def timings_of(preparation: Preparation) -> Timings:
+    """What preparing took."""
+    parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
+    return Timings(*parts, total=preparation.mesh_seconds + preparation.seconds)
+
+
+def write_output(
+    scene: Scene, archive: Archive, sweep: Sweep, companion: Companion | None, ranks: int, begin: float, memory: float,
+    log: logging.Logger,
+) -> None:  # fmt: skip
+    """Fields and pictures; then the tables, whose being there says that the run is complete."""
+    started = time.perf_counter()
+    data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    certify_pitch([solved.result for solved in each] for each in data.positions)
+    data = with_errors(data, archive, companion)
+    keep_scene(scene, archive.out)  # a resumed run may ask for other output
+    draw(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.out, log)
+    now = time.perf_counter()
+    seconds = 0.0 if companion is None else companion.seconds
+    timings = replace(sweep.timings, error_bars=seconds, output=now - started, total=now - begin)
+    write_tables(archive.out, data, facts_of(data, sweep.meshes, ranks, timings, memory))
+    log.info("done in %.1f s, %.0f MB", timings.total, memory)
+
+
+def draw(data: RunData, out: Path, log: logging.Logger) -> None:
+    """Fields and pictures, as the scene asks."""
+    if data.scene.output.fields:
+        log.info("fields: %s", write_fields(data, out / "fields"))
+    if data.scene.output.pictures or data.scene.output.animation:
+        from solver.plots import draw_all  # pyvista and matplotlib take a second: only where a scene wants pictures
+
+        for path in draw_all(data, out / "pictures"):
+            log.info("picture: %s", path)
+
+
+def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory: float) -> RunFacts:
+    """Of a run."""
+    return RunFacts(
+        versions=compat.versions(),
+        ranks=ranks,
+        dofs=sum(mesh.points.shape[0] * mesh.dimension for mesh in meshes),
+        cells=sum(len(mesh.cells) for mesh in meshes),
+        mesh=MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), _cells_across(data)),
+        skipped=skipped(data.scene),
+        timings_s=timings,
+        peak_memory_MB=memory,
+    )
+
+
+def _cells_across(data: RunData) -> float:
+    """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
+    widths = np.concatenate([2.0 * solved.cut.half_width for each in data.positions for solved in each])
+    arc = np.unique(np.round(data.flank.roll_length**2 / (2.0 * data.pair.pinion.base_radius), 7))
+    return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
+
+
+def certify(position: SweptPosition) -> None:
+    """Raises BalanceError where the forces of a position do not balance, or its teeth store too much."""
+    for result in position.results:
+        error = balance_error(result)
+        if not error <= STORED_LIMIT:
+            raise BalanceError(
+                f"pinion at {result.stand.angle:.4f} rad, μ = {result.friction}: wanted a balance error of at most "
+                f"{STORED_LIMIT}, found {error:.2e}; {REMEDY}"
+            )
+
+
+def certify_pitch(positions: Iterable[Sequence[PositionResult]]) -> None:
+    """Of all positions of a pitch, with a result for each friction coefficient. Raises BalanceError where the energy
+    does not balance."""
+    for results in zip(*positions, strict=True):
+        error = pitch_imbalance(results)
+        if not error <= BALANCE_LIMIT:
+            raise BalanceError(
+                f"the pitch at μ = {results[0].friction}: wanted an energy balance within {BALANCE_LIMIT} of the "
+                f"input, found {error:.2e}; {REMEDY}"
+            )
+
+
+def peak_memory_MB() -> float:
+    """Largest resident memory of this process so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0

@@ -1,0 +1,118 @@
+"""A scene whose flanks wear: block after block, each kept as soon as it is done; the worn pair written out at reports.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from functools import partial
+from pathlib import Path
+
+from mpi4py import MPI
+
+from solver.archive import Archive
+from solver.gear_model import prepare_model
+from solver.gear_sweep import SweepState, SweptPosition, uniform_pitch
+from solver.parallel import on_first
+from solver.progress import Progress
+from solver.results import Timings, write_tables
+from solver.run_data import run_data
+from solver.run_output import Sweep, certify, certify_pitch, facts_of, peak_memory_MB, timings_of
+from solver.run_start import Meshes, keep_scene, same_meshes
+from solver.scene import Scene
+from solver.schema_wear import Wear
+from solver.skips import wanted_output, warm_up_positions
+from wear.blocks import BlockSettings
+from wear.gears import GearWear, PitchState
+from wear.law import Archard
+from wear.pair_study import Kept, Stage, kept_of, stages
+from wear.report import read_worn, write_report
+from wear.study_archive import read_study, worn_folder, write_pitch, write_study, write_worn
+
+FIRST = 1e-2  # of all cycles: the first block where the scene does not say
+
+
+def wear_scene(
+    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, quiet: bool, log: logging.Logger
+) -> Sweep:
+    """All blocks of a scene with [wear]; in OUT the pair at the beginning as a sweep leaves it, in OUT/worn_N that
+    after N cycles. Raises what run_scene does."""
+    wear, begin = scene.wear, time.perf_counter()
+    assert wear is not None
+    kept = on_first(comm, lambda: read_study(archive) if resume else None)
+    if kept is not None:
+        log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
+        if kept.cycles >= wear.cycles:
+            return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
+    preparation = prepare_model(scene, comm)
+    log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+    pinion, wheel = preparation.model.bodies
+    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene))
+    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], _law(wear), comm)
+    meshes = pinion.mesh, wheel.mesh
+    with Progress(round(wear.cycles), round(kept.cycles if kept else 0.0), "cycles", quiet or comm.rank > 0) as bar:
+        for stage in stages(gears, wear.reports, _settings(wear), kept):
+            _certify(stage.state.now)
+            study = kept_of(gears, stage)
+            on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
+            log.info(_line(stage))
+            bar.reach(round(study.cycles))
+    timings = timings_of(preparation)
+    spent = time.perf_counter() - begin - timings.total
+    return Sweep(meshes, Timings(timings.mesh, timings.assemble, timings.factor, spent))
+
+
+def write_wear(scene: Scene, out: Path, log: logging.Logger) -> None:
+    """Figures and pictures of the finished study, beside those of the pair at the beginning. Raises OSError."""
+    study = read_worn(out)
+    write_report(study, out)
+    if wanted_output(scene).pictures:
+        from wear.plots import draw_wear  # matplotlib takes a second: only where a scene wants pictures
+
+        for path in draw_wear(study, out / "pictures"):
+            log.info("picture: %s", path)
+
+
+def _law(wear: Wear) -> Archard:
+    return Archard(wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)
+
+
+def _settings(wear: Wear) -> BlockSettings:
+    first = wear.first_block_cycles or FIRST * wear.cycles
+    return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
+
+
+def _certify(state: PitchState) -> None:
+    """Raises BalanceError; the volume is certified where it is found."""
+    for result in state.positions:
+        certify(SweptPosition(result.stand.angle, False, (result,), SweepState(result.stand.extra, ())))
+    certify_pitch([result] for result in state.positions)
+
+
+def _write(
+    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: Stage, study: Kept, ranks: int
+) -> None:
+    """The pair where it is asked for; then what the study goes on from, whose being there says that it is whole."""
+    state = stage.state
+    if stage.report and state.cycles == 0.0:
+        write_pitch(archive, meshes, state.now.positions)
+        keep_scene(scene, archive.out)
+    elif stage.report:
+        folder = worn_folder(archive.out, state.cycles)
+        worn = write_worn(scene, folder, gears, state.depth)
+        own = Archive(folder, worn)
+        write_pitch(own, meshes, state.now.positions)
+        data = run_data(worn, own.read_gears(), own.read_positions(worn.gear_pair()))
+        write_tables(folder, data, facts_of(data, meshes, ranks, Timings(), peak_memory_MB()))
+    write_study(archive, study)
+
+
+def _line(stage: Stage) -> str:
+    """One line of the log."""
+    if not stage.rows:
+        return "the pair at the beginning is solved"
+    row = stage.rows[-1]
+    return (
+        f"{row.cycles:.6g} cycles: a block of {row.block_cycles:.6g}, error {row.error:.3f}, {row.refused} refused, "
+        f"{row.searched} positions searched; deepest {row.deepest_pinion_um:.3f} and {row.deepest_wheel_um:.3f} µm"
+    )

@@ -1,0 +1,157 @@
+"""Pictures of a wear study: depth over the profile and over the flank, its growth, and what it does to the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from meshes.data import Floats
+from solver.engagement import engagement
+from solver.plots_style import FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, save, sheet, styled
+from solver.scene import GEARS
+from wear.report import WornPair, WornRun
+
+Draw = Callable[[WornRun], Figure]
+
+
+def draw_wear(study: WornRun, folder: Path) -> list[Path]:
+    """All pictures of a study into OUT/pictures; gives the files written. Raises OSError."""
+    with styled():
+        return [save(draw(study), folder / f"{name}.png") for name, draw in _figures(study)]
+
+
+def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
+    yield "20_wear_depth", depth_over_profile
+    if not study.pairs[0].run.plane:
+        yield "21_wear_map", depth_over_flank
+    yield "22_wear_growth", growth
+    yield "23_force_as_worn", force_on_tooth
+    yield "24_transmission_error_as_worn", transmission_error
+
+
+def _wearing(study: WornRun) -> list[int]:
+    """The gears that wear."""
+    wear = study.scene.wear
+    assert wear is not None
+    return [gear for gear, K in enumerate((wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0]
+
+
+def cycles_label(cycles: float) -> str:
+    """ "0.4 million", "20 thousand"."""
+    for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand")):
+        if cycles >= 0.1 * size:
+            return f"{cycles / size:.4g}{name}"
+    return f"{cycles:.4g}"
+
+
+def _colours(study: WornRun) -> list[tuple[float, ...]]:
+    return friction_colours([pair.cycles for pair in study.pairs])
+
+
+def depth_over_profile(study: WornRun) -> Figure:
+    """Depth over the diameter at each report, mean over the face."""
+    last, own = study.pairs[-1], _wearing(study)
+    found = [getattr(last.report(), GEARS[gear]) for gear in own]
+    deepest = ", ".join(
+        f"{GEARS[gear]} {each.deepest_um:.3g} µm at d = {each.at_diameter_mm:.1f} mm" for gear, each in zip(own, found)
+    )
+    see = f"Deepest after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out"
+    figure = sheet("Wear depth over the profile", see)
+    for ax, gear in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own):
+        for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
+            ax.plot(*pair.profile(gear), color=colour, label=f"{cycles_label(pair.cycles)} cycles")
+        ax.axvline(study.pairs[0].run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
+        ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
+        ax.set(xlabel="diameter [mm]", ylim=(0.0, None))
+        ax.label_outer()
+    figure.axes[0].set_ylabel("wear depth, mean over the face [µm]")
+    figure.axes[0].legend()
+    return figure
+
+
+def depth_over_flank(study: WornRun) -> Figure:
+    """The worn flanks unrolled, at the end."""
+    last, own = study.pairs[-1], _wearing(study)
+    top = max(1e3 * float(last.worn[gear].depth[last.inner(gear)].max()) for gear in own)
+    see = f"Colours to {top:.3g} µm, the deepest between the tip-edge zones; tip up, root down"
+    title = f"Worn flanks after {cycles_label(last.cycles)} cycles"
+    figure = sheet(title, see, (5.2 * len(own) + 1.0, 5.6))
+    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+        chart = last.worn[gear]
+        shown = ax.pcolormesh(
+            chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud"
+        )
+        ax.axhline(last.run.pair.working_pitch_diameters[gear], color="white", lw=1.0, ls="--")
+        ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
+        ax.set(xlabel="face width z [mm]", ylabel="diameter [mm]")
+        ax.grid(False)
+    figure.colorbar(shown, ax=figure.axes, label="wear depth [µm]", shrink=0.8)
+    return figure
+
+
+def growth(study: WornRun) -> Figure:
+    """Deepest wear and worn volume over the cycles; a dot a block."""
+    see = f"{len(study.rows)} blocks, errors of their volumes at most {max(r.error for r in study.rows):.1%}"
+    figure = sheet("How the wear grows", see)
+    left, right = figure.subplots(1, 2)
+    unit, name = _unit(study)
+    for gear in _wearing(study):
+        style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear]}
+        x = np.array([0.0, *(row.cycles for row in study.rows)]) / unit
+        deepest = [0.0, *(getattr(row, f"deepest_{GEARS[gear]}_um") for row in study.rows)]
+        volume = [0.0, *(getattr(row, f"volume_{GEARS[gear]}_mm3") for row in study.rows)]
+        left.plot(x, deepest, **style)
+        right.plot(x, volume, **style)
+    for ax, label in ((left, "deepest wear between the tip-edge zones [µm]"), (right, "volume worn off a tooth [mm³]")):
+        ax.set(xlabel=f"revolutions of the pinion [{name}]", ylabel=label, ylim=(0.0, None), xlim=(0.0, None))
+        ax.legend()
+    return figure
+
+
+def _unit(study: WornRun) -> tuple[float, str]:
+    cycles = study.pairs[-1].cycles
+    return (1e6, "millions") if cycles >= 5e5 else (1e3, "thousands") if cycles >= 500.0 else (1.0, "1")
+
+
+def force_on_tooth(study: WornRun) -> Figure:
+    """Normal force on a tooth over its engagement at each report."""
+    first, last = (engagement(pair.run, 0).force.max() for pair in (study.pairs[0], study.pairs[-1]))
+    see = f"The largest force on a tooth goes from {first:.0f} to {last:.0f} N"
+    return _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
+
+
+def _force(pair: WornPair) -> tuple[Floats, Floats]:
+    curve = engagement(pair.run, 0)
+    return np.degrees(curve.angle), curve.force
+
+
+def transmission_error(study: WornRun) -> Figure:
+    """Loaded transmission error less its mean over a pitch at each report."""
+    first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
+    see = f"Peak to peak {first:.2f} µm at first, {last:.2f} µm at last"
+    label = "transmission error less its mean [µm]"
+    return _over_rotation(study, "Transmission error as the flanks wear", see, label, _error)
+
+
+def _error(pair: WornPair) -> tuple[Floats, Floats]:
+    values = np.array([1e3 * each[0].result.transmission_error for each in pair.run.positions])
+    closed = np.append(values, values[0]) - values.mean()
+    angles = np.degrees(np.append(pair.run.angles, pair.run.angles[0] + pair.run.pitch))
+    return angles, closed
+
+
+def _over_rotation(
+    study: WornRun, title: str, see: str, label: str, curve: Callable[[WornPair], tuple[Floats, Floats]]
+) -> Figure:
+    figure = sheet(title, see)
+    ax: Axes = figure.add_subplot()
+    for pair, colour in zip(study.pairs, _colours(study)):
+        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "at the beginning"
+        ax.plot(*curve(pair), color=colour, label=name)
+    ax.set(xlabel="pinion rotation [°]", ylabel=label)
+    ax.legend()
+    return figure

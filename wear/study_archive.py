@@ -1,0 +1,96 @@
+"""A wear study on disk: OUT/results/wear.npz is what it goes on from, OUT/worn_400000/ the worn pair at a report.
+
+Each such folder is a run of its own: its scene has the worn flanks as charts, so that it can be solved, drawn and worn
+on by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.archive import Archive, read_arrays, write_arrays
+from solver.flank_chart import FlankChart
+from solver.gear_position import PositionResult, SearchedAt
+from solver.gear_sweep import SweepState, SweptPosition
+from solver.results import csv_text, write_text
+from solver.run_start import Meshes, gear_shapes, keep_scene
+from solver.scene import GEARS, Scene
+from wear.gears import GearWear
+from wear.pair_study import BlockRow, Kept
+
+FILE = "wear.npz"
+COUNTS = "refused", "searched"  # of a block's facts, the whole numbers
+
+
+def write_study(archive: Archive, kept: Kept) -> None:
+    """Keeps a study, and OUT/wear.csv, a line a block. Raises OSError."""
+    last = kept.last or (np.zeros(0), 0.0)
+    arrays = {
+        "fingerprint": archive.fingerprint, "cycles": kept.cycles, "depth": kept.depth, "length": kept.length,
+        "last_rate": last[0], "last_length": last[1],
+        "searches": np.array([(s.angle, *s.extra, s.half_width) for s in kept.searches]),
+        "rows": np.array([list(asdict(row).values()) for row in kept.rows]),
+    }  # fmt: skip
+    if kept.rows:
+        write_text(archive.out / "wear.csv", csv_text([asdict(row) for row in kept.rows]))
+    write_arrays(archive.folder / FILE, arrays)
+
+
+def read_study(archive: Archive) -> Kept | None:
+    """What was kept, None where nothing was. Raises ArchiveError where it is another scene's."""
+    if not (archive.folder / FILE).exists():
+        return None
+    arrays = read_arrays(archive.folder / FILE)
+    archive.require_own(arrays)
+    last = (arrays["last_rate"], float(arrays["last_length"])) if len(arrays["last_rate"]) else None
+    searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
+    return Kept(
+        float(arrays["cycles"]), arrays["depth"], last, float(arrays["length"]), searches,
+        tuple(map(_row, arrays["rows"].tolist())),
+    )  # fmt: skip
+
+
+def _row(values: list[float]) -> BlockRow:
+    named = zip([field.name for field in fields(BlockRow)], values, strict=True)
+    typed: dict[str, Any] = {name: int(value) if name in COUNTS else value for name, value in named}
+    return BlockRow(**typed)
+
+
+def worn_folder(out: Path, cycles: float) -> Path:
+    """Where the pair after so many cycles is written; OUT itself has the pair at the beginning."""
+    return out / f"worn_{cycles:.15g}" if cycles > 0.0 else out
+
+
+def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Scene:
+    """Writes the flanks after some cycles as charts, depths (n,), and the scene that has them; returns that scene.
+    Raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    worn: dict[str, object] = {"wear": None}
+    for gear, (name, own) in enumerate(zip(GEARS, gears.by_gear(depth))):
+        path = folder / f"flank_{name}.csv"
+        write_text(path, chart_of(gears, gear, own).text())
+        worn[name] = getattr(scene, name).model_copy(update={"flank_csv": str(path)})
+    changed = scene.model_copy(update=worn)
+    keep_scene(changed, folder)
+    return changed
+
+
+def chart_of(gears: GearWear, gear: int, depth: Floats) -> FlankChart:
+    """Depths (n,) [mm] of a gear's flank nodes over diameter and height."""
+    grid, base = gears.grids[gear], gears.model.pair.gears[gear].base_radius
+    return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)
+
+
+def write_pitch(archive: Archive, meshes: Meshes, results: Iterable[PositionResult]) -> None:
+    """A pitch at one friction coefficient as a sweep leaves it, in place of an earlier one. Raises OSError."""
+    archive.clear()
+    archive.write_gears(gear_shapes(meshes))
+    for k, result in enumerate(results):
+        state = SweepState(result.stand.extra, (None,))
+        archive.write_position(k, SweptPosition(result.stand.angle, False, (result,), state))

@@ -7,13 +7,13 @@ be searched instead, to show that it changes nothing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
 from solver.chain import Part
@@ -27,27 +27,19 @@ from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.search import Pairing, pair_surfaces
 
 GAP = 0.2  # how far apart [module] flanks are looked at
+GEOMETRIC = "as_made", "hats", "tooth", "node", "spins", "ξ", "at_edge", "point_tooth", "across", "opposite", "distance"
+"""What of a contact does not depend on wear."""
 PENETRATION = 0.5  # how deep [module] undeformed flanks may overlap: far beyond any deflection of small strain
 
 
 @dataclass(frozen=True)
 class ToothContact:
-    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion; the same
-    before wear, and where its points lie on both flanks."""
+    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion, before wear;
+    and where its points lie on both flanks."""
 
     tooth: int
     operator: ContactOperator
-    as_made: ContactOperator
     pairing: Pairing
-
-    @staticmethod
-    def between(bodies: Sequence[GearBody], tooth: int, as_made: ContactOperator, pairing: Pairing) -> ToothContact:
-        """Of flanks worn as the bodies say."""
-        if all(body.worn is None for body in bodies):
-            return ToothContact(tooth, as_made, as_made, pairing)
-        sides = (pairing.facet1, pairing.xi1), (pairing.facet2, pairing.xi2)
-        lost = np.sum([body.lost(*side) for body, side in zip(bodies, sides)], axis=0)
-        return ToothContact(tooth, as_made.worn(lost, np.zeros_like(lost)), as_made, pairing)
 
     def touched(self, gear: int) -> Ints:
         """Flank nodes of a gear that the jump sees, sorted."""
@@ -102,18 +94,35 @@ class GearContact:
     half_width: float
 
     def on(self, bodies: tuple[GearBody, GearBody]) -> GearContact:
-        """The same position between the same gears, worn otherwise."""
-        teeth = tuple(ToothContact.between(bodies, t.tooth, t.as_made, t.pairing) for t in self.teeth)
-        return GearContact(bodies, self.stand, teeth, self.half_width)
+        """The same position between the same gears, worn otherwise: what geometry has found stays."""
+        other = GearContact(bodies, self.stand, self.teeth, self.half_width)
+        other.__dict__.update({name: getattr(self, name) for name in GEOMETRIC})
+        return other
 
     @property
     def d(self) -> int:
         return self.bodies[0].d
 
     @cached_property
-    def operator(self) -> ContactOperator:
-        """All teeth's nodes in one list."""
+    def as_made(self) -> ContactOperator:
+        """All teeth's nodes in one list, before wear."""
         return stacked([t.operator for t in self.teeth])
+
+    @cached_property
+    def operator(self) -> ContactOperator:
+        """The same as the bodies are worn."""
+        if all(body.worn is None for body in self.bodies):
+            return self.as_made
+        worn = [hats @ body.worn for hats, body in zip(self.hats, self.bodies) if body.worn is not None]
+        lost = np.sum(worn, axis=0)
+        return self.as_made.worn(lost, np.zeros_like(lost))
+
+    @cached_property
+    def hats(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """(q, flank nodes) of pinion and wheel: hats of the flanks' nodes at the points."""
+        pairs = [t.pairing for t in self.teeth]
+        first = sp.vstack([self.bodies[0].flank.hat_matrix(p.facet1, p.xi1) for p in pairs]).tocsr()
+        return first, sp.vstack([self.bodies[1].flank.hat_matrix(p.facet2, p.xi2) for p in pairs]).tocsr()
 
     @cached_property
     def tooth(self) -> Ints:
@@ -280,4 +289,4 @@ def _tooth_contact(
     frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T
     operator = contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
     operator = operator.pressing_along(pressing_normals(operator, pinion, second, stand, tooth))
-    return ToothContact.between(bodies, tooth, operator, pairing)
+    return ToothContact(tooth, operator, pairing)

@@ -3,40 +3,76 @@ every contact line, and a solution without it is balanced all the same."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from meshes.data import Floats, Ints
 from solver.gear_contact import PENETRATION, GearContact
 from solver.gear_window import facets_in_window, placed_flanks
+from solver.kinematics import spin
 from solver.lagrange import tabulate
 from solver.search import Pairing, pair_surfaces
 from solver.surface import Surface
 
+NEARLY = 5e-3  # modules: flanks so far apart may overlap once the gears have turned on, see gear_position.STALE
 
-def overlap_outside(contact: GearContact, force: Floats, teeth: tuple[int, ...]) -> float:
-    """How deep [mm] the deflected flanks of the tooth pairs overlap where their window does not look; 0 where they do
-    not. force: contact forces (n, k) of the solution.
+@dataclass(frozen=True)
+class Unwatched:
+    """Where the undeformed flanks of a tooth pair overlap, or nearly do, outside the window: the pinion's flank in
+    place, and the pairs of points."""
 
-    Only what overlaps undeformed is looked at: loaded teeth give way, so that flanks apart from the contact move away
-    from each other. And only slices whose contact line is off the path of contact: on it conjugate flanks are closest
-    in the window. Raises SearchError.
+    tooth: int
+    first: Surface
+    second: Surface
+    pairs: Pairing
+
+
+def unwatched(contact: GearContact, teeth: tuple[int, ...]) -> tuple[Unwatched, ...]:
+    """Of all tooth pairs, for flanks as made.
+
+    Only what overlaps undeformed is looked at, and what a rotation of up to NEARLY can bring to overlap: loaded teeth
+    give way, so that flanks apart from the contact move away from each other. And only slices whose contact line is
+    off the path of contact: on it conjugate flanks are closest in the window. Raises SearchError.
     """
+    found, module = [], contact.bodies[0].gear.normal_module
+    for tooth in teeth:
+        facets = _unsearched(contact, tooth)
+        if len(facets):
+            first, second = placed_flanks(contact.bodies, contact.stand, tooth)
+            pairs = pair_surfaces(first, second, NEARLY * module, PENETRATION * module, facets)
+            found += [Unwatched(tooth, first, second, pairs)] if len(pairs.gap) else []
+    return tuple(found)
+
+
+def overlap_outside(
+    contact: GearContact, places: tuple[Unwatched, ...], force: Floats, rotation: tuple[float, float]
+) -> float:
+    """How deep [mm] the deflected flanks overlap at these places; 0 where they do not. force: contact forces (n, k) of
+    the solution; rotation: of pinion and wheel [rad] since the search."""
+    if not places:
+        return 0.0
     forces = contact.pushed(0, force), contact.pushed(1, force)
-    return max((_overlap(contact, forces, tooth) for tooth in teeth), default=0.0)
+    return max(_overlap(contact, own, forces, rotation) for own in places)
 
 
-def _overlap(contact: GearContact, forces: tuple[Floats, Floats], tooth: int) -> float:
-    facets = _unsearched(contact, tooth)
-    if len(facets) == 0:
-        return 0.0
-    first, second = placed_flanks(contact.bodies, contact.stand, tooth)
-    found = pair_surfaces(first, second, 0.0, PENETRATION * contact.bodies[0].gear.normal_module, facets)
-    if len(found.gap) == 0:
-        return 0.0
-    sides = (first, found.facet1, found.xi1), (second, found.facet2, found.xi2)
-    u1, u2 = (_moved(contact, forces[gear], gear, tooth, *side) for gear, side in enumerate(sides))
+def _overlap(
+    contact: GearContact, own: Unwatched, forces: tuple[Floats, Floats], rotation: tuple[float, float]
+) -> float:
+    found = own.pairs
+    sides = (own.first, found.facet1, found.xi1), (own.second, found.facet2, found.xi2)
+    u1, u2 = (
+        _moved(contact, forces[gear], gear, own.tooth, *side) + _turned(contact, rotation[gear], gear, *side)
+        for gear, side in enumerate(sides)
+    )
     gap = found.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, sides))
-    return float(np.max(np.einsum("qa,qa->q", _normals(first, found), u1 - u2) - gap, initial=0.0))
+    return float(np.max(np.einsum("qa,qa->q", _normals(own.first, found), u1 - u2) - gap, initial=0.0))
+
+
+def _turned(contact: GearContact, angle: float, gear: int, surface: Surface, facets: Ints, xi: Floats) -> Floats:
+    """Displacements (q, d) at points of a gear's flank that turns by a small angle [rad]."""
+    x = surface.evaluate(surface.points, facets, xi[:, None])[0][:, 0]
+    return angle * spin(x, contact.stand.centre(gear, contact.d), contact.stand.axis(gear))
 
 
 def _unsearched(contact: GearContact, tooth: int) -> Ints:

@@ -16,22 +16,29 @@ from solver.tangent import Tangent
 
 
 class PressureResponse:
-    """About a state of a frictionless system (k = 1). Raises NotConverged where nothing touches."""
+    """About a state of a frictionless system (k = 1). released: (q,) [MPa], how pressures follow that the points of
+    `leaving` (q,) bool lose theirs. Raises NotConverged where nothing touches."""
 
-    def __init__(self, system: CondensedSystem, state: Equilibrium) -> None:
+    def __init__(self, system: CondensedSystem, state: Equilibrium, leaving: np.ndarray | None = None) -> None:
         operator, pressure = system.operator, state.traction[:, :1]
-        touching = pressure > 0.0
+        gone = np.zeros(len(pressure), dtype=bool) if leaving is None else leaving & (pressure[:, 0] > 0.0)
+        touching = (pressure[:, 0] > 0.0) & ~gone
         self._system = system
-        self._slope = operator.stabiliser[:, 0] * touching[:, 0]
-        law = Law(pressure, touching[:, :, None].astype(float))
+        self._slope = operator.stabiliser[:, 0] * touching
+        law = Law(pressure, touching[:, None, None].astype(float))
         tangent = Tangent.of(operator, law, system.compliance, system.motion)
         self._inverse = KeptColumns.of(tangent.M, tangent.A, tangent.H, tangent.kept)
+        lost = np.where(gone, pressure[:, 0], 0.0)
+        self.released = self._slope * (operator.shape @ self._jump(operator.weights * lost)) - lost
 
     def __call__(self, opening: Floats) -> Floats:
         """∂λ (q,) [MPa] of ∂g (q,) [mm]."""
-        operator, n = self._system.operator, len(self._system.jump)
-        pushed = operator.shape.T @ (operator.weights * self._slope * opening)
+        jump = self._jump(self._system.operator.weights * self._slope * opening)
+        return np.asarray(self._slope * (self._system.operator.shape @ jump - opening))
+
+    def _jump(self, less: Floats) -> Floats:
+        """∂J (n,) when the points push less (q,) [N] at the same jump."""
+        n = len(self._system.jump)
+        pushed = self._system.operator.shape.T @ less
         found = self._inverse.solve(np.concatenate([-pushed, np.zeros(self._system.motion.shape[1])]))
-        force, motion = found[:n], found[n:]
-        jump = self._system.motion @ motion - self._system.compliance @ force
-        return np.asarray(self._slope * (operator.shape @ jump - opening))
+        return np.asarray(self._system.motion @ found[n:] - self._system.compliance @ found[:n])

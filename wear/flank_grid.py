@@ -76,12 +76,22 @@ class FlankGrid:
         matrix.sum_duplicates()
         return matrix
 
-    def gathered(self, u: Floats, z: Floats, volumes: Floats) -> sp.csr_matrix:
+    def gathered(self, u: Floats, z: Floats, volumes: Floats) -> sp.csc_matrix:
         """(n, q) mean depths that take away volumes (q, e) at arcs (q, e) and heights (q,)."""
-        q, e = u.shape
-        per_place = self.hats(u.ravel(), np.repeat(z, e))
-        added = sp.csr_matrix((volumes.ravel(), np.arange(q * e), e * np.arange(q + 1)), (q, q * e))
-        return (sp.diags(1.0 / self.areas) @ (added @ per_place).T).tocsr()
+        (i, s), (j, t) = _between(self.arcs, u), _between(self.heights, z)
+        first = i.min(axis=1, initial=len(self.arcs) - 1)
+        width = int((i - first[:, None]).max(initial=0)) + 2  # of the arcs that a point's volumes lie between
+        place = (i - first[:, None]) + width * np.arange(len(u))[:, None]
+        size = width * len(u)
+        along = np.bincount(place.ravel(), ((1.0 - s) * volumes).ravel(), size)
+        along += np.bincount(place.ravel() + 1, (s * volumes).ravel(), size)
+        columns = np.minimum(first[:, None] + np.arange(width), len(self.arcs) - 1)
+        layers = ((j, 1.0 - t), (np.minimum(j + 1, len(self.heights) - 1), t))[: min(len(self.heights), 2)]
+        nodes = np.stack([self.node[layer[:, None], columns] for layer, _ in layers], axis=1)
+        values = np.stack([share[:, None] * along.reshape(-1, width) for _, share in layers], axis=1)
+        ends = len(layers) * width * np.arange(len(u) + 1)
+        shape = (self.node.size, len(u))
+        return sp.csc_matrix(((values / self.areas[nodes]).ravel(), nodes.ravel(), ends), shape)
 
 
 def _between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:

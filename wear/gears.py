@@ -35,44 +35,53 @@ from solver.parallel import together
 from solver.pressure_response import PressureResponse
 from solver.rank_sweep import division
 from solver.scene import GEARS
-from wear.blocks import Evaluated
+from wear.blocks import NEGATIVE, Evaluated
 from wear.flank_grid import FlankGrid, line_arc
 from wear.law import Archard, certify_volume
 from wear.passage import Passage, passage
 
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
+LEAVINGS = 6  # times at most points are let go that would pull at a block's end
+PULL = 1e-3  # of the largest pressure: less is left to the next block
 
 
 @dataclass(frozen=True)
 class PitchState(Evaluated):
     """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
-    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were."""
+    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were.
+    passage: of this rank's positions, where they are without friction."""
 
     positions: tuple[PositionResult, ...]
     work: float
     shared: tuple[SharedPosition, ...]
     searched: int
+    passage: Passage | None
 
 
 class Response:
-    """How the pressures at a position's pressed points follow when the gap opens there."""
+    """How the pressures at a position's pressed points follow when the gap opens there: ∂λ = `released` + R ∂g.
+    leaving: (p,) bool, the points that lose their pressure, which is what `released` follows."""
 
-    def __init__(self, points: ContactPoints, pressed: Ints, whole: PressureResponse, size: int) -> None:
-        self.points, self._pressed, self._whole, self._size = points, pressed, whole, size
-
-    @staticmethod
-    def of(shared: SharedPosition) -> Response:
+    def __init__(self, shared: SharedPosition, leaving: np.ndarray | None = None) -> None:
         """In the frictionless state."""
         system, pressure = shared.system, shared.smooth.traction
+        self._shared, self._pressed, self._size = shared, np.flatnonzero(pressure[:, 0] > 0.0), len(pressure)
+        self.points = contact_points(shared.contact, pressure, 0.0)
+        gone = np.zeros(self._size, dtype=bool)
+        gone[self._pressed] = False if leaving is None else leaving
         normal = system if system.k == 1 else normal_part(system)
-        points, pressed = contact_points(shared.contact, pressure, 0.0), np.flatnonzero(pressure[:, 0] > 0.0)
-        return Response(points, pressed, PressureResponse(normal, shared.smooth), len(pressure))
+        self._whole = PressureResponse(normal, shared.smooth, gone)
+        self.leaving, self.released = gone[self._pressed], self._whole.released[self._pressed]
 
     def __call__(self, opening: Floats) -> Floats:
-        """∂λ (p,) [MPa] of ∂g (p,) [mm] at the p pressed points."""
+        """R ∂g (p,) [MPa] of ∂g (p,) [mm]."""
         whole = np.zeros(self._size)
         whole[self._pressed] = opening
         return self._whole(whole)[self._pressed]
+
+    def without(self, pulled: np.ndarray) -> Response:
+        """The same when those of the p points leave the contact as well."""
+        return Response(self._shared, self.leaving | pulled) if pulled.any() else self
 
 
 class GearWear:
@@ -136,25 +145,41 @@ class GearWear:
         """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `Wearable`. The
         pressures follow the depth as they do without friction. Raises NotConverged."""
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
-        responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
-        found, openings = self._passage([r.points for r in responses]), [self._opened(r.points) for r in responses]
-        rates = self._rates(found)
+        responses = together(self._comm, lambda: [Response(shared) for shared in counted])
+        found = now.passage or self._passage([r.points for r in responses])
+        right = gained = length * now.rate
+        openings = [self._opened(r.points) for r in responses]
+        for _ in range(LEAVINGS):
+            gained, more = self._linearised(right, gained, length, found, responses, openings)
+            pulled = np.split(found.pressure + more < -PULL * found.pressure.max(initial=0.0), _ends(responses))
+            if not self._comm.allreduce(sum(int(own.sum()) for own in pulled)):
+                break
+            responses = together(self._comm, partial(_without, responses, pulled))
+        more = np.maximum(more, -found.pressure)
+        gained = right + length * self._rate(found, more)  # once more: exactly what these pressures wear off
+        self._certify(gained, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
+        if not gained.min(initial=0.0) >= -NEGATIVE * gained.max(initial=0.0):
+            raise NotConverged(f"a block of {length:.6g} cycles would put {-gained.min():.2g} mm of material on")
+        return gained, self.evaluate(depth + gained, now)
+
+    def _linearised(
+        self, right: Floats, start: Floats, length: float, found: Passage, responses: Sequence[Response],
+        openings: Sequence[sp.csr_matrix],
+    ) -> tuple[Floats, Floats]:  # fmt: skip
+        """Δh (n,) = right + ΔN r(∂λ), and this rank's ∂λ (q,). Raises NotConverged."""
 
         def follow(h: Floats) -> Floats:
-            """Pressures (q,) that depths h add."""
             return np.concatenate([r(opened @ h) for r, opened in zip(responses, openings)] or [np.zeros(0)])
 
         def slope(h: Floats) -> Floats:
-            return h - length * self._summed(rates @ follow(h))
+            return h - length * self._rate(found, follow(h))
 
-        size, right = (len(depth), len(depth)), length * now.rate
-        solved, failed = gmres(LinearOperator(size, slope), right, x0=right, atol=0.0, **{RELATIVE: KRYLOV})
+        released = np.concatenate([r.released for r in responses] or [np.zeros(0)])
+        size, known = (len(right), len(right)), right + length * self._rate(found, released)
+        solved, failed = gmres(LinearOperator(size, slope), known, x0=start, atol=0.0, **{RELATIVE: KRYLOV})
         if failed:
-            raise NotConverged(f"a block of {length:.6g} cycles: its equations were not solved; take a shorter one")
-        more = follow(solved)  # gone through once more, the depths are exactly what these pressures wear off
-        gained = right + length * self._summed(rates @ more)
-        self._certify(gained, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
-        return gained, self.evaluate(depth + gained, now)
+            raise NotConverged("a block of wear: its equations were not solved; take a shorter one")
+        return solved, released + follow(solved)
 
     def _worn(self, depth: Floats) -> GearModel:
         pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth)))
@@ -166,7 +191,7 @@ class GearWear:
         searched = 0
         for i, k in enumerate(self._own):
             old = kept[i] if kept else None
-            shared = worn_on(model, old) if old is not None else None
+            shared = worn_on(model, old, old.smooth.traction[:, 0] > 0.0) if old is not None else None
             if shared is None:
                 near = old or (found[-1] if found else None)  # where the gears stood in the cycle before
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
@@ -180,10 +205,11 @@ class GearWear:
         """The pitch with friction, and what it wears off."""
         own = self._rubbed(model, shared)
         found = self._passage([result.contact for result in own])
-        rate, work = self._summed(self._rates(found) @ found.pressure), sum(self._comm.allgather(found.work))
+        rate, work = self._rate(found, found.pressure), sum(self._comm.allgather(found.work))
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(own) for result in part)
-        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched)
+        smooth = None if model.has_friction_terms(self.friction) else found
+        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched, smooth)
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""
@@ -217,16 +243,23 @@ class GearWear:
     def _passage(self, positions: Sequence[ContactPoints]) -> Passage:
         return passage(self.model.pair, positions, self.grids, self._step)
 
-    def _summed(self, own: Floats) -> Floats:
-        """(n,) over all ranks, to the last bit the same on each."""
-        return np.asarray(np.sum(self._comm.allgather(own), axis=0))
-
-    def _rates(self, found: Passage) -> sp.csr_matrix:
-        """(n, q) depth per cycle [mm] of pressures (q,)."""
-        return sp.vstack([K * n * D for K, n, D in zip(self.law.both, self._often, found.depths)]).tocsr()
+    def _rate(self, found: Passage, pressure: Floats) -> Floats:
+        """Depths (n,) per cycle [mm] of this rank's pressures (q,), over all ranks, to the last bit alike."""
+        own = [K * n * (D @ pressure) for K, n, D in zip(self.law.both, self._often, found.depths)]
+        return np.asarray(np.sum(self._comm.allgather(np.concatenate(own)), axis=0))
 
     def _opened(self, points: ContactPoints) -> sp.csr_matrix:
         """(q, n) by how much depths open the gap at points."""
         places = enumerate((points.across, points.opposite))
         arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
         return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()
+
+
+def _ends(responses: Sequence[Response]) -> Ints:
+    """Where the points of each but the last end in the list of all."""
+    return np.cumsum([len(r.leaving) for r in responses])[:-1]
+
+
+def _without(responses: Sequence[Response], pulled: Sequence[np.ndarray]) -> list[Response]:
+    """The same when the points that pull have left the contact."""
+    return [response.without(own) for response, own in zip(responses, pulled)]

@@ -35,14 +35,14 @@ class Passage:
     [mm³; mm² in 2D]. pressure: (q,) of the positions [MPa].
     """
 
-    depths: tuple[sp.csr_matrix, sp.csr_matrix]
+    depths: tuple[sp.csc_matrix, sp.csc_matrix]
     works: Floats
     pressure: Floats
 
     @staticmethod
     def nothing(grids: tuple[FlankGrid, FlankGrid]) -> Passage:
         """Of no points."""
-        none, (pinion, wheel) = np.zeros(0), (sp.csr_matrix((grid.node.size, 0)) for grid in grids)
+        none, (pinion, wheel) = np.zeros(0), (sp.csc_matrix((grid.node.size, 0)) for grid in grids)
         return Passage((pinion, wheel), none, none)
 
     @property

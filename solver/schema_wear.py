@@ -56,6 +56,10 @@ class Wear(Section):
         "length of the first block of cycles; the shortest there is. A hundredth of wear.cycles by default",
         "a number above 0 up to wear.cycles", "delete the key for the default", default=None,
     )  # fmt: skip
+    refresh_um: float | None = key(
+        "wear that the meshes may lack: beyond it they follow, and the gears are condensed anew. 5e-3 m_n by default",
+        "a number above 0, in µm", "delete the key for the default", default=None, gt=0,
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _something_wears(self) -> Self:

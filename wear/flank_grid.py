@@ -63,6 +63,16 @@ class FlankGrid:
         low, high = inner_arcs(pair, gear)
         return self.node[:, (self.arcs >= low) & (self.arcs <= high)].ravel()
 
+    def gentle(self, depth: Floats, slope: float) -> Floats:
+        """The largest depths (n,) below these that are nothing at the root's rim, where the fillet goes on, and rise
+        and fall by no more than `slope` along arcs and heights."""
+        field = depth[self.node]
+        field[:, 0] = np.minimum(field[:, 0], 0.0)
+        field = _gentle(_gentle(field, self.arcs, slope).T, self.heights, slope).T
+        found = np.empty(len(depth))
+        found[self.node] = field
+        return found
+
     def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
         """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""
         (i, s), (j, t) = _between(self.arcs, u), _between(self.heights, z)
@@ -92,6 +102,12 @@ class FlankGrid:
         ends = len(layers) * width * np.arange(len(u) + 1)
         shape = (self.node.size, len(u))
         return sp.csc_matrix(((values / self.areas[nodes]).ravel(), nodes.ravel(), ends), shape)
+
+
+def _gentle(rows: Floats, x: Floats, slope: float) -> Floats:
+    """Of values (k, n) at x (n,), row by row."""
+    cone = slope * np.abs(x[:, None] - x)
+    return np.array([(row + cone).min(axis=1) for row in rows])
 
 
 def _between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:

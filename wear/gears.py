@@ -6,7 +6,7 @@ cycle, and gathers what they wear off; friction, which has a past, goes from ran
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from meshes.data import Floats, Ints
+from meshes.data import Floats, Ints, MeshData
 from solver.equilibrium import normal_part
 from solver.gear_model import GearModel
 from solver.gear_position import (
@@ -38,8 +38,12 @@ from solver.scene import GEARS
 from wear.blocks import NEGATIVE, Evaluated
 from wear.flank_grid import FlankGrid, line_arc
 from wear.law import Archard, certify_volume
+from wear.motion import WornSurface, certify_loss, worn_mesh
 from wear.passage import Passage, passage
 
+HELD = "bore", "cut_low", "cut_high"  # groups of a sector that stay when its mesh follows the wear
+SLOPE = 0.01
+"""Of the depth over the flank that a mesh follows: half a degree. Steeper is a tip edge's doing, narrow as a cell."""
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 LEAVINGS = 6  # times at most points are let go that would pull at a block's end
 PULL = 1e-3  # of the largest pressure: less is left to the next block
@@ -48,13 +52,14 @@ PULL = 1e-3  # of the largest pressure: less is left to the next block
 @dataclass(frozen=True)
 class PitchState(Evaluated):
     """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
-    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were.
-    passage: of this rank's positions, where they are without friction."""
+    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were;
+    refreshed: how often the meshes had followed. passage: of this rank's positions, where they are without friction."""
 
     positions: tuple[PositionResult, ...]
     work: float
     shared: tuple[SharedPosition, ...]
     searched: int
+    refreshed: int
     passage: Passage | None
 
 
@@ -87,7 +92,8 @@ class Response:
 class GearWear:
     """A gear pair at one friction coefficient; a cycle is a revolution of the pinion. law: of pinion and wheel.
 
-    Depths (n,) are those of the pinion's flank nodes, then of the wheel's. All ranks of `comm` call every method.
+    Depths (n,) are those of the pinion's flank nodes, then of the wheel's. begin: as made or as charted; known: what
+    the meshes have of them, after so many times that they were `refreshed`. All ranks of `comm` call every method.
     """
 
     def __init__(
@@ -105,6 +111,10 @@ class GearWear:
         self.grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         self._first, self._comm, self._step = len(model.bodies[0].flank.points), comm, step
         self._often = 1.0, 1.0 / model.pair.ratio  # a tooth of each gear meets in a cycle
+        self._made = tuple((body.mesh, body.flank) for body in model.bodies)
+        charted = [b.worn if b.worn is not None else np.zeros(len(b.flank.points)) for b in model.bodies]
+        self.begin = np.concatenate(charted)
+        self.known, self.refreshed = np.zeros(len(self.areas)), 0
         self._own = range(len(pitch.angles))[division(len(pitch.angles), comm.size)[comm.rank]]
 
     @property
@@ -112,20 +122,38 @@ class GearWear:
         """(n,) of all flank nodes [mm²; mm in 2D]."""
         return np.concatenate([grid.areas for grid in self.grids])
 
-    @property
-    def begin(self) -> Floats:
-        """Depths (n,) to begin with: the model's own, as made or as charted."""
-        return np.concatenate([b.worn if b.worn is not None else np.zeros(len(b.flank.points))
-                               for b in self.model.bodies])  # fmt: skip
-
     def by_gear(self, depth: Floats) -> tuple[Floats, Floats]:
         """Depths of the pinion's and of the wheel's flank nodes."""
         return depth[: self._first], depth[self._first :]
 
+    def gentle(self, depth: Floats) -> Floats:
+        """What of depths (n,) meshes can follow: where it is steeper than SLOPE, as in the pits of tip edges, the rest
+        stays a matter of the gap."""
+        return np.concatenate([grid.gentle(own, SLOPE) for grid, own in zip(self.grids, self.by_gear(depth))])
+
+    def lacking(self, depth: Floats) -> float:
+        """How much [mm] of these depths the meshes lack at most of what they can follow."""
+        return float(np.abs(self.gentle(depth) - self.known).max())
+
+    def follow(self, depth: Floats, condensed: Callable[[Callable[[int], MeshData]], GearModel]) -> None:
+        """Moves both gears' meshes as they were made to what is gentle of these depths, and condenses them anew.
+        condensed: makes the model from gear 0's and 1's meshes. Raises MeshInverted, VolumeLost."""
+        known = self.gentle(depth)
+        lost = self.by_gear(known)
+
+        def moved(gear: int) -> MeshData:
+            made, flank = self._made[gear]
+            mesh = worn_mesh(made, [WornSurface(flank, lost[gear])], HELD)
+            certify_loss(made, mesh, float(flank.weights() @ lost[gear]))
+            return mesh
+
+        self.model, self.known, self.refreshed = condensed(moved), known, self.refreshed + 1
+
     def evaluate(self, depth: Floats, before: PitchState | None = None) -> PitchState:
         """One pitch at depths (n,), see `Wearable`; positions near which the gears stood in the
         cycle `before` are not searched again."""
-        model, kept = self._worn(depth), () if before is None else before.shared
+        usable = before is not None and before.refreshed == self.refreshed  # on the same meshes
+        model, kept = self._worn(depth), before.shared if before is not None and usable else ()
         shared, searched = together(self._comm, lambda: self._prepared(model, kept))
         return self._solved(model, shared, self._comm.allreduce(searched))
 
@@ -144,6 +172,8 @@ class GearWear:
     def implicit(self, depth: Floats, now: PitchState, length: float) -> tuple[Floats, PitchState]:
         """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `Wearable`. The
         pressures follow the depth as they do without friction. Raises NotConverged."""
+        if now.refreshed != self.refreshed:
+            raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
         responses = together(self._comm, lambda: [Response(shared) for shared in counted])
         found = now.passage or self._passage([r.points for r in responses])
@@ -182,7 +212,7 @@ class GearWear:
         return solved, released + follow(solved)
 
     def _worn(self, depth: Floats) -> GearModel:
-        pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth)))
+        pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth - self.known)))
         return replace(self.model, bodies=(pinion, wheel))
 
     def _prepared(self, model: GearModel, kept: Sequence[SharedPosition]) -> tuple[list[SharedPosition], int]:
@@ -209,7 +239,7 @@ class GearWear:
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(own) for result in part)
         smooth = None if model.has_friction_terms(self.friction) else found
-        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched, smooth)
+        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched, self.refreshed, smooth)
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""

@@ -6,12 +6,13 @@ was searched, so that a study that goes on from it takes the same blocks as one 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshes.data import Floats
+from meshes.data import Floats, MeshData
+from solver.gear_model import GearModel
 from solver.gear_position import SearchedAt
 from wear.blocks import Block, BlockSettings, WearState, next_block, unworn
 from wear.gears import GearWear, PitchState
@@ -22,13 +23,15 @@ ROUNDING = 1e-12  # of the number of cycles
 @dataclass(frozen=True)
 class BlockRow:
     """A finished block: cycles at its end and in it, its error over its volume, how many longer ones were refused and
-    how many positions searched; so far: largest depths [µm] between the tip-edge zones, volumes off a tooth [mm³]."""
+    how many positions searched; so far: how often the meshes have followed, largest depths [µm] between the tip-edge
+    zones, volumes off a tooth [mm³]."""
 
     cycles: float
     block_cycles: float
     error: float
     refused: int
     searched: int
+    refreshed: int
     deepest_pinion_um: float
     deepest_wheel_um: float
     volume_pinion_mm3: float
@@ -37,10 +40,12 @@ class BlockRow:
 
 @dataclass(frozen=True)
 class Kept:
-    """What a study goes on from: see WearState; searches: of all angles; rows: of the blocks so far."""
+    """What a study goes on from: see WearState; known: depths (n,) that the meshes have; searches: of all angles; rows:
+    of the blocks so far."""
 
     cycles: float
     depth: Floats
+    known: Floats
     last: tuple[Floats, float] | None
     length: float
     searches: tuple[SearchedAt, ...]
@@ -55,20 +60,28 @@ class Stage:
     rows: tuple[BlockRow, ...]
     report: bool
 
-    def worn(self, gears: GearWear) -> Floats:
-        """Depth (n,) [mm] that was taken off since the beginning."""
-        return self.state.depth - gears.begin
+
+@dataclass(frozen=True)
+class Following:
+    """When the meshes follow: where they lack more than `depth` [mm] of what they could follow; condensed: see
+    GearWear.follow."""
+
+    depth: float
+    condensed: Callable[[Callable[[int], MeshData]], GearModel]
 
 
 def stages(
-    gears: GearWear, reports: Sequence[float], settings: BlockSettings, kept: Kept | None = None
-) -> Iterator[Stage]:
+    gears: GearWear, reports: Sequence[float], settings: BlockSettings, following: Following | None = None,
+    kept: Kept | None = None,
+) -> Iterator[Stage]:  # fmt: skip
     """The state at the beginning (or that was kept) and after each block; blocks end at the reports, the last of which
-    ends the study. Raises WearStopped, VolumeLost, NotConverged."""
+    ends the study. Raises WearStopped, VolumeLost, MeshInverted, NotConverged."""
     rows: tuple[BlockRow, ...]
     if kept is None:
         state, rows = unworn(gears, gears.begin, settings), ()
     else:
+        if following is not None and kept.known.any():
+            gears.follow(kept.known, following.condensed)
         now = gears.resumed(kept.depth, kept.searches)
         state, rows = WearState(kept.cycles, kept.depth, now, kept.last, kept.length), kept.rows
     yield Stage(state, rows, kept is None)
@@ -77,6 +90,9 @@ def stages(
         block = next_block(gears, state, end, settings)
         state = block.state
         rows = (*rows, _row(gears, block))
+        if following is not None and gears.lacking(state.depth) > following.depth:
+            gears.follow(state.depth, following.condensed)
+            state = replace(state, now=gears.evaluate(state.depth))
         yield Stage(state, rows, state.cycles >= end * (1.0 - ROUNDING))
 
 
@@ -84,7 +100,7 @@ def kept_of(gears: GearWear, stage: Stage) -> Kept:
     """All ranks must call it."""
     state = stage.state
     searches = tuple(gears.searches(state.now))
-    return Kept(state.cycles, state.depth, state.last, state.length, searches, stage.rows)
+    return Kept(state.cycles, state.depth, gears.known, state.last, state.length, searches, stage.rows)
 
 
 def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
@@ -95,5 +111,5 @@ def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     deepest = [1e3 * float(np.max(depth[own])) for depth, own in zip(depths, inner)]
     volumes = [width * float(areas @ depth) for areas, depth in zip(gears.by_gear(gears.areas), depths)]
     return BlockRow(
-        state.cycles, block.length, block.error, block.refused, state.now.searched, *deepest, *volumes
+        state.cycles, block.length, block.error, block.refused, state.now.searched, gears.refreshed, *deepest, *volumes
     )

@@ -25,14 +25,15 @@ from wear.gears import GearWear
 from wear.pair_study import BlockRow, Kept
 
 FILE = "wear.npz"
-COUNTS = "refused", "searched"  # of a block's facts, the whole numbers
+COUNTS = "refused", "searched", "refreshed"  # of a block's facts, the whole numbers
 
 
 def write_study(archive: Archive, kept: Kept) -> None:
     """Keeps a study, and OUT/wear.csv, a line a block. Raises OSError."""
     last = kept.last or (np.zeros(0), 0.0)
     arrays = {
-        "fingerprint": archive.fingerprint, "cycles": kept.cycles, "depth": kept.depth, "length": kept.length,
+        "fingerprint": archive.fingerprint, "cycles": kept.cycles, "depth": kept.depth, "known": kept.known,
+        "length": kept.length,
         "last_rate": last[0], "last_length": last[1],
         "searches": np.array([(s.angle, *s.extra, s.half_width) for s in kept.searches]),
         "rows": np.array([list(asdict(row).values()) for row in kept.rows]),
@@ -51,7 +52,7 @@ def read_study(archive: Archive) -> Kept | None:
     last = (arrays["last_rate"], float(arrays["last_length"])) if len(arrays["last_rate"]) else None
     searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
     return Kept(
-        float(arrays["cycles"]), arrays["depth"], last, float(arrays["length"]), searches,
+        float(arrays["cycles"]), arrays["depth"], arrays["known"], last, float(arrays["length"]), searches,
         tuple(map(_row, arrays["rows"].tolist())),
     )  # fmt: skip
 

@@ -29,6 +29,7 @@ from evidence.benchmark.skips import SkipRow
 from evidence.benchmark.spur import SpurRow
 from evidence.benchmark.tables import read_rows, write_rows
 from evidence.benchmark.task import Answer, Task
+from evidence.benchmark.wear import BLOCKS, SMALL_CASES, WearCostRow, WearPrecisionRow, cost_rows, precision_rows
 
 LINE = line_contact()
 
@@ -197,6 +198,9 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
+        "wear_cost": [WearCostRow("spur", 1000, 1.0, 2.0, 8.0), WearCostRow("helical", 1000, 9.0, 1.0, 8.0)],
+        "wear": [WearPrecisionRow("implicit", 0.05, 10, 0, 2.0, 0.02, -0.01),
+                 WearPrecisionRow("explicit", 0.05, 30, 2, 4.0, 0.001, 0.001)],
         "profile": [ProfileRow("search", 1000, 4, 2.0, 0.25, 4), ProfileRow("everything else", 1000, 4, 6.0, 0.75, 1)],
         "pitches": [PitchRow("hexahedron", 2, 1, 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
                     PitchRow("hexahedron", 1, 1, 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
@@ -204,7 +208,18 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for name, own in rows.items():
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
-    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**50 %** of 2", "75.0", "14", "killed"):
+    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**50 %** of 2", "75.0", "14", "killed",
+                   "**3.00**", "8.00", "whole met, bare missed"):
         assert wanted in text
     assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
     assert "Cylinder on block" not in text
+
+
+def test_wear_rows() -> None:
+    """A coarse spur pair: twenty blocks and one sweep are timed; the tighter tolerance makes more blocks and a smaller
+    error, and the volume's error is not larger than that of the depths."""
+    row = next(cost_rows(SMALL_CASES))
+    assert BLOCKS == 20 and min(row.prepare, row.sweep) > 0.0 and row.study > row.sweep
+    loose, tight = list(precision_rows(SMALL_CASES[0], (0.2, 0.02)))[:2]
+    assert loose.blocks < tight.blocks and tight.error < loose.error < 0.2
+    assert abs(tight.volume_error) <= tight.error

@@ -126,7 +126,7 @@ def test_study_with_meshes_that_follow() -> None:
 def test_study_goes_on_from_what_was_kept() -> None:
     """Kept after the third block, when the meshes had followed, and gone on with by other objects: the same blocks and
     depths as without a stop within 1e-9 of the deepest."""
-    gears, whole = studied(5e-4)
+    _, whole = studied(5e-4)
     scene = scene_of("spur")
     first = gears_of(scene, 8)
     sweep = stages(first, (2e5, 8e5), BlockSettings(4e4), Following(5e-4, condenser(scene)))

@@ -1,4 +1,4 @@
-"""python -m evidence.benchmark [hertz2d|hertz3d|gears|pitches|scaling|profile|skips|spur|bars|page|all] [--peers]
+"""python -m evidence.benchmark [hertz2d|hertz3d|gears|pitches|scaling|profile|skips|spur|bars|wear|page|all] [--peers]
 [--small]
 
 Writes docs/benchmark/*.csv, the figures in docs/pictures/benchmark/ and the page docs/benchmark.md. --small takes sizes
@@ -13,11 +13,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmark import bars, gear_rows, page, pitches, precision, profile, scaling, skips, spur
+from evidence.benchmark import bars, gear_rows, page, pitches, precision, profile, scaling, skips, spur, wear
 from evidence.benchmark.programs import PEERS, ROOT, Program
 from evidence.benchmark.tables import write_rows
 
-PARTS = ("hertz2d", "hertz3d", "gears", "pitches", "scaling", "profile", "skips", "spur", "bars")
+PARTS = ("hertz2d", "hertz3d", "gears", "pitches", "scaling", "profile", "skips", "spur", "bars", "wear")
 WITHOUT_GEARS = ("Kratos",)  # its mortar contact with friction does not converge there
 
 
@@ -58,6 +58,10 @@ def _measure(part: str, peers: tuple[Program, ...], small: bool, out: Path, fold
         full = bars.spur_problem(), bars.helical_problem()
         problems = (bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)),) if small else full
         _kept(out / "bars.csv", (row for problem in problems for row in bars.measure_bars(problem)))
+    elif part == "wear":
+        _kept(out / "wear_cost.csv", wear.cost_rows(wear.SMALL_CASES if small else wear.CASES))
+        few = wear.SMALL_CASES[0], wear.TOLERANCES[:2]
+        _kept(out / "wear.csv", wear.precision_rows(*few) if small else wear.precision_rows())
     else:
         case = _case(part, small)
         known = precision.overkill(case, folder)

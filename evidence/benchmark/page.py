@@ -10,6 +10,7 @@ from evidence.benchmark import figures
 from evidence.benchmark.bars import BarRow
 from evidence.benchmark.gear_rows import GearRow
 from evidence.benchmark.page_savings import bars_section, skip_section, spur_section
+from evidence.benchmark.page_wear import wear_section
 from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import OverkillRow, Row
 from evidence.benchmark.profile import ProfileRow
@@ -18,6 +19,7 @@ from evidence.benchmark.scaling import RatioRow, SizeRow, exponent
 from evidence.benchmark.skips import SkipRow
 from evidence.benchmark.spur import SpurRow
 from evidence.benchmark.tables import read_rows
+from evidence.benchmark.wear import WearCostRow, WearPrecisionRow
 from evidence.report import header, picture, table, write
 
 TITLES = {"hertz2d": "Cylinder on block, 2D", "hertz3d": "Sphere on block, 3D"}
@@ -64,6 +66,8 @@ def write_page(out: Path) -> Path:
     parts += skip_section(read_rows(out / "benchmark" / "skips.csv", SkipRow))
     parts += spur_section(read_rows(out / "benchmark" / "spur.csv", SpurRow))
     parts += bars_section(read_rows(out / "benchmark" / "bars.csv", BarRow))
+    costs = read_rows(out / "benchmark" / "wear_cost.csv", WearCostRow)
+    parts += wear_section(costs, read_rows(out / "benchmark" / "wear.csv", WearPrecisionRow), pictures)
     return write(out / "benchmark.md", parts)
 
 

@@ -1,0 +1,133 @@
+"""What wear costs: twenty blocks over one sweep of the unworn pair, and run time against error over the tolerance.
+
+Processor seconds in one process. The error of a study is the volume by which its depths differ from those of a study
+with blocks a tenth as long as the smallest tolerance asks for, over the whole volume; both on the same mesh.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from meshes.data import Floats
+from solver import compat
+from solver.gear_model import GearModel, prepare_model
+from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
+from solver.scene import Scene, load_scene
+from wear.blocks import BlockSettings
+from wear.gears import GearWear
+from wear.law import Archard
+from wear.pair_study import stages
+
+DEMOS = Path(__file__).resolve().parents[2] / "demos"
+BLOCKS, ANY = 20, 0.99  # an error that no block has
+K = 1.3832e-10  # mm²/N: He et al. 2022, Table 3
+
+
+@dataclass(frozen=True)
+class WearCase:
+    """A frictionless scene, its positions a pitch, and the cycles of the study."""
+
+    name: str
+    scene: str
+    settings: tuple[str, ...]
+    positions: int
+    cycles: float
+
+    def load(self) -> Scene:
+        """The scene."""
+        return load_scene(DEMOS / self.scene, ["contact.friction=0", *self.settings])
+
+
+CASES = (
+    WearCase("spur, plane", "he2022.toml", ("mesh.level=fine",), 40, 1.6e6),
+    WearCase("helical", "yang2022.toml", ("mesh.level=quick",), 10, 4e5),
+)
+SMALL_CASES = (WearCase("spur, plane", "he2022.toml", ("mesh.level=quick",), 6, 4e5),)
+PRECISION = WearCase("spur, plane", "he2022.toml", ("mesh.level=standard",), 20, 1.6e6)
+TOLERANCES = 0.2, 0.1, 0.05, 0.02, 0.01
+
+
+@dataclass(frozen=True)
+class WearCostRow:
+    """CPU seconds: preparing both gears, one sweep of the unworn pair, BLOCKS blocks with their own first sweep."""
+
+    case: str
+    dofs: int
+    prepare: float
+    sweep: float
+    study: float
+
+    @property
+    def whole(self) -> float:
+        """The study over the sweep, each with its preparation."""
+        return (self.prepare + self.study) / (self.prepare + self.sweep)
+
+    @property
+    def bare(self) -> float:
+        """The same without preparing."""
+        return self.study / self.sweep
+
+
+@dataclass(frozen=True)
+class WearPrecisionRow:
+    """A study at one tolerance: blocks made and refused, CPU seconds without preparing, error of its depths and of
+    its volume."""
+
+    method: str
+    tolerance: float
+    blocks: int
+    refused: int
+    seconds: float
+    error: float
+    volume_error: float
+
+
+def cost_rows(cases: Sequence[WearCase] = CASES) -> Iterator[WearCostRow]:
+    """One a case."""
+    compat.silence_logs()
+    for case in cases:
+        begin = time.process_time()
+        model = prepare_model(case.load(), MPI.COMM_SELF).model
+        ready = time.process_time()
+        pitch = uniform_pitch(model.pair.pinion.z, case.positions, 0)
+        list(sweep_pitch(model, pitch, [0.0], initial_state([0.0])))
+        swept = time.process_time()
+        ends = tuple(case.cycles * k / BLOCKS for k in range(1, BLOCKS + 1))
+        found = list(stages(_gears(model, case), ends, BlockSettings(ends[0], ANY)))
+        assert len(found) == BLOCKS + 1
+        dofs = sum(len(body.mesh.points) * body.d for body in model.bodies)
+        yield WearCostRow(case.name, dofs, ready - begin, swept - ready, time.process_time() - swept)
+
+
+def precision_rows(case: WearCase = PRECISION, tolerances: Sequence[float] = TOLERANCES) -> Iterator[WearPrecisionRow]:
+    """Implicit and explicit blocks at each tolerance."""
+    compat.silence_logs()
+    gears = _gears(prepare_model(case.load(), MPI.COMM_SELF).model, case)
+    known = _study(gears, case, 0.1 * min(tolerances), True)[0]
+    for implicit in (True, False):
+        for tolerance in tolerances:
+            depth, blocks, refused, seconds = _study(gears, case, tolerance, implicit)
+            volume = float(gears.areas @ known)
+            error = float(gears.areas @ np.abs(depth - known)) / volume
+            name = "implicit" if implicit else "explicit"
+            whole = float(gears.areas @ depth) / volume - 1.0
+            yield WearPrecisionRow(name, tolerance, blocks, refused, seconds, error, whole)
+
+
+def _gears(model: GearModel, case: WearCase) -> GearWear:
+    return GearWear(model, uniform_pitch(model.pair.pinion.z, case.positions, 0), 0.0, Archard(K, K))
+
+
+def _study(gears: GearWear, case: WearCase, tolerance: float, implicit: bool) -> tuple[Floats, int, int, float]:
+    """Depths at the end, blocks made and refused, seconds."""
+    begin = time.process_time()
+    settings = BlockSettings(case.cycles * tolerance / 10.0, tolerance, implicit)
+    last = list(stages(gears, (case.cycles,), settings))[-1]
+    refused = sum(row.refused for row in last.rows)
+    return last.state.depth, len(last.rows), refused, time.process_time() - begin

@@ -1,10 +1,11 @@
 """Pin on disc, He et al. 2022, Figs 3 and 13: a pin of 6 mm wears on a rotating disc of 100 mm under 500 N.
 
-    python demos/pin_on_disc.py [--quick] [--out DIR] [--km 10]
+    python demos/pin_on_disc.py [--quick] [--straight] [--out DIR] [--km 10]
 
 Friction bends the pin, so that it first presses on its leading or trailing edge; wear evens that out, until every point
 loses the same depth a turn. Then p v is the same everywhere: a pin that does not turn presses more where the disc is
-slower, nearer to the axis. The mean pressure is 17.684 MPa and the depth grows at 2.446 µm per km.
+slower, nearer to the axis; with --straight the disc slides straight on, and p itself gets even. The mean pressure is
+17.684 MPa and the depth grows at 2.446 µm per km.
 """
 
 from __future__ import annotations
@@ -16,6 +17,10 @@ from typing import Annotated
 
 import numpy as np
 import typer
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.tri import TriContourSet
 from mpi4py import MPI
 
 from meshes.data import MeshData
@@ -68,18 +73,21 @@ def problem(size: float) -> Problem:
     )
 
 
-def turning() -> Cycle:
-    """Press, drag the disc along until all slides, and then let it turn by one km of the track."""
-    R = turn(DRAG / TRACK, 3)
-    centre = np.array([0.0, -TRACK, 0.0])
-    rest, turned = Placement.at_rest(3), Placement(R, centre - R @ centre)
-    steps = Step(), Step(placements=(rest, turned))
-    return Cycle(steps, (Travel(1, rotation=(0.0, 0.0, KILOMETRE), centre=(0.0, -TRACK, 0.0)),))
+def rubbed(straight: bool) -> Cycle:
+    """Press, drag the disc along until all slides, and then let it go on by one km of the track."""
+    if straight:
+        moved = Placement(np.eye(3), np.array([-DRAG, 0.0, 0.0]))
+        travel = Travel(1, translation=(-1e6, 0.0, 0.0))
+    else:
+        R, centre = turn(DRAG / TRACK, 3), np.array([0.0, -TRACK, 0.0])
+        moved = Placement(R, centre - R @ centre)
+        travel = Travel(1, rotation=(0.0, 0.0, KILOMETRE), centre=(0.0, -TRACK, 0.0))
+    return Cycle((Step(), Step(placements=(Placement.at_rest(3), moved))), (travel,))
 
 
-def run(size: float, distance: float) -> list[Stage]:
+def run(size: float, distance: float, straight: bool) -> list[Stage]:
     """Stages after every block."""
-    study = WearStudy(problem(size), (Archard(COEFFICIENT),), turning())
+    study = WearStudy(problem(size), (Archard(COEFFICIENT),), rubbed(straight))
     areas = study.geometry.prepared[0].surfaces["top"].weights()
     fresh = study.evaluate(np.zeros(len(areas)))
     stages = [Stage(0.0, 0.0, fresh)]
@@ -90,25 +98,53 @@ def run(size: float, distance: float) -> list[Stage]:
 
 
 def draw(stages: list[Stage], out: Path) -> None:
-    """Pressure on the pin's face at four distances, and depth over distance."""
+    """Pressure on the pin's face at four distances, depth over distance, and both as they go on."""
     chosen = [stages[0], *(min(stages[1:], key=lambda s: abs(s.distance - d)) for d in (0.1, 1.0)), stages[-1]]
     with styled():
         see = "Friction bends the pin onto its edge; wear evens the pressure out"
         figure = sheet("Pressure on the pin as it wears", see, (12.0, 4.0))
         axes = figure.subplots(1, len(chosen))
         for axis, stage in zip(axes, chosen):
-            result = stage.state.rubbing[0][-1].result
-            shown = axis.tricontourf(
-                *result.points[:, :2].T, result.pressure, np.linspace(0.0, 60.0, 25), cmap=PRESSURE_MAP, extend="max"
-            )
-            axis.set(aspect="equal", title=f"{stage.distance:.3g} km", xlabel="x, sliding [mm]")
+            shown = contours(axis, stage)
         figure.colorbar(shown, ax=axes, label="pressure [MPa]")
         save(figure, out / "pin_on_disc.png")
-        figure = sheet("Wear depth of the pin", f"{rate(stages):.3f} µm per km; F/A · K/H is 2.446")
-        axis = figure.add_subplot()
-        axis.plot([s.distance for s in stages], [s.depth for s in stages], "o-", ms=3)
-        axis.set(xlabel="sliding distance [km]", ylabel="mean depth [µm]")
+        figure = sheet("Wear depth of the pin", f"{rate(stages):.3f} µm per km; F/A · K/H is {RATE}")
+        curve(figure.add_subplot(), stages)
         save(figure, out / "depth.png")
+        animated(stages, out / "animation.gif")
+
+
+def contours(axis: Axes, stage: Stage) -> TriContourSet:
+    """Pressure on the pin's face."""
+    result = stage.state.rubbing[0][-1].result
+    axis.set(aspect="equal", title=f"{stage.distance:.3g} km", xlabel="x, sliding [mm]", ylabel="y [mm]")
+    axis.label_outer()
+    return axis.tricontourf(
+        *result.points[:, :2].T, result.pressure, np.linspace(0.0, 60.0, 25), cmap=PRESSURE_MAP, extend="max"
+    )
+
+
+def curve(axis: Axes, stages: list[Stage]) -> None:
+    """Depth over distance; a dot a block."""
+    axis.plot([s.distance for s in stages], [s.depth for s in stages], "o-", ms=3)
+    axis.set(xlabel="sliding distance [km]", ylabel="mean depth [µm]")
+
+
+def animated(stages: list[Stage], path: Path) -> None:
+    """A frame a block: the pressure evens out, the depth grows."""
+    figure = sheet("The pin wears", "Left: pressure on its face; right: how far it has worn", (9.6, 4.4))
+    face, growth = figure.subplots(1, 2)
+    figure.colorbar(contours(face, stages[0]), ax=face, label="pressure [MPa]")
+    curve(growth, stages)
+    (dot,) = growth.plot([], [], "o", color="#c22a20", ms=9)
+
+    def frame(stage: Stage) -> list[Artist]:
+        face.clear()
+        contours(face, stage)
+        dot.set_data([stage.distance], [stage.depth])
+        return []
+
+    FuncAnimation(figure, frame, frames=stages, init_func=lambda: []).save(path, PillowWriter(fps=4), dpi=90)
 
 
 def rate(stages: list[Stage]) -> float:
@@ -134,7 +170,7 @@ def evenness(stage: Stage) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def check(stages: list[Stage]) -> None:
+def check(stages: list[Stage], straight: bool) -> None:
     """Raises AssertionError where the wear is not what Archard's law asks for."""
     first, last = stages[0], stages[-1]
     (p_first, _), (p_last, pv_last) = evenness(first), evenness(last)
@@ -143,17 +179,19 @@ def check(stages: list[Stage]) -> None:
     assert abs(rate(stages) / RATE - 1.0) < 0.005, f"wanted {RATE} µm per km, found {rate(stages):.4f}"
     assert skew(first) > 0.1, f"wanted the unworn pin to press ahead of its middle, found {skew(first):.3f} mm"
     assert pv_last < 0.02, f"wanted the same depth a turn everywhere, found p v uneven by {100 * pv_last:.1f} %"
+    assert not straight or p_last < 0.02, f"wanted the same pressure all over, found it uneven by {100 * p_last:.1f} %"
 
 
 def main(
-    out: Annotated[Path, typer.Option()] = Path("out/pin_on_disc"), quick: bool = False, km: float = 10.0
-) -> None:
+    out: Annotated[Path, typer.Option()] = Path("out/pin_on_disc"), quick: bool = False, straight: bool = False,
+    km: float = 10.0,
+) -> None:  # fmt: skip
     """Compute, check, write table.csv and the pictures."""
     compat.silence_logs()
-    stages = run(0.8 if quick else 0.4, km)
+    stages = run(0.8 if quick else 0.4, km, straight)
     if MPI.COMM_WORLD.rank:
         return
-    check(stages)
+    check(stages, straight)
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "table.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)

@@ -30,8 +30,8 @@ def wear_section(costs: Sequence[WearCostRow], precisions: Sequence[WearPrecisio
 def _costs_said(rows: Sequence[WearCostRow]) -> str:
     met = all(row.whole <= BAR for row in rows)
     return (
-        f"A study of {BLOCKS} implicit blocks over one sweep of the unworn pair, without friction, CPU seconds; *whole* "
-        f"with preparing both gears, on either side, *bare* without. Wanted at most {BAR:g} times: whole "
+        f"A study of {BLOCKS} implicit blocks over one sweep of the unworn pair, without friction, CPU seconds; "
+        f"*whole* with preparing both gears, on either side, *bare* without. Wanted at most {BAR:g} times: whole "
         f"{'met' if met else 'missed'}, bare {'met' if all(row.bare <= BAR for row in rows) else 'missed'}."
     )
 

@@ -10,8 +10,9 @@ from meshes.parameters import GearPair, GearParameters
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors, yang_estimate
 from solver.resolution import elements_per_contact_width, memory_megabytes, sector_resolutions, sector_size
-from solver.scene import Scene
+from solver.scene import GEARS, Scene
 from solver.scene_gears import working_angle_of
+from solver.schema_wear import Wear
 from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth, warm_up_positions
 
 HANDS = {1: "right", -1: "left"}
@@ -31,10 +32,11 @@ def overview(scene: Scene) -> str:
     pair, estimate = scene.gear_pair(), hertz_estimate(scene)
     blocks = [
         scene.title,
-        table("Gears", _gear_rows(pair), ("pinion", "wheel")),
+        table("Gears", _gear_rows(pair), GEARS),
         table("Pair", _pair_rows(pair)),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
-        table("Mesh and cost (estimate)", _cost_rows(scene), ("pinion", "wheel")),
+        *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
+        table("Mesh and cost (estimate)", _cost_rows(scene), GEARS),
         _skip_lines(scene),
     ]
     return "\n\n".join(blocks)
@@ -168,6 +170,16 @@ def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
         modulus=estimate.modulus,
         factors=factors,
     )
+
+
+def _wear_rows(wear: Wear, estimate: HertzEstimate) -> list[Row]:
+    coefficients = wear.pinion_mm2_per_N, wear.wheel_mm2_per_N
+    depths = [1e3 * wear.cycles * rate for rate in estimate.wear_per_cycle(*coefficients)]
+    return [
+        Row("wear coefficient over hardness", "K/H", "mm²/N", tuple(f"{value:.4g}" for value in coefficients)),
+        Row("revolutions of the pinion", "", "", (f"{wear.cycles:.4g}",)),
+        _both("depth at the ends of the path of contact", "h", "µm", 3, depths),
+    ]
 
 
 def _cost_rows(scene: Scene) -> list[Row]:

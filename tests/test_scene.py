@@ -217,6 +217,16 @@ def test_torque_on_the_wheel() -> None:
     assert " 14685.3" in overview(on_wheel)
 
 
+def test_wear_is_foretold() -> None:
+    """He's pair: a million meshes under half the load take 7.25 µm off the start of the active profile; with the load
+    over the mean number of pairs, the contact ratio, 2/ε_α times as much."""
+    scene = scene_from_text(HE, ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1.3832e-10"])
+    row = re.search(r"depth at the ends of the path of contact +h +µm +(\S+) +(\S+)", overview(scene))
+    assert row is not None
+    wanted = 7.25 * 2.0 / scene.gear_pair().transverse_contact_ratio
+    assert float(row[1]) == pytest.approx(wanted, rel=2e-3) and float(row[2]) == 0.0
+
+
 def test_docs_list_every_key() -> None:
     """docs/scene.md has one row a key, with its default."""
     docs = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")

@@ -11,9 +11,12 @@ import pytest
 from conftest import Run
 from gear_cases import HELICAL
 
+from solver.archive import Archive
 from solver.cli import Exit
 from solver.flank_chart import FlankChart
+from solver.scene import load_scene
 from wear.report import read_worn
+from wear.study_archive import read_study
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -35,10 +38,10 @@ def computed(run_script: Run, out: Path, *settings: str, how: str = "ok", ranks:
 
 
 def blocks(out: Path) -> np.ndarray:
-    """wear.csv without how many positions were searched."""
+    """wear.csv without how many positions were searched and how often the meshes followed since the start."""
     with open(out / "wear.csv", encoding="utf-8") as file:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-    return np.array([[value for name, value in row.items() if name != "searched"] for row in rows])
+    return np.array([[value for name, value in row.items() if name not in ("searched", "refreshed")] for row in rows])
 
 
 def depths(out: Path, cycles: str) -> list[np.ndarray]:
@@ -65,18 +68,21 @@ def test_ranks_agree(friction: str, run_script: Run, tmp_path: Path) -> None:
         assert_same(tmp_path / str(ranks), tmp_path / "1", 1e-8)
 
 
-def test_killed_and_resumed(run_script: Run, tmp_path: Path) -> None:
-    """Killed while the fourth block is written, and resumed on two ranks: the same as never stopped within 1e-8, and
-    nothing of what was kept is done again. Resumed once more nothing is left to do."""
+@pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
+def test_stopped_and_resumed(how: str, run_script: Run, tmp_path: Path) -> None:
+    """Killed while the fourth block is written, or the disk full at the second; resumed on two ranks, the meshes
+    following the wear in between: the same as never stopped within 1e-8. Resumed once more nothing is left to do."""
     whole, halves = tmp_path / "whole", tmp_path / "halves"
-    computed(run_script, whole, *SHORT, *WEAR)
-    assert computed(run_script, halves, *SHORT, *WEAR, how="kill-before-18") != Exit.DONE
-    kept = len(blocks(halves))
-    assert 2 <= kept < len(blocks(whole))
-    computed(run_script, halves, *SHORT, *WEAR, "--resume", ranks=2)
+    settings = (*SHORT, *WEAR, "--set", "wear.refresh_um=0.2")
+    computed(run_script, whole, *settings)
+    assert computed(run_script, halves, *settings, how=how) != Exit.DONE
+    kept = read_study(Archive(halves, load_scene(halves / "scene.toml")))
+    assert kept is not None and 1 <= len(kept.rows) < len(blocks(whole))
+    computed(run_script, halves, *settings, "--resume", ranks=2)
     assert_same(halves, whole, 1e-8)
+    assert "the meshes have followed" in (halves / "run.log").read_text(encoding="utf-8")
     before = (halves / "wear.json").read_text(encoding="utf-8")
-    computed(run_script, halves, *SHORT, *WEAR, "--resume")
+    computed(run_script, halves, *settings, "--resume")
     assert (halves / "wear.json").read_text(encoding="utf-8") == before
     assert "resumed after 400000 of 400000 cycles" in (halves / "run.log").read_text(encoding="utf-8")
 

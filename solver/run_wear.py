@@ -48,11 +48,11 @@ def wear_scene(
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene))
-    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], _law(wear), comm)
+    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm)
     meshes = pinion.mesh, wheel.mesh
     with Progress(round(wear.cycles), round(kept.cycles if kept else 0.0), "cycles", quiet or comm.rank > 0) as bar:
-        for stage in stages(gears, wear.reports, _settings(wear), kept):
-            _certify(stage.state.now)
+        for stage in stages(gears, wear.reports, settings_of(wear), kept):
+            certify_positions(stage.state.now)
             study = kept_of(gears, stage)
             on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
             log.info(_line(stage))
@@ -73,17 +73,19 @@ def write_wear(scene: Scene, out: Path, log: logging.Logger) -> None:
             log.info("picture: %s", path)
 
 
-def _law(wear: Wear) -> Archard:
+def law_of(wear: Wear) -> Archard:
+    """Of pinion and wheel."""
     return Archard(wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)
 
 
-def _settings(wear: Wear) -> BlockSettings:
+def settings_of(wear: Wear) -> BlockSettings:
+    """How the scene wants its blocks."""
     first = wear.first_block_cycles or FIRST * wear.cycles
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
 
 
-def _certify(state: PitchState) -> None:
-    """Raises BalanceError; the volume is certified where it is found."""
+def certify_positions(state: PitchState) -> None:
+    """What a run asks of a pitch. Raises BalanceError; the volume is certified where it is found."""
     for result in state.positions:
         certify(SweptPosition(result.stand.angle, False, (result,), SweepState(result.stand.extra, ())))
     certify_pitch([result] for result in state.positions)

@@ -162,6 +162,10 @@ class GearWear:
             raise NotConverged(f"a block of {length:.6g} cycles would put {-gained.min():.2g} mm of material on")
         return gained, self.evaluate(depth + gained, now)
 
+    def accepted(self, depth: Floats, now: PitchState) -> PitchState:
+        """The pitch as it is: the gap alone takes the depths (n,), see `Wearable`."""
+        return now
+
     def _linearised(
         self, right: Floats, start: Floats, length: float, found: Passage, responses: Sequence[Response],
         openings: Sequence[sp.csr_matrix],
@@ -209,7 +213,7 @@ class GearWear:
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(own) for result in part)
         smooth = None if model.has_friction_terms(self.friction) else found
-        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched, smooth)
+        return PitchState(rate, self.areas, np.inf, np.inf, positions, work, tuple(shared), searched, smooth)
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""

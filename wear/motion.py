@@ -29,11 +29,16 @@ from solver.surface import Surface
 
 Follow = Literal["elastic", "harmonic"]
 SMOOTH = 0.87  # faces whose normals' cosine is above this (30°) are one smooth surface, and no edge
+WALL = 1e6  # stiffness against leaving a free face, over the largest of the equation
 POISSON = 0.3  # of the elastic equation
 
 
 class MeshInverted(MeshError):
     """The moved mesh has a cell that is turned over, or nearly so."""
+
+
+class MeshVolumeLost(MeshError):
+    """The moved mesh has not lost the volume that the contact took away."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +66,9 @@ def worn_mesh(
     still = np.unique(np.concatenate([*resting, *(_continuation(mesh, w.surface) for w in worn)]))
     shift = np.zeros((len(mesh.points), mesh.dimension))
     if np.any(goal):
-        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow)
-        shift = _along_free_faces(mesh, shift, moved)
+        walls = _walls(mesh, moved)
+        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow, walls)
+        shift -= (walls @ shift.ravel()).reshape(shift.shape)
     points = mesh.points.copy()
     points[:, : mesh.dimension] += shift
     result = replace(mesh, points=points)
@@ -129,14 +135,17 @@ def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
-def _followed(mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow) -> Floats:
-    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`."""
+def _followed(
+    mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow, walls: sp.csr_matrix
+) -> Floats:
+    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`, almost none against the walls."""
     shift = np.zeros((len(mesh.points), mesh.dimension))
     shift[moved] = goal
     given = np.zeros(shift.shape, dtype=bool)
     given[moved] = given[still] = True
     free = np.flatnonzero(~given.ravel())
     K = _stiffness(mesh, follow)
+    K = (K + WALL * K.diagonal().max() * walls).tocsr()
     right = -(K @ shift.ravel())[free]
     shift.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
     return shift
@@ -160,15 +169,15 @@ def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
     return compat.assemble_csr(form)[order][:, order].tocsr()
 
 
-def _along_free_faces(mesh: MeshData, shift: Floats, moved: Ints) -> Floats:
-    """The shift with other boundary nodes kept within their faces."""
+def _walls(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
+    """(N d, N d) the part of a displacement that leaves the faces of the boundary nodes that are not moved."""
     facets = boundary_facets(mesh.shape, mesh.order, mesh.cells)
     nodes = np.setdiff1d(np.unique(facets), moved)
-    result = shift.copy()
+    blocks = np.zeros((len(mesh.points), mesh.dimension, mesh.dimension))
     for at, normals in _normals_at(mesh, facets, nodes).items():
-        within = np.linalg.pinv(normals, rcond=0.3) @ normals
-        result[nodes[at]] -= within @ shift[nodes[at]]
-    return result
+        blocks[nodes[at]] = np.linalg.pinv(normals, rcond=0.3) @ normals
+    every = np.arange(len(blocks))
+    return sp.bsr_matrix((blocks, every, np.append(every, len(every)))).tocsr()
 
 
 def mesh_volume(mesh: MeshData) -> float:

@@ -13,7 +13,7 @@ from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictio
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.prepared import PreparedBody
-from solver.search import Pairing, pair_surfaces
+from solver.search import Pairing, SearchError, pair_surfaces
 from solver.statement import Contact, Placement, Problem, Side, Step
 from solver.surface import Surface
 
@@ -69,6 +69,11 @@ class History:
     points: tuple[tuple[Floats, Floats], ...]
 
 
+def reach_of(contact: Contact, first: Surface) -> float:
+    """The gap [mm] up to which a contact whose first surface is given is looked for."""
+    return contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
+
+
 class Position:
     """The condensed contact system of one step. Raises ValueError for a freedom that no body has, SearchError."""
 
@@ -91,8 +96,15 @@ class Position:
         return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
 
     def _pairing(self, contact: Contact, first: Surface, second: Surface) -> Pairing:
-        reach = contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
-        return pair_surfaces(first, second, reach, reach)
+        reach = reach_of(contact, first)
+        found = pair_surfaces(first, second, reach, reach)
+        if not len(found.facet1):
+            raise SearchError(
+                f"contact between {contact.first[1]!r} of body {contact.first[0]} and {contact.second[1]!r} of body "
+                f"{contact.second[0]}: wanted surfaces within {reach:.3g} mm of each other, found none; place the "
+                "bodies closer together, or give the contact a larger reach"
+            )
+        return found
 
     def _operator(self, contact: Contact, pairing: Pairing, first: Surface, second: Surface) -> ContactOperator:
         traction = self.prepared[contact.first[0]].tractions[contact.first[1]]

@@ -25,9 +25,9 @@ from solver.scene import Scene
 from solver.schema_wear import Wear
 from solver.skips import wanted_output, warm_up_positions
 from wear.blocks import BlockSettings
-from wear.gears import GearWear, PitchState
+from wear.gears import Following, GearWear, PitchState
 from wear.law import Archard
-from wear.pair_study import Following, Kept, Stage, kept_of, stages
+from wear.pair_study import Kept, Stage, kept_of, stages
 from wear.report import read_worn, write_report
 from wear.study_archive import read_study, worn_folder, write_pitch, write_study, write_worn
 
@@ -53,11 +53,11 @@ def wear_scene(
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene))
-    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], _law(wear), comm)
+    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm, following_of(scene, comm))
     meshes = pinion.mesh, wheel.mesh
     with Progress(round(wear.cycles), round(kept.cycles if kept else 0.0), "cycles", quiet or comm.rank > 0) as bar:
-        for stage in stages(gears, wear.reports, _settings(wear), _following(scene, comm), kept):
-            _certify(stage.state.now)
+        for stage in stages(gears, wear.reports, settings_of(wear), kept):
+            certify_positions(stage.state.now)
             study = kept_of(gears, stage)
             on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
             log.info(_line(stage))
@@ -78,16 +78,18 @@ def write_wear(scene: Scene, out: Path, log: logging.Logger) -> None:
             log.info("picture: %s", path)
 
 
-def _law(wear: Wear) -> Archard:
+def law_of(wear: Wear) -> Archard:
+    """Of pinion and wheel."""
     return Archard(wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)
 
 
-def _settings(wear: Wear) -> BlockSettings:
+def settings_of(wear: Wear) -> BlockSettings:
+    """How the scene wants its blocks."""
     first = wear.first_block_cycles or FIRST * wear.cycles
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
 
 
-def _following(scene: Scene, comm: MPI.Comm) -> Following:
+def following_of(scene: Scene, comm: MPI.Comm) -> Following:
     """When and how the meshes follow."""
     assert scene.wear is not None
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
@@ -100,8 +102,8 @@ def _following(scene: Scene, comm: MPI.Comm) -> Following:
     return Following(REFRESH * module if given is None else 1e-3 * given, condensed)
 
 
-def _certify(state: PitchState) -> None:
-    """Raises BalanceError; the volume is certified where it is found."""
+def certify_positions(state: PitchState) -> None:
+    """What a run asks of a pitch. Raises BalanceError; the volume is certified where it is found."""
     for result in state.positions:
         certify(SweptPosition(result.stand.angle, False, (result,), SweepState(result.stand.extra, ())))
     certify_pitch([result] for result in state.positions)

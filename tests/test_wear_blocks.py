@@ -20,14 +20,18 @@ class Softening:
     def evaluate(self, depth, before=None):
         """The rate."""
         self.calls += 1
-        return Evaluated(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0)
+        return Evaluated(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
 
     def implicit(self, depth, now, length):
         """The rate r at the end, r (1 + h + ΔN r) = 1."""
         self.calls += 1
         b = 1.0 + depth * (1.0, 2.0)
-        end = Evaluated((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0)
+        end = Evaluated((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
         return length * end.rate, end
+
+    def accepted(self, depth, now):
+        """Nothing follows."""
+        return now
 
 
 class Failing(Softening):

@@ -16,10 +16,10 @@ from solver.gear_model import GearModel, prepare_model
 from solver.gear_sweep import uniform_pitch
 from solver.scene import Scene
 from wear.blocks import BlockSettings
-from wear.gears import SLOPE, GearWear
+from wear.gears import SLOPE, Following, GearWear
 from wear.law import Archard
 from wear.motion import mesh_volume
-from wear.pair_study import Following, Stage, kept_of, stages
+from wear.pair_study import Stage, kept_of, stages
 
 K = 1.3832e-10  # mm²/N, He 2022
 RELIEF = tuple(f"{gear}.tip_relief_{key}" for gear in ("pinion", "wheel") for key in ("um=30", "form=parabolic"))
@@ -37,10 +37,11 @@ def condenser(scene: Scene) -> Callable[[Callable[[int], MeshData]], GearModel]:
     return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 
 
-def gears_of(scene: Scene, positions: int = 4) -> GearWear:
+def gears_of(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
     model = prepare_model(scene, MPI.COMM_SELF).model
-    return GearWear(model, uniform_pitch(model.pair.pinion.z, positions, 0), 0.0, Archard(K, K))
+    pitch, following = uniform_pitch(model.pair.pinion.z, positions, 0), Following(refresh, condenser(scene))
+    return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 
 
 def hollow(gears: GearWear, depth: float) -> np.ndarray:
@@ -65,7 +66,7 @@ def test_meshes_that_follow_make_the_same_contact(kind: str, order: int) -> None
     depth = hollow(gears, 5e-3)
     fresh, gap = gears.evaluate(gears.begin), gears.evaluate(depth)
     before = [body.mesh for body in gears.model.bodies]
-    gears.follow(depth, condenser(scene))
+    gears.follow(depth)
     np.testing.assert_allclose(gears.known, depth, atol=1e-12)
     for old, body, areas, own in zip(before, gears.model.bodies, gears.by_gear(gears.areas), gears.by_gear(depth)):
         assert mesh_volume(old) - mesh_volume(body.mesh) == pytest.approx(float(areas @ own), rel=1e-3)
@@ -83,7 +84,7 @@ def test_a_block_on_other_meshes_is_refused() -> None:
     scene = scene_of("spur")
     gears = gears_of(scene)
     now = gears.evaluate(gears.begin)
-    gears.follow(hollow(gears, 1e-3), condenser(scene))
+    gears.follow(hollow(gears, 1e-3))
     with pytest.raises(ValueError, match="found one on others"):
         gears.implicit(gears.begin, now, 1e3)
 
@@ -108,10 +109,8 @@ def test_what_meshes_can_follow() -> None:
 @cache
 def studied(refresh: float) -> tuple[GearWear, list[Stage]]:
     """A spur pair worn by 3 µm."""
-    scene = scene_of("spur")
-    gears = gears_of(scene, 8)
-    following = Following(refresh, condenser(scene))
-    return gears, list(stages(gears, (2e5, 8e5), BlockSettings(4e4), following))
+    gears = gears_of(scene_of("spur"), 8, refresh)
+    return gears, list(stages(gears, (2e5, 8e5), BlockSettings(4e4)))
 
 
 def test_study_with_meshes_that_follow() -> None:
@@ -128,12 +127,12 @@ def test_study_goes_on_from_what_was_kept() -> None:
     depths as without a stop within 1e-9 of the deepest."""
     _, whole = studied(5e-4)
     scene = scene_of("spur")
-    first = gears_of(scene, 8)
-    sweep = stages(first, (2e5, 8e5), BlockSettings(4e4), Following(5e-4, condenser(scene)))
+    first = gears_of(scene, 8, 5e-4)
+    sweep = stages(first, (2e5, 8e5), BlockSettings(4e4))
     stage = next(stage for k, stage in enumerate(sweep) if k == 4)
     assert first.refreshed > 0
-    second, kept = gears_of(scene, 8), kept_of(first, stage)
-    rest = list(stages(second, (2e5, 8e5), BlockSettings(4e4), Following(5e-4, condenser(scene)), kept))
+    second, kept = gears_of(scene, 8, 5e-4), kept_of(first, stage)
+    rest = list(stages(second, (2e5, 8e5), BlockSettings(4e4), kept))
     assert [s.state.cycles for s in rest] == pytest.approx([s.state.cycles for s in whole[4:]], rel=1e-9)
     deepest = whole[-1].state.depth.max()
     np.testing.assert_allclose(rest[-1].state.depth, whole[-1].state.depth, atol=1e-9 * deepest)

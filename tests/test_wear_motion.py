@@ -65,21 +65,23 @@ def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
     np.testing.assert_allclose(np.einsum("na,na->n", d, top.normals), 1.0, atol=1e-12)
 
 
-def test_which_equation_keeps_better_cells() -> None:
-    """A block 2 wide and 1 high loses a pit a·exp(−(x/w)²) in one go. A narrow pit, w = 0.25, a = 0.2: the elastic
-    equation keeps better cells (0.94 against 0.83). A wide one, w = 0.5, a = 0.3: only the harmonic one can follow, as
-    the elastic one pushes cells out at the sides."""
-    mesh = rectangle(2.0, 1.0, 16, 12, 2, "quadrilateral")
+@pytest.mark.parametrize("shape", ["quadrilateral", "triangle"])
+def test_which_equation_keeps_better_cells(shape: str) -> None:
+    """A block 2 wide and 1 high loses a pit a·exp(−(x/w)²) in one go. The elastic equation keeps better cells, by more
+    than 0.03 of the scaled Jacobian at a = 0.2, w = 0.25 and 0.5, and can follow deeper: a = 0.3, w = 0.25 turns cells
+    over that follow the harmonic one."""
+    mesh = rectangle(2.0, 1.0, 16, 12, 2, shape)
     top = surface_of(mesh, "top")
 
     def quality(follow: Follow, width: float, deep: float) -> float:
         depth = deep * np.exp(-(((top.points[:, 0] - 1.0) / width) ** 2))
         return float(scaled_jacobians(worn_mesh(mesh, [WornSurface(top, depth)], ["bottom"], follow)).min())
 
-    assert quality("elastic", 0.25, 0.2) > quality("harmonic", 0.25, 0.2) + 0.05 > 0.8
-    assert quality("harmonic", 0.5, 0.3) > 0.8
+    for width in (0.25, 0.5):
+        assert quality("elastic", width, 0.2) > quality("harmonic", width, 0.2) + 0.03
+    assert quality("elastic", 0.25, 0.3) > 0.1
     with pytest.raises(MeshInverted):
-        quality("elastic", 0.5, 0.3)
+        quality("harmonic", 0.25, 0.3)
 
 
 def test_turned_over_is_refused() -> None:

@@ -17,10 +17,17 @@ import numpy as np
 from meshes.data import Floats
 from solver.newton import NotConverged
 from solver.search import SearchError
+from wear.law import StepsTooLong
+from wear.motion import MeshInverted, MeshVolumeLost
 
 LOG = logging.getLogger("evolvent")
 SAFETY, LONGER, SHORTER = 0.8, 2.0, 0.2  # of the next block's length over this one's
-HALVINGS = 12  # of a block before it is given up
+SHORTEST = 2.0**-12  # of the first block, or of a stable one: shorter ones are not tried
+STABLE = 0.5
+"""How long an explicit block may be over a ripple's decay: in longer ones ripples grow. (By how much a block multiplies
+them are the roots r of r³ + (2z − 1) r² − 1.5 z r + z/2, z this ratio; at z = 0.5 one of them is −1.)"""
+TOO_LONG = (NotConverged, SearchError, StepsTooLong, MeshInverted, MeshVolumeLost)
+"""What a shorter block may do without."""
 NEGATIVE = 1e-6  # of a block's largest depth: a depth below minus that is no rounding
 
 
@@ -50,12 +57,13 @@ class BlockSettings:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """One cycle on a worn state: rate (n,) [mm per cycle] of all nodes that wear, their areas (n,) [mm²; mm in 2D], and
-    the contact's deformation [mm]."""
+    """One cycle on a worn state: rate (n,) [mm per cycle] of all nodes that wear, their areas (n,) [mm²; mm in 2D], the
+    contact's deformation [mm], and the cycles in which the shortest ripple that the mesh can have decays to 1/e."""
 
     rate: Floats
     areas: Floats
     deformation: float
+    decay: float
 
 
 E = TypeVar("E", bound=Evaluated, covariant=True)
@@ -72,6 +80,11 @@ class Wearable(Protocol[E]):
     def implicit(self, depth: Floats, now: Any, length: float) -> tuple[Floats, E]:
         """What a block of so many cycles takes away from depths (n,), (n,) [mm], at the rate of its end; and the cycle
         there. now: the cycle at its start. Raises NotConverged, SearchError."""
+        ...
+
+    def accepted(self, depth: Floats, now: Any) -> E:
+        """The cycle at depths (n,) of a block that is to be accepted, once the meshes have followed where they have to;
+        now: before that. Raises what makes a block TOO_LONG, and leaves everything as it was."""
         ...
 
 
@@ -91,10 +104,12 @@ class WearState(Generic[E]):
 class Block(Generic[E]):
     """A finished block.
 
-    state: at its end. length: cycles. error: its error over its volume. refused: how many longer ones were.
+    state: at its end. end: the cycle there before the meshes followed, which the block's own volume is of; where none
+    did that of the state. length: cycles. error: its error over its volume. refused: how many longer ones were.
     """
 
     state: WearState[E]
+    end: E
     length: float
     error: float
     refused: int
@@ -107,25 +122,28 @@ def unworn(wearable: Wearable[E], depth: Floats, settings: BlockSettings, cycles
 
 def next_block(wearable: Wearable[E], state: WearState[E], end: float, settings: BlockSettings) -> Block[E]:
     """The next block, which ends at `end` cycles at the latest. Raises WearStopped."""
-    length, refused = min(state.length, end - state.cycles), 0
-    while refused <= HALVINGS:
-        length = min(length, _deepest(state, settings))
+    longest = _longest(state, settings)
+    length, refused = min(state.length, end - state.cycles, longest), 0
+    least, why = SHORTEST * min(settings.first, end - state.cycles, longest), ""
+    while length >= least:
         try:
             tried, error = _tried(wearable, state, length, settings)
-        except (NotConverged, SearchError) as failure:
+            if error <= settings.tolerance or length <= settings.first:
+                now = wearable.accepted(tried.depth, tried.now)
+                following = max(length * _change(error, settings), min(length, settings.first))
+                if refused == 0:  # a block that was cut off by the end says nothing against its length
+                    following = max(following, state.length if length < state.length else 0.0)
+                return Block(replace(tried, now=now, length=following), tried.now, length, error, refused)
+        except TOO_LONG as failure:
             LOG.info("block of %.6g cycles after %.6g: %s", length, state.cycles, failure)
             length, refused, why = 0.5 * length, refused + 1, str(failure)
             continue
-        if error <= settings.tolerance or length <= settings.first:
-            following = max(length * _change(error, settings), settings.first)
-            if refused == 0:  # a block that was cut off by the end says nothing against its length
-                following = max(following, state.length if length < state.length else 0.0)
-            return Block(replace(tried, length=following), length, error, refused)
         length, refused, why = length * min(_change(error, settings), 0.7), refused + 1, f"error {error:.2g}"
         length = max(length, settings.first)
     raise WearStopped(
         f"wear after {state.cycles:.6g} cycles: wanted a block with an error below {settings.tolerance:g}, found none "
-        f"down to {length:.3g} cycles ({why}); the last good state is kept: refine the mesh, or allow more error"
+        f"down to {length:.3g} cycles ({why}); the last good state is kept: refine the mesh, allow more error, or wear "
+        "off less"
     )
 
 
@@ -150,13 +168,14 @@ def _tried(
     return WearState(state.cycles + length, state.depth + gained, end, (begin, length), length), share
 
 
-def _deepest(state: WearState[E], settings: BlockSettings) -> float:
-    """The length at which the depth at today's rate is the allowed share of the deformation; without a limit where the
-    pressure follows the wear within the block."""
+def _longest(state: WearState[E], settings: BlockSettings) -> float:
+    """The length that is stable, and at which the depth at today's rate is the allowed share of the deformation;
+    without a limit where the pressure follows the wear within the block."""
     if settings.implicit:
         return np.inf
     rate = float(state.now.rate.max(initial=0.0))
-    return settings.deformation_share * state.now.deformation / rate if rate > 0.0 else np.inf
+    share = settings.deformation_share * state.now.deformation / rate if rate > 0.0 else np.inf
+    return min(share, STABLE * state.now.decay)
 
 
 def _change(error: float, settings: BlockSettings) -> float:

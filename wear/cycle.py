@@ -18,7 +18,7 @@ from solver.nitsche import ContactOperator
 from solver.position import ContactResult, History, Position
 from solver.prepared import PreparedBody
 from solver.statement import Problem, Side, Step
-from wear.law import Archard, Places
+from wear.law import Archard, Places, StepsTooLong
 
 Depths = dict[Side, Floats]
 
@@ -89,7 +89,7 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
     """Solves a cycle: per contact, the states in which it rubs. With `ahead` cycles to come the pressure is that at
     their end (implicit Euler), which only a cycle with travel can do.
 
-    Raises NotConverged, SearchError, ValueError.
+    Raises NotConverged, SearchError, StepsTooLong, ValueError.
     """
     if worn.ahead and not worn.cycle.travel:
         raise ValueError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
@@ -135,7 +135,7 @@ class _Wearing(Position):
         return own.first, own.second
 
     def sliding(self, index: int, result: ContactResult) -> Floats:
-        """(q,) [mm per cycle]."""
+        """(q,) [mm per cycle]. Raises StepsTooLong."""
         if self.wear.cycle.travel:
             return self._travelled(index, result.points, result.normals)
         slid = np.linalg.norm(result.slip, axis=1)
@@ -143,7 +143,7 @@ class _Wearing(Position):
         width = float(result.weights[pressed].sum()) ** (1.0 / (self.d - 1))
         longest = float(slid[pressed].max(initial=0.0))
         if longest > width:
-            raise ValueError(
+            raise StepsTooLong(
                 f"wear: wanted steps that slide less than the contact is wide, found {longest:.3g} mm on {width:.3g} "
                 "mm; what lies between would be left out: take more steps"
             )

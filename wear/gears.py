@@ -35,17 +35,19 @@ from solver.parallel import together
 from solver.pressure_response import PressureResponse
 from solver.rank_sweep import division
 from solver.scene import GEARS
-from wear.blocks import NEGATIVE, Evaluated
+from wear.blocks import TOO_LONG, Evaluated
 from wear.flank_grid import FlankGrid, line_arc
 from wear.law import Archard, certify_volume
 from wear.motion import WornSurface, certify_loss, worn_mesh
 from wear.passage import Passage, passage
 
-HELD = "bore", "cut_low", "cut_high"  # groups of a sector that stay when its mesh follows the wear
+HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
+"""Groups of a sector that stay when its mesh follows the wear; end faces, which are plane, slide in themselves."""
 SLOPE = 0.01
 """Of the depth over the flank that a mesh follows: half a degree. Steeper is a tip edge's doing, narrow as a cell."""
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 LEAVINGS = 6  # times at most points are let go that would pull at a block's end
+PUT_ON = 1e-7  # of a block's volume may be left out: depths below zero, a tenth of what its certificate allows
 PULL = 1e-3  # of the largest pressure: less is left to the next block
 
 
@@ -89,16 +91,27 @@ class Response:
         return Response(self._shared, self.leaving | pulled) if pulled.any() else self
 
 
+@dataclass(frozen=True)
+class Following:
+    """When the meshes follow the wear: where they lack more than `depth` [mm] of what they could follow. condensed:
+    makes the model from gear 0's and 1's meshes."""
+
+    depth: float
+    condensed: Callable[[Callable[[int], MeshData]], GearModel]
+
+
 class GearWear:
     """A gear pair at one friction coefficient; a cycle is a revolution of the pinion. law: of pinion and wheel.
 
     Depths (n,) are those of the pinion's flank nodes, then of the wheel's. begin: as made or as charted; known: what
-    the meshes have of them, after so many times that they were `refreshed`. All ranks of `comm` call every method.
+    the meshes have of them, after so many times that they were `refreshed`, without `following` never. All ranks of
+    `comm` call every method.
     """
 
     def __init__(
-        self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF
-    ) -> None:
+        self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF,
+        following: Following | None = None,
+    ) -> None:  # fmt: skip
         """Raises ValueError unless the positions are equal steps of one pitch: they are one tooth's passage."""
         angles = np.array(pitch.angles[pitch.warm_up :])
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
@@ -111,6 +124,7 @@ class GearWear:
         self.grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         self._first, self._comm, self._step = len(model.bodies[0].flank.points), comm, step
         self._often = 1.0, 1.0 / model.pair.ratio  # a tooth of each gear meets in a cycle
+        self.following = following
         self._made = tuple((body.mesh, body.flank) for body in model.bodies)
         charted = [b.worn if b.worn is not None else np.zeros(len(b.flank.points)) for b in model.bodies]
         self.begin = np.concatenate(charted)
@@ -135,9 +149,10 @@ class GearWear:
         """How much [mm] of these depths the meshes lack at most of what they can follow."""
         return float(np.abs(self.gentle(depth) - self.known).max())
 
-    def follow(self, depth: Floats, condensed: Callable[[Callable[[int], MeshData]], GearModel]) -> None:
-        """Moves both gears' meshes as they were made to what is gentle of these depths, and condenses them anew.
-        condensed: makes the model from gear 0's and 1's meshes. Raises MeshInverted, VolumeLost."""
+    def follow(self, depth: Floats) -> None:
+        """Moves both gears' meshes as they were made to what is gentle of these depths, and condenses them anew. Raises
+        MeshInverted, MeshVolumeLost."""
+        assert self.following is not None
         known = self.gentle(depth)
         lost = self.by_gear(known)
 
@@ -147,7 +162,7 @@ class GearWear:
             certify_loss(made, mesh, float(flank.weights() @ lost[gear]))
             return mesh
 
-        self.model, self.known, self.refreshed = condensed(moved), known, self.refreshed + 1
+        self.model, self.known, self.refreshed = self.following.condensed(moved), known, self.refreshed + 1
 
     def evaluate(self, depth: Floats, before: PitchState | None = None) -> PitchState:
         """One pitch at depths (n,), see `Wearable`; positions near which the gears stood in the
@@ -187,10 +202,24 @@ class GearWear:
             responses = together(self._comm, partial(_without, responses, pulled))
         more = np.maximum(more, -found.pressure)
         gained = right + length * self._rate(found, more)  # once more: exactly what these pressures wear off
-        self._certify(gained, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
-        if not gained.min(initial=0.0) >= -NEGATIVE * gained.max(initial=0.0):
-            raise NotConverged(f"a block of {length:.6g} cycles would put {-gained.min():.2g} mm of material on")
-        return gained, self.evaluate(depth + gained, now)
+        # with friction a point that leaves may have pressed less than without it
+        gone, put = np.maximum(gained, 0.0), np.maximum(-gained, 0.0)
+        if not float(self.areas @ put) <= PUT_ON * float(self.areas @ gone):
+            raise NotConverged(f"a block of {length:.6g} cycles would put {put.max():.2g} mm of material on")
+        self._certify(gone, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
+        return gone, self.evaluate(depth + gone, now)
+
+    def accepted(self, depth: Floats, now: PitchState) -> PitchState:
+        """The pitch once the meshes have followed where they lack too much of depths (n,), see `Wearable`."""
+        if self.following is None or self.lacking(depth) <= self.following.depth:
+            return now
+        before = self.model, self.known, self.refreshed
+        try:
+            self.follow(depth)
+            return self.evaluate(depth)
+        except TOO_LONG:
+            self.model, self.known, self.refreshed = before
+            raise
 
     def _linearised(
         self, right: Floats, start: Floats, length: float, found: Passage, responses: Sequence[Response],
@@ -239,7 +268,9 @@ class GearWear:
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(own) for result in part)
         smooth = None if model.has_friction_terms(self.friction) else found
-        return PitchState(rate, self.areas, np.inf, positions, work, tuple(shared), searched, self.refreshed, smooth)
+        return PitchState(
+            rate, self.areas, np.inf, np.inf, positions, work, tuple(shared), searched, self.refreshed, smooth
+        )
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""

@@ -23,6 +23,10 @@ class VolumeLost(RuntimeError):
     """The depth at the nodes is not the volume that the contact took away."""
 
 
+class StepsTooLong(ValueError):
+    """The steps of a cycle slide further than the contact is wide."""
+
+
 def certify_volume(name: str, found: float, wanted: float) -> None:
     """found: Σ m h at the nodes of what is named, wanted: (K/H)∫∫p|v_s| dA dt. Raises VolumeLost."""
     if not abs(found - wanted) <= VOLUME * abs(wanted):

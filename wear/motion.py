@@ -26,10 +26,10 @@ from solver import compat
 from solver.condense import Factor
 from solver.lagrange import gmsh_permutation
 from solver.surface import Surface
-from wear.law import VolumeLost
 
 Follow = Literal["elastic", "harmonic"]
 SMOOTH = 0.87  # faces whose normals' cosine is above this (30°) are one smooth surface, and no edge
+WALL = 1e6  # stiffness against leaving a free face, over the largest of the equation
 POISSON = 0.3  # of the elastic equation
 MESH_VOLUME = 1e-2
 """How far what a moved mesh has lost may be from Σ m h. On a curved surface the two differ by half the depth over the
@@ -38,6 +38,10 @@ radius; 6e-4 was found on worn spheres and cylinders."""
 
 class MeshInverted(MeshError):
     """The moved mesh has a cell that is turned over, or nearly so."""
+
+
+class MeshVolumeLost(MeshError):
+    """The moved mesh has not lost the volume that the contact took away."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class WornSurface:
 
 
 def worn_mesh(
-    mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], follow: Follow = "harmonic",
+    mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], follow: Follow = "elastic",
     least_quality: float = 0.05,
 ) -> MeshData:  # fmt: skip
     """The mesh with its worn surfaces moved in and the interior following. held: facet groups that stay where they are.
@@ -65,8 +69,9 @@ def worn_mesh(
     still = np.unique(np.concatenate([*resting, *(_continuation(mesh, w.surface) for w in worn)]))
     shift = np.zeros((len(mesh.points), mesh.dimension))
     if np.any(goal):
-        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow)
-        shift = _along_free_faces(mesh, shift, moved)
+        walls = _walls(mesh, moved)
+        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow, walls)
+        shift -= (walls @ shift.ravel()).reshape(shift.shape)
     points = mesh.points.copy()
     points[:, : mesh.dimension] += shift
     result = replace(mesh, points=points)
@@ -133,14 +138,17 @@ def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
-def _followed(mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow) -> Floats:
-    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`."""
+def _followed(
+    mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow, walls: sp.csr_matrix
+) -> Floats:
+    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`, almost none against the walls."""
     shift = np.zeros((len(mesh.points), mesh.dimension))
     shift[moved] = goal
     given = np.zeros(shift.shape, dtype=bool)
     given[moved] = given[still] = True
     free = np.flatnonzero(~given.ravel())
     K = _stiffness(mesh, follow)
+    K = (K + WALL * K.diagonal().max() * walls).tocsr()
     right = -(K @ shift.ravel())[free]
     shift.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
     return shift
@@ -164,22 +172,22 @@ def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
     return compat.assemble_csr(form)[order][:, order].tocsr()
 
 
-def _along_free_faces(mesh: MeshData, shift: Floats, moved: Ints) -> Floats:
-    """The shift with other boundary nodes kept within their faces."""
+def _walls(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
+    """(N d, N d) the part of a displacement that leaves the faces of the boundary nodes that are not moved."""
     facets = boundary_facets(mesh.shape, mesh.order, mesh.cells)
     nodes = np.setdiff1d(np.unique(facets), moved)
-    result = shift.copy()
+    blocks = np.zeros((len(mesh.points), mesh.dimension, mesh.dimension))
     for at, normals in _normals_at(mesh, facets, nodes).items():
-        within = np.linalg.pinv(normals, rcond=0.3) @ normals
-        result[nodes[at]] -= within @ shift[nodes[at]]
-    return result
+        blocks[nodes[at]] = np.linalg.pinv(normals, rcond=0.3) @ normals
+    every = np.arange(len(blocks))
+    return sp.bsr_matrix((blocks, every, np.append(every, len(every)))).tocsr()
 
 
 def certify_loss(before: MeshData, after: MeshData, wanted: float) -> None:
-    """wanted: Σ m h [mm³; mm² in 2D] of what a moved mesh was to lose. Raises VolumeLost."""
+    """wanted: Σ m h [mm³; mm² in 2D] of what a moved mesh was to lose. Raises MeshVolumeLost."""
     lost = mesh_volume(before) - mesh_volume(after)
     if not abs(lost - wanted) <= MESH_VOLUME * abs(wanted):
-        raise VolumeLost(
+        raise MeshVolumeLost(
             f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; refine the worn surface, or let "
             "the mesh follow more often"
         )

@@ -6,13 +6,12 @@ was searched, so that a study that goes on from it takes the same blocks as one 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.data import Floats, MeshData
-from solver.gear_model import GearModel
+from meshes.data import Floats
 from solver.gear_position import SearchedAt
 from wear.blocks import Block, BlockSettings, WearState, next_block, unworn
 from wear.gears import GearWear, PitchState
@@ -61,27 +60,17 @@ class Stage:
     report: bool
 
 
-@dataclass(frozen=True)
-class Following:
-    """When the meshes follow: where they lack more than `depth` [mm] of what they could follow; condensed: see
-    GearWear.follow."""
-
-    depth: float
-    condensed: Callable[[Callable[[int], MeshData]], GearModel]
-
-
 def stages(
-    gears: GearWear, reports: Sequence[float], settings: BlockSettings, following: Following | None = None,
-    kept: Kept | None = None,
-) -> Iterator[Stage]:  # fmt: skip
+    gears: GearWear, reports: Sequence[float], settings: BlockSettings, kept: Kept | None = None
+) -> Iterator[Stage]:
     """The state at the beginning (or that was kept) and after each block; blocks end at the reports, the last of which
-    ends the study. Raises WearStopped, VolumeLost, MeshInverted, NotConverged."""
+    ends the study. Raises WearStopped, VolumeLost, NotConverged."""
     rows: tuple[BlockRow, ...]
     if kept is None:
         state, rows = unworn(gears, gears.begin, settings), ()
     else:
-        if following is not None and kept.known.any():
-            gears.follow(kept.known, following.condensed)
+        if kept.known.any():
+            gears.follow(kept.known)
         now = gears.resumed(kept.depth, kept.searches)
         state, rows = WearState(kept.cycles, kept.depth, now, kept.last, kept.length), kept.rows
     yield Stage(state, rows, kept is None)
@@ -90,9 +79,6 @@ def stages(
         block = next_block(gears, state, end, settings)
         state = block.state
         rows = (*rows, _row(gears, block))
-        if following is not None and gears.lacking(state.depth) > following.depth:
-            gears.follow(state.depth, following.condensed)
-            state = replace(state, now=gears.evaluate(state.depth))
         yield Stage(state, rows, state.cycles >= end * (1.0 - ROUNDING))
 
 

@@ -15,21 +15,28 @@ import numpy as np
 
 from meshes.data import Floats, MeshData
 from solver.body import Body
+from solver.position import reach_of
 from solver.prepared import PreparedBody, prepare
-from solver.statement import Problem, Side
-from wear.blocks import Block, BlockSettings, Evaluated, WearState, next_block, unworn
+from solver.search import SearchError
+from solver.statement import Contact, Problem, Side
+from solver.surface import Surface
+from wear.blocks import TOO_LONG, Block, BlockSettings, Evaluated, WearState, next_block, unworn
 from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
 from wear.law import Archard, certify_volume
 from wear.motion import Follow, WornSurface, certify_loss, worn_mesh
 
+SHALLOW = 0.25
+"""Of a surface's smallest cell: a gap so deep changes the body's shape by no more than the mesh resolves."""
+
 
 @dataclass(frozen=True)
 class Refresh:
-    """When the mesh follows: where depth [mm] is more than this that the mesh does not know of; how its interior does,
-    and the least scaled Jacobian it may have."""
+    """When the mesh follows: where depth [mm] is more than this that the mesh does not know of, and in any case where
+    it is more than SHALLOW cells or half of a contact's reach; how its interior does, and the least scaled Jacobian it
+    may have."""
 
     depth: float = np.inf
-    follow: Follow = "harmonic"
+    follow: Follow = "elastic"
     least_quality: float = 0.05
 
 
@@ -86,26 +93,37 @@ class WearStudy:
         rates = added(self.laws, own.problem, states)
         rate = np.concatenate([rates[side] for side in self.sides])
         return CycleState(
-            rate, self.areas, _deformation(own.problem, states), tuple(map(tuple, states)), self._volumes(rates),
-            self._integrals(states),
+            rate, self.areas, _deformation(own.problem, states), self._decay(states), tuple(map(tuple, states)),
+            self._volumes(rates), self._integrals(states),
         )  # fmt: skip
 
     def blocks(
         self, cycles: float, settings: BlockSettings, begin: Floats | None = None
     ) -> Iterator[Block[CycleState]]:
-        """Blocks until so many cycles are done; begin: depths to start from. Raises WearStopped, VolumeLost,
-        MeshInverted."""
+        """Blocks until so many cycles are done; begin: depths to start from. Raises WearStopped, VolumeLost."""
         state: WearState[CycleState] = unworn(self, np.zeros(self._ends[-1]) if begin is None else begin, settings)
         while state.cycles < cycles * (1.0 - 1e-12):
             block = next_block(self, state, cycles, settings)
             state = block.state
-            _certify(state.now)
             yield block
-            if np.abs(state.depth - self.geometry.known).max() > self.refresh.depth:
-                self.follow(state.depth)
+
+    def accepted(self, depth: Floats, now: CycleState) -> CycleState:
+        """Certifies the volume, and lets the meshes follow where they have to, see `Wearable`. Raises VolumeLost as
+        well, which shorter blocks do not help."""
+        _certify(now)
+        self._refuse_beyond_reach(depth)
+        if (depth - self.geometry.known).max() <= self._shallow():
+            return now
+        before = self.geometry, self.refreshed
+        try:
+            self.follow(depth)
+            return self.evaluate(depth)
+        except TOO_LONG:
+            self.geometry, self.refreshed = before
+            raise
 
     def follow(self, depth: Floats) -> None:
-        """Moves the meshes to these depths, and condenses the bodies anew. Raises MeshInverted, VolumeLost."""
+        """Moves the meshes to these depths, and condenses the bodies anew. Raises MeshInverted, MeshVolumeLost."""
         old, new = self.geometry, self._moved_problem(depth)
         for index, (before, after) in enumerate(zip(old.problem.bodies, new.bodies)):
             if before is not after:
@@ -131,9 +149,42 @@ class WearStudy:
         return tuple(body.mesh for body in self._moved_problem(depth).bodies)
 
     def _moved_problem(self, depth: Floats) -> Problem:
+        """What a body has lost the other one comes after: the contacts' reach grows by it."""
         new, own = self.by_side(depth - self.geometry.known), self.geometry
         bodies = tuple(self._moved_body(i, body, new) for i, body in enumerate(own.problem.bodies))
-        return replace(own.problem, bodies=bodies)
+        reaches = zip(own.problem.contacts, self._reaches(), self._opened(depth))
+        contacts = tuple(replace(contact, reach=reach + opened) for contact, reach, opened in reaches)
+        return replace(own.problem, bodies=bodies, contacts=contacts)
+
+    def _refuse_beyond_reach(self, depth: Floats) -> None:
+        """Raises SearchError where surfaces have lost so much that they may touch where no contact is looked for."""
+        for contact, reach, opened in zip(self.geometry.problem.contacts, self._reaches(), self._opened(depth)):
+            if not opened <= reach:
+                (one, first), (other, second) = contact.first, contact.second
+                raise SearchError(
+                    f"wear between {first!r} of body {one} and {second!r} of body {other}: wanted a block that opens "
+                    f"the gap by less than the contact's reach, {reach:.3g} mm, found {opened:.3g} mm; give the "
+                    "contact a larger reach, or take shorter blocks"
+                )
+
+    def _reaches(self) -> list[float]:
+        """Of the contacts [mm]."""
+        return [reach_of(contact, self._surface(contact.first)) for contact in self.geometry.problem.contacts]
+
+    def _opened(self, depth: Floats) -> list[float]:
+        """By how much [mm] depths (n,) that the meshes do not know of may open the contacts' gaps."""
+        most = {side: float(new.max(initial=0.0)) for side, new in self.by_side(depth - self.geometry.known).items()}
+        contacts = self.geometry.problem.contacts
+        return [sum(most.get(side, 0.0) for side in (contact.first, contact.second)) for contact in contacts]
+
+    def _shallow(self) -> float:
+        """The largest depth [mm] that the gap alone may take."""
+        surfaces = [self._surface(side) for side in self.sides]
+        cells = [float(s.areas().min()) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces]
+        return min(self.refresh.depth, SHALLOW * min(cells), 0.5 * min(self._reaches()))
+
+    def _surface(self, side: Side) -> Surface:
+        return self.geometry.prepared[side[0]].surfaces[side[1]]
 
     def _moved_body(self, index: int, body: Body, new: Depths) -> Body:
         surfaces = self.geometry.prepared[index].surfaces
@@ -146,6 +197,18 @@ class WearStudy:
 
     def _volumes(self, rates: Depths) -> dict[Side, float]:
         return {side: float(own @ rates[side]) for side, own in self.by_side(self.areas).items()}
+
+    def _decay(self, states: list[list[Rubbing]]) -> float:
+        """Cycles in which a ripple from node to node decays to 1/e: 1/(K/H πE*/ℓ s), ℓ two nodes, of the contact where
+        it does so fastest."""
+        fastest = 0.0
+        for contact, law, own in zip(self.geometry.problem.contacts, self.laws, states):
+            surfaces = [self._surface(side) for side in (contact.first, contact.second) if side in self.sides]
+            nodes = [float(np.median(s.weights())) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces]
+            slid = sum(float(state.sliding[state.result.pressure > 0.0].max(initial=0.0)) for state in own)
+            stiff = np.pi * _modulus(self.geometry.problem, contact) / (2.0 * min(nodes, default=np.inf))
+            fastest = max(fastest, sum(law.both) * slid * stiff)
+        return 1.0 / fastest if fastest else np.inf
 
     def _integrals(self, states: list[list[Rubbing]]) -> dict[Side, float]:
         total = dict.fromkeys(self.sides, 0.0)
@@ -188,14 +251,19 @@ def _deformation(problem: Problem, states: list[list[Rubbing]]) -> float:
     half-space gives way, π/2 times b²/2R under a Hertzian line."""
     found = 0.0
     for contact, own in zip(problem.contacts, states):
-        one, other = (problem.bodies[index].material for index, _ in (contact.first, contact.second))
-        modulus = 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
+        modulus = _modulus(problem, contact)
         for result in (state.result for state in own):
             pressed = float(result.weights[result.pressure > 0.0].sum())
             length = pressed ** (1.0 / (result.points.shape[1] - 1))
             mean = float(result.weights @ result.pressure) / pressed if pressed else 0.0
             found = max(found, mean * length / modulus)
     return found
+
+
+def _modulus(problem: Problem, contact: Contact) -> float:
+    """E* [MPa] of a contact's two materials."""
+    one, other = (problem.bodies[index].material for index, _ in (contact.first, contact.second))
+    return 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
 
 
 def _certify(state: CycleState) -> None:

@@ -1,7 +1,7 @@
-"""`python -m evidence.stress [all | matrix | scenes | independence | faults]`: measures, and writes docs/stress.md.
+"""`python -m evidence.stress [all | matrix | scenes | wear | independence | faults]`: measures, and writes docs/stress.md.
 
 Each part keeps its own piece of the page, docs/stress/PART.md, so that one can be measured again alone. `seeds FIRST
-COUNT` is what `scenes` starts in a process of its own.
+COUNT` and `wear-seeds FIRST COUNT` are what `scenes` and `wear` start in a process of its own.
 """
 
 from __future__ import annotations
@@ -11,18 +11,20 @@ import logging
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from evidence import report
 from evidence.claims import Claim
-from evidence.stress.campaign import campaign, solve_seeds, summary, write_outcomes
+from evidence.stress.campaign import SCENES, WEAR, Trial, campaign, solve_seeds, summary, write_outcomes
 from evidence.stress.faults import fault_claims
 from evidence.stress.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
 from evidence.stress.matrix import SHEETS
 from evidence.stress.sheets import draw, write_csv
+from evidence.stress.wear_summary import wear_summary, write_wear
 from solver import compat
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-SCENES = 500
+COUNTS = {SCENES.command: 500, WEAR.command: 100}
 TITLE, COMMAND = "Stability under stress", "make stress"
 INTRODUCTION = """What happens at the edge of what can be asked: every setting over the widest range that makes
 sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
@@ -42,16 +44,30 @@ def matrix() -> list[str]:
 
 
 def scenes() -> list[str]:
-    """Random scenes, counted. Control-C ends them early: the page says how many there were."""
-    outcomes = []
+    """Random scenes, counted."""
+    outcomes = _outcomes(SCENES)
+    write_outcomes(outcomes, DOCS / "stress/scenes.csv")
+    return ["## Random scenes", summary(outcomes)]
+
+
+def wear() -> list[str]:
+    """Random wear studies, counted, and what those that were stopped said."""
+    outcomes = _outcomes(WEAR)
+    write_wear(outcomes, DOCS / "stress/wear.csv")
+    return ["## Random wear studies", wear_summary(outcomes)]
+
+
+def _outcomes(trial: Trial) -> list[Any]:
+    """Of all seeds. Control-C ends them early: the page says how many there were."""
+    outcomes: list[Any] = []
+    count = COUNTS[trial.command]
     try:
-        for outcome in campaign(0, SCENES):
+        for outcome in campaign(0, count, trial=trial):
             outcomes.append(outcome)
             print(outcome.seed, outcome.verdict.value, outcome.message.splitlines()[-1:], flush=True)
     except KeyboardInterrupt:
-        print(f"interrupted after {len(outcomes)} of {SCENES} scenes", flush=True)
-    write_outcomes(outcomes, DOCS / "stress/scenes.csv")
-    return ["## Random scenes", summary(outcomes)]
+        print(f"interrupted after {len(outcomes)} of {count} seeds", flush=True)
+    return outcomes
 
 
 def independence() -> list[str]:
@@ -77,20 +93,23 @@ def _row(claim: Claim) -> list[str]:
 
 
 PARTS: dict[str, Callable[[], list[str]]] = {
-    "matrix": matrix, "scenes": scenes, "independence": independence, "faults": faults,
+    "matrix": matrix, "scenes": scenes, "wear": wear, "independence": independence, "faults": faults,
 }  # fmt: skip
+
+
+TRIALS = {trial.command: trial for trial in (SCENES, WEAR)}
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("part", choices=["all", *PARTS, "seeds"], nargs="?", default="all")
-    parser.add_argument("numbers", type=int, nargs="*", help="of seeds: the first, and how many")
+    parser.add_argument("part", choices=["all", *PARTS, *TRIALS], nargs="?", default="all")
+    parser.add_argument("numbers", type=int, nargs="*", help="of seeds and wear-seeds: the first, and how many")
     given = parser.parse_args(arguments)
     compat.silence_logs()
     logging.getLogger("evolvent").setLevel(logging.ERROR)
-    if given.part == "seeds":
-        solve_seeds(*given.numbers)
+    if given.part in TRIALS:
+        solve_seeds(TRIALS[given.part], *given.numbers)
         return
     for name in PARTS if given.part == "all" else (given.part,):
         report.write(DOCS / "stress" / f"{name}.md", PARTS[name]())

@@ -1,4 +1,4 @@
-"""Hundreds of random scenes, solved one after the other in a process of their own that may crash or hang.
+"""Hundreds of random scenes or wear studies, solved one after the other in a process of their own that may crash or hang.
 
 The process writes one JSON line a scene; whoever watches it kills it when a scene takes too long and starts the next.
 """
@@ -9,17 +9,21 @@ import json
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+from enum import Enum
 from pathlib import Path
 from queue import Empty, Queue
 from threading import Thread
+from typing import Any
 
 import numpy as np
 
 from evidence.report import table
 from evidence.stress.outcomes import Outcome, Verdict, outcome_of
 from evidence.stress.random_scenes import random_scene
+from evidence.stress.random_wear import random_study
+from evidence.stress.wear_outcomes import WearOutcome, WearVerdict, wear_outcome_of
 from solver import compat
 from solver.skips import is_plane
 
@@ -27,25 +31,40 @@ PATIENCE = 300.0
 """Seconds after which a scene has hung; they take one to twenty."""
 
 
-def solve_seeds(first: int, count: int) -> None:
-    """In the process that may die: one JSON line a scene on standard output."""
+@dataclass(frozen=True)
+class Trial:
+    """What is tried with a seed. command: of `python -m evidence.stress`, for the process that may die; solve: what it
+    does with a seed, which gives an `outcome` with a `verdict`."""
+
+    command: str
+    solve: Callable[[int], Any]
+    outcome: type
+    verdict: type[Enum]
+
+
+SCENES = Trial("seeds", lambda seed: outcome_of(random_scene(seed), seed), Outcome, Verdict)
+WEAR = Trial("wear-seeds", lambda seed: wear_outcome_of(random_study(seed), seed), WearOutcome, WearVerdict)
+
+
+def solve_seeds(trial: Trial, first: int, count: int) -> None:
+    """In the process that may die: one JSON line a seed on standard output."""
     compat.silence_logs()
     for seed in range(first, first + count):
-        found = asdict(outcome_of(random_scene(seed), seed))
+        found = asdict(trial.solve(seed))
         print(json.dumps({**found, "verdict": found["verdict"].name}), flush=True)
 
 
-def campaign(first: int, count: int, patience: float = PATIENCE) -> Iterator[Outcome]:
-    """The outcomes of the seeds first, first + 1, ..., whatever their scenes do to the process."""
+def campaign(first: int, count: int, patience: float = PATIENCE, trial: Trial = SCENES) -> Iterator[Any]:
+    """The outcomes of the seeds first, first + 1, ..., whatever they do to the process."""
     seed = first
     while seed < first + count:
-        for outcome in _until_it_dies(seed, first + count - seed, patience):
+        for outcome in _until_it_dies(seed, first + count - seed, patience, trial):
             yield outcome
             seed = outcome.seed + 1
 
 
-def _until_it_dies(first: int, count: int, patience: float) -> Iterator[Outcome]:
-    command = [sys.executable, "-m", "evidence.stress", "seeds", str(first), str(count)]
+def _until_it_dies(first: int, count: int, patience: float, trial: Trial) -> Iterator[Any]:
+    command = [sys.executable, "-m", "evidence.stress", trial.command, str(first), str(count)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         assert process.stdout is not None
         lines: Queue[str] = Queue()
@@ -55,13 +74,13 @@ def _until_it_dies(first: int, count: int, patience: float) -> Iterator[Outcome]
                 line = lines.get(timeout=patience)
             except Empty:
                 process.kill()
-                yield Outcome(seed, Verdict.HUNG, f"no result after {patience:g} s")
+                yield trial.outcome(seed, trial.verdict["HUNG"], f"no result after {patience:g} s")
                 return
             if not line:
-                yield Outcome(seed, Verdict.CRASHED, f"the process ended with status {process.wait()}")
+                yield trial.outcome(seed, trial.verdict["CRASHED"], f"the process ended with status {process.wait()}")
                 return
             found = json.loads(line)
-            yield Outcome(**{**found, "verdict": Verdict[found["verdict"]]})
+            yield trial.outcome(**{**found, "verdict": trial.verdict[found["verdict"]]})
 
 
 def _pass_on(source: Iterable[str], lines: Queue[str]) -> None:

@@ -80,7 +80,7 @@ def test_depths_of_a_million_meshes() -> None:
 
 def test_pitch_point_depth_is_the_integral() -> None:
     """(K/H)∫p|v_s|dφ of a Hertz ridge over the pitch point, by quadrature, for both gears of a pair of unequal ones."""
-    run = synthetic_run(file="demos/zhang2023.toml")
+    run = synthetic_run("pinion.face_width_mm=25.0", file="demos/zhang2023.toml")
     pair, φ = run.pair, np.linspace(-0.02, 0.02, 400_001)
     for gear in (0, 1):
         ridge = Contacts.of(run, gear)

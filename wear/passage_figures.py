@@ -66,8 +66,8 @@ def stress_and_sliding(run: RunData) -> Figure:
     left.set(ylabel="largest contact stress [MPa]", ylim=(0.0, 1.1 * pinion.peak.max()))
     for own, colour, name in zip(both, (PINION, WHEEL), GEARS):
         right.plot(pinion.radius, 1e3 * own.sliding, ".", color=colour, label=f"{name}, computed")
-    for own, name in zip(both, ("2b|1 − v₂/v₁|, 2b|1 − v₁/v₂|", None)):
-        right.plot(pinion.radius, 1e3 * own.single_point, label=name, **FORMULA)
+    for own, label in zip(both, ("2b|1 − v₂/v₁|, 2b|1 − v₁/v₂|", None)):
+        right.plot(pinion.radius, 1e3 * own.single_point, label=label, **FORMULA)
     top = 1e3 * max(float(own.single_point.max()) for own in both)
     right.set(ylabel="sliding distance in one mesh [µm]", ylim=(0.0, 1.35 * top))
     for ax, corner in ((left, "lower center"), (right, "upper center")):

@@ -33,7 +33,7 @@ from wear.observed import Contacts, Depths, PointPassage, chart_grid, pitch_poin
 from wear.passage_figures import UM, draw_passage
 from wear.report import WornRun, read_worn
 
-SCENE = Path(__file__).with_name("he2022.toml")
+SCENE = Path(__file__).resolve().with_name("he2022.toml")
 COEFFICIENT = 1.3832e-10  # mm²/N: 2.446 µm per km at 17.684 MPa
 CYCLES, DEPTH = 1.6e6, 0.01  # of He's pair; mm of another one
 POINT = 77.0  # mm, the paper's point A
@@ -147,6 +147,7 @@ def main(
 ) -> None:
     """Compute, draw, compare, check."""
     compat.silence_logs()
+    scene = scene.resolve()
     try:
         worn = worn_scene(scene, quick, setting or [])
     except SceneError as error:

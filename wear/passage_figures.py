@@ -36,7 +36,7 @@ def point_in_contact(point: PointPassage) -> Figure:
     """Stress and sliding of a point of the pinion while it bears (Fig. 17a)."""
     see = f"It bears over {np.degrees(point.lasts):.3f}° of the pinion, at most {point.pressure.max():.0f} MPa"
     see += f" (Hertz: {point.hertz.max():.0f}), and slides {1e3 * point.sliding[-1]:.1f} µm"
-    figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:g} mm", see)
+    figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
     left, right = figure.subplots(1, 2)
     angle = np.degrees(point.rotation)
     left.plot(angle, point.pressure, color=PINION, lw=2.2, label="computed")
@@ -91,9 +91,9 @@ def depth_by_formula(study: WornRun) -> Figure:
         deep = UM * pitch_point_depth(pair.run, gear, coefficient)
         ax.plot([pitch], [deep], "o", color=INK, mfc="white", ms=5, label="Hertz ridge over the pitch point")
         _pitch_point(ax, pitch)
-        ax.set(xlabel=f"radius on the {GEARS[gear]} [mm]", ylim=(0.0, None))
+        ax.set(xlabel=f"radius on the {GEARS[gear]} [mm]")
         ax.label_outer()
-    figure.axes[0].set_ylabel("wear depth [µm in a million meshes]")
+    figure.axes[0].set(ylabel="wear depth [µm in a million meshes]", ylim=(0.0, None))  # once all curves are there
     figure.axes[0].legend()
     return figure
 

@@ -73,9 +73,9 @@ def depth_over_profile(study: WornRun) -> Figure:
             ax.plot(*pair.profile(gear), color=colour, label=f"{cycles_label(pair.cycles)} cycles")
         ax.axvline(study.pairs[0].run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
         ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
-        ax.set(xlabel="diameter [mm]", ylim=(0.0, None))
+        ax.set(xlabel="diameter [mm]")
         ax.label_outer()
-    figure.axes[0].set_ylabel("wear depth, mean over the face [µm]")
+    figure.axes[0].set(ylabel="wear depth, mean over the face [µm]", ylim=(0.0, None))  # once all curves are there
     figure.axes[0].legend()
     return figure
 

@@ -1,11 +1,15 @@
-"""Wear of He et al.'s spur pair, quasi-static: depth over the profile and mesh force as it wears (their Figs 19-21).
+"""Wear of He et al.'s spur pair, quasi-static, beside what the paper and line contact say (their Figs 17 to 21).
 
-    python demos/he2022_wear.py [--quick] [--out DIR]
+    python demos/he2022_wear.py [--quick] [--out DIR] [--scene FILE.toml] [--set KEY=VALUE ...]
 
-170 N·m on the pinion, K/H = 1.3832e-10 mm²/N on both gears, no friction in the contact solution, 1.6 million meshes.
-Both gears have 50 teeth, so that both flanks wear alike. At the pitch point there is no sliding, but the contact is
-0.26 mm wide, so that the flank there is pressed while it slides a little: 3 % of the depth at the root. Without tip
-relief the very tip bears before and after the path of contact; an edge's pressure is singular and so is its wear.
+170 N·m on the pinion, K/H = 1.3832e-10 mm²/N on both gears, no friction in the contact solution, 1.6 million meshes:
+the scene demos/he2022.toml with a [wear] section, as `evolvent run` computes it. Both gears have 50 teeth, so that both
+flanks wear alike. At the pitch point the flanks roll, but the contact is 0.26 mm wide and slides a little at its rims:
+4 % of the depth at the root. Without tip relief the very tip bears before and after the path of contact; an edge's
+pressure is singular and so is its wear, so that all figures are of the flank between.
+
+Another scene wears by the same law at its first friction coefficient, until about 10 µm are gone, unless it has a
+[wear] of its own; the figures of the passage are drawn for plane pairs, the checks are made for He's.
 """
 
 from __future__ import annotations
@@ -19,134 +23,152 @@ import numpy as np
 import typer
 from mpi4py import MPI
 
-from meshes.data import Floats
 from solver import compat
-from solver.gear_model import prepare_model
-from solver.gear_sweep import uniform_pitch
-from solver.plots_style import friction_colours, save, sheet, styled
-from solver.scene import load_scene
-from wear.blocks import BlockSettings, next_block, unworn
-from wear.gears import GearWear, PitchState
-from wear.law import Archard
+from solver.engagement import engagement
+from solver.estimates import hertz_estimate
+from solver.run import run_scene
+from solver.scene import GEARS, Scene, load_scene
+from solver.scene_errors import SceneError
+from wear.observed import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
+from wear.passage_figures import UM, draw_passage
+from wear.report import WornRun, read_worn
 
-SCENE = Path(__file__).with_suffix("").parent / "he2022.toml"
+SCENE = Path(__file__).resolve().with_name("he2022.toml")
 COEFFICIENT = 1.3832e-10  # mm²/N: 2.446 µm per km at 17.684 MPa
-MESHES, REPORTS = 1.6e6, 4
-TIP = 0.1  # mm of radius that the curves leave out
+CYCLES, DEPTH = 1.6e6, 0.01  # of He's pair; mm of another one
+POINT = 77.0  # mm, the paper's point A
+FINE = 'mesh.level="fine"', "sweep.positions=40", "output.animation=false"
+QUICK = (
+    'mesh.level="quick"', "sweep.positions=20", "output.animation=false", "output.fields=false",
+    "output.error_bars=false",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Report:
-    """After so many meshes: depths of pinion and wheel over the flank's arc [mm], and the pitch."""
+class Compared:
+    """A figure beside another one; within: relative difference that is allowed, any unless said otherwise."""
 
-    meshes: float
-    depths: tuple[Floats, Floats]
-    pitch: PitchState
+    name: str
+    unit: str
+    found: float
+    source: str
+    wanted: float
+    within: float = np.inf
 
+    def __str__(self) -> str:
+        return f"{self.name}: {self.found:.4g}{self.unit and ' '}{self.unit}; {self.source}: {self.wanted:.4g}"
 
-def study(level: str, positions: int) -> tuple[GearWear, list[Report]]:
-    """Reports at equal steps; the first is of the unworn pair."""
-    settings = BlockSettings(first=MESHES / 100.0)
-    model = prepare_model(load_scene(SCENE, [f"mesh.level={level}"]), MPI.COMM_SELF).model
-    gears = GearWear(model, uniform_pitch(model.pair.pinion.z, positions, 0), 0.0, Archard(COEFFICIENT, COEFFICIENT))
-    state = unworn(gears, gears.begin, settings)
-    reports = [Report(0.0, gears.by_gear(state.depth), state.now)]
-    for end in np.linspace(0.0, MESHES, REPORTS + 1)[1:]:
-        while state.cycles < end * (1.0 - 1e-12):
-            state = next_block(gears, state, float(end), settings).state
-        reports.append(Report(state.cycles, gears.by_gear(state.depth), state.now))
-    return gears, reports
+    def check(self) -> None:
+        """Raises AssertionError."""
+        assert abs(self.found / self.wanted - 1.0) <= self.within, f"{self}, wanted within {self.within:.2g}"
 
 
-def profile(gears: GearWear, gear: int, depth: Floats) -> tuple[Floats, Floats]:
-    """Radius [mm] and mean depth over the face width [µm] along a flank, without its tip edge."""
-    grid, base = gears.grids[gear], gears.model.pair.gears[gear].base_radius
-    radius = np.sqrt(base**2 + 2.0 * base * grid.arcs)
-    inner = radius < radius.max() - TIP
-    return radius[inner], 1e3 * depth[grid.node].mean(axis=0)[inner]
+def worn_scene(file: Path, quick: bool, settings: list[str]) -> Scene:
+    """The scene with a [wear] and one friction coefficient. Raises SceneError."""
+    given = load_scene(file)
+    how = [f"contact.friction={given.contact.friction[0]}", *(QUICK if quick else FINE if file == SCENE else ())]
+    if given.wear is None:
+        deepest = max(hertz_estimate(given).wear_per_cycle(COEFFICIENT, COEFFICIENT))
+        cycles = CYCLES if file == SCENE else float(f"{DEPTH / deepest:.1g}")
+        how += [f"wear.cycles={cycles:.6g}", *(f"wear.{name}_mm2_per_N={COEFFICIENT}" for name in GEARS)]
+    return load_scene(file, [*how, *settings])
 
 
-def tooth_force(gears: GearWear, pitch: PitchState) -> tuple[Floats, Floats]:
-    """Rotation of the pinion from where a tooth's contact is at the pitch point [°], and the force it carries [N]."""
-    pair, found = gears.model.pair, {}
-    width = pair.face_width if gears.model.bodies[0].d == 2 else 1.0
-    for position in pitch.positions:
-        c = position.contact
-        for tooth in np.unique(c.tooth):
-            own = c.tooth == tooth
-            angle = np.degrees(position.stand.angle) + 360.0 / pair.pinion.z * tooth
-            found[round(float(angle), 9)] = width * float(c.weights[own] @ c.pressure[own])
-    angles = np.array(sorted(found))
-    return angles, np.array([found[a] for a in angles])
+def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared]:
+    """The first passage of a plane pair whose pinion wears, and what the study took off in all."""
+    pair, last, wear = study.pairs[0], study.pairs[-1], study.scene.wear
+    assert wear is not None
+    K, r = wear.pinion_mm2_per_N, point.radius
+    depths, contacts = Depths.of(pair, 0, K), Contacts.of(pair.run, 0)
+    own, line = (UM * float(np.interp(r, depths.radius, values)) for values in (depths.own, depths.line))
+    pitch = pair.run.pair.working_pitch_diameters[0] / 2.0
+    lowest, ridge = UM * float(np.interp(pitch, depths.radius, depths.own)), UM * pitch_point_depth(pair.run, 0, K)
+    away = np.abs(depths.radius - pitch) > 0.1 * study.scene.pair.normal_module_mm
+    product = float(np.median(depths.peak_times_sliding[away] / depths.own[away]))
+    at = {name: float(np.interp(r, contacts.radius, getattr(contacts, name)))
+          for name in ("peak", "hertz", "sliding", "single_point")}  # fmt: skip
+    hertz_lasts = float(np.ptp(point.rotation[point.hertz > 0.0]))
+    volume = pair.run.width * float(chart_grid(last, 0).areas @ last.worn[0].depth.T.ravel())
+    local = 0.15 if coarse else 0.02  # what a contact's own width and peak are worth
+    million, here = "µm a million meshes", f"r = {r:.4g} mm"
+    return [
+        Compared(f"depth at {here}", million, own, "line contact, own load", line, 0.05),
+        Compared("depth at the pitch point", million, lowest, "Hertz ridge", ridge, 0.1),
+        Compared("Eq. 24 over the depth, median", "", product, "4/π", 4.0 / np.pi, 0.02),
+        Compared(f"stress at {here}", "MPa", at["peak"], "Hertz, own load", at["hertz"], local),
+        Compared(f"sliding at {here}", "µm", 1e3 * at["sliding"], "2b|ζ|", 1e3 * at["single_point"], local),
+        Compared(f"{here} bears over", "°", np.degrees(point.lasts), "Hertz", np.degrees(hertz_lasts), local),
+        Compared("volume off a pinion's tooth", "mm³", volume, "(K/H)∫∫p|v_s| dA dt", last.volumes[0], 1e-6),
+    ]  # fmt: skip
 
 
-def draw(gears: GearWear, reports: list[Report], out: Path) -> None:
-    """Depth over the radius; force over the rotation."""
-    colours = friction_colours([r.meshes for r in reports])
-    with styled():
-        last = reports[-1]
-        radius, deepest = profile(gears, 0, last.depths[0])
-        root = radius < gears.model.pair.working_pitch_diameters[0] / 2.0
-        see = (f"Least at the pitch point, most at the root: {deepest[root].max():.1f} µm after "
-               f"{last.meshes / 1e6:.1f} million meshes; the tip's edge is left out")  # fmt: skip
-        figure = sheet("Wear depth over the profile, He et al. 2022, 170 N·m", see)
-        axes = figure.add_subplot()
-        for report, colour in zip(reports[1:], colours[1:]):
-            for gear, style in ((0, "-"), (1, ":")):
-                name = f"{report.meshes / 1e6:.1f} million meshes" if gear == 0 else None
-                axes.plot(*profile(gears, gear, report.depths[gear]), style, color=colour, label=name)
-        axes.axvline(gears.model.pair.working_pitch_diameters[0] / 2.0, color="0.6", lw=0.8)
-        axes.set(xlabel="radius [mm]   (pinion: lines, wheel: dotted)", ylabel="wear depth [µm]", ylim=(0.0, None))
-        axes.legend()
-        save(figure, out / "he2022_wear.png")
-        figure = sheet("Force on a tooth over its engagement, as it wears", "Wear takes load off the roots and tips")
-        axes = figure.add_subplot()
-        for report, colour in zip(reports, colours):
-            name = f"{report.meshes / 1e6:.1f} million meshes"
-            axes.plot(*tooth_force(gears, report.pitch), color=colour, label=name)
-        axes.set(xlabel="pinion rotation of the tooth [°]", ylabel="force on the tooth [N]", ylim=(0.0, None))
-        axes.legend()
-        save(figure, out / "force.png")
+def check_as_printed(study: WornRun, point: PointPassage) -> None:
+    """What the paper says of its pair, whose point A bears less load than ours. Raises AssertionError."""
+    start = engagement(study.pairs[0].run, 0)
+    whole = Compared("whole engagement", "°", np.degrees(np.ptp(start.ends)), "printed", 13.824, 0.3 / 13.824)
+    slides = Compared("point A slides", "µm", 1e3 * point.sliding[-1], "printed", 59.0)
+    print(whole, slides, Compared("point A bears over", "°", np.degrees(point.lasts), "printed", 0.35), sep="\n")
+    whole.check()
+    reports = [pair.report().pinion for pair in study.pairs[1:]]
+    deepest = np.array([report.deepest_um for report in reports])
+    places = ", ".join(f"{r.deepest_um:.2f} µm at d = {r.at_diameter_mm:.1f} mm" for r in reports)
+    print(f"deepest after each report: {places}")
+    first, *later = np.diff(deepest, prepend=0.0)
+    print(f"growth of the deepest: {first:.2f} µm, then {', '.join(f'{d:.2f}' for d in later)} µm; printed: it slows")
+    depths, pitch = Depths.of(study.pairs[0], 0, 1.0), study.pairs[0].run.pair.working_pitch_diameters[0] / 2.0
+    radius = float(depths.radius[np.argmax(depths.own)])
+    share = float(np.interp(pitch, depths.radius, depths.own)) / float(depths.own.max())
+    print(f"depth at the pitch point: {share:.3f} of the largest, which is at r = {radius:.2f} mm; printed: the root")
+    assert share < 0.06, f"pitch point: wanted nearly no wear, found {share:.3f} of the largest"
+    farthest = max(2.0 * radius, *(r.at_diameter_mm for r in reports))
+    assert farthest < 2.0 * pitch, f"wanted the deepest wear at the root, found it at d = {farthest:.1f} mm"
+    assert max(later) < 0.85 * first, f"wanted a maximum that grows slower after the first report, found {deepest} µm"
 
 
-def check(gears: GearWear, reports: list[Report]) -> None:
-    """Raises AssertionError where the wear is not what line contact asks for."""
-    pair, rate = gears.model.pair, gears.by_gear(reports[0].pitch.rate)[0]
-    radius, h = profile(gears, 0, 1e6 * rate)
-    angles, force = tooth_force(gears, reports[0].pitch)
-    ρ = np.sqrt(radius**2 - pair.pinion.base_radius**2)
-    ξ = ρ - pair.pitch_point_roll_lengths[0]
-    ρ_1, ρ_2 = pair.curvature_radii(ξ)
-    load = np.interp(np.degrees(ξ / pair.pinion.base_radius), angles, force) / pair.face_width
-    exact = 1e9 * COEFFICIENT * load * np.abs(1.0 - ρ_2 / pair.ratio / ρ_1)
-    at = int(np.argmin(np.abs(radius - 77.0)))
-    assert abs(h[at] / exact[at] - 1.0) < 0.05, f"r = 77 mm: wanted {exact[at]:.3f} µm a million, found {h[at]:.3f}"
-    root, pitch = h[ξ < -1.0].max(), float(np.interp(0.0, ξ, h))
-    assert root > h[ξ > 1.0].max(), "wanted the deepest wear at the root"
-    assert pitch < 0.06 * root, f"pitch point: wanted nearly no wear, found {pitch:.3f} of {root:.3f} µm"
-    deepest = np.array([profile(gears, 0, report.depths[0])[1].max() for report in reports])
-    first, *later = np.diff(deepest)
-    assert max(later) < 0.7 * first, f"wanted a maximum that grows slower after the first report, found {deepest} µm"
-    print(f"r = 77 mm: {h[at]:.3f} µm a million meshes, line contact {exact[at]:.3f}")
-    print(f"pitch point: {pitch / root:.3f} of the root; deepest {', '.join(f'{d:.2f}' for d in deepest[1:])} µm")
-    print(f"engagement: {np.ptp(angles):.2f}° and at most a step more")
-
-
-def main(out: Annotated[Path, typer.Option()] = Path("out/he2022_wear"), quick: bool = False) -> None:
-    """Compute, check, write table.csv and the pictures."""
-    compat.silence_logs()
-    gears, reports = study("quick" if quick else "fine", 20 if quick else 40)
-    if MPI.COMM_WORLD.rank:
-        return
-    check(gears, reports)
-    out.mkdir(parents=True, exist_ok=True)
+def write_table(study: WornRun, out: Path) -> None:
+    """OUT/table.csv: over the pinion's radius, a million meshes by the solution and by formulas, and each report."""
+    wear = study.scene.wear
+    assert wear is not None
+    depths, reports = Depths.of(study.pairs[0], 0, wear.pinion_mm2_per_N), study.pairs[1:]
+    head = ["radius_mm", "million_um", "million_line_contact_um", "million_eq_24_um"]
+    formulas = [UM * values for values in (depths.own, depths.line, depths.peak_times_sliding)]
+    columns = [depths.radius, *formulas, *(pair.profile(0)[1] for pair in reports)]
     with open(out / "table.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(["radius_mm", *(f"depth_um_{report.meshes:.0f}" for report in reports[1:])])
-        radius = profile(gears, 0, reports[0].depths[0])[0]
-        columns = [profile(gears, 0, report.depths[0])[1] for report in reports[1:]]
-        table.writerows([f"{value:.6g}" for value in row] for row in zip(radius, *columns))
-    draw(gears, reports, out)
+        table.writerow([*head, *(f"after_{pair.cycles:.15g}_um" for pair in reports)])
+        table.writerows([f"{value:.6g}" for value in row] for row in zip(*columns))
+
+
+def main(
+    out: Annotated[Path, typer.Option()] = Path("out/he2022_wear"),
+    quick: bool = False,
+    scene: Annotated[Path, typer.Option()] = SCENE,
+    setting: Annotated[list[str] | None, typer.Option("--set")] = None,
+) -> None:
+    """Compute, draw, compare, check."""
+    compat.silence_logs()
+    scene = scene.resolve()
+    try:
+        worn = worn_scene(scene, quick, setting or [])
+    except SceneError as error:
+        raise typer.BadParameter(str(error)) from error
+    run_scene(worn, out, quiet=quick)
+    if MPI.COMM_WORLD.rank:
+        return
+    study = read_worn(out)
+    run, wear = study.pairs[0].run, study.scene.wear
+    if run.plane and wear is not None and wear.pinion_mm2_per_N > 0.0:
+        middle = float(radius_at(run.pair, 0, np.asarray(0.5 * run.pair.path_of_contact[1])))
+        point = PointPassage.of(run, POINT if scene == SCENE else middle)
+        draw_passage(study, point, out / "pictures")
+        write_table(study, out)
+        rows = compared(study, point, quick)
+        print(*rows, sep="\n")
+        if scene == SCENE:
+            check_as_printed(study, point)
+            for row in rows:
+                row.check()
+    print(f"pictures: {out / 'pictures'}")
 
 
 if __name__ == "__main__":

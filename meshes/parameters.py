@@ -162,6 +162,12 @@ class GearPair:
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         return pitch_1 + xi, pitch_2 - xi
 
+    def specific_sliding(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:
+        """Specific sliding ζ_1 = 1 − v_2/v_1 and ζ_2 = 1 − v_1/v_2 at roll distances ξ, v = ωρ along the profiles."""
+        rho_1, rho_2 = self.curvature_radii(roll_distance)
+        v_1, v_2 = self.ratio * rho_1, rho_2
+        return 1.0 - v_2 / v_1, 1.0 - v_1 / v_2
+
     def normal_curvature_radii(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:
         """Curvature radii across the contact line, ρ / cos β_b [mm]."""
         rho_1, rho_2 = self.curvature_radii(roll_distance)

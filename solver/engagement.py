@@ -35,6 +35,27 @@ class Engagement:
     mean_pressure: Floats
     contact_length: Floats
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Rotations [rad] at which the tooth takes up its load and has given it up: the force is continued by the
+        parabola through its last three values, for a tip leaves its mate's path quadratically, and at most by a step,
+        for the next position has none."""
+        step = float(np.diff(self.angle).min(initial=np.inf))
+        if not np.isfinite(step):
+            return float(self.angle[0]), float(self.angle[-1])
+        before, after = _steps_to_zero(self.force[:3]), _steps_to_zero(self.force[:-4:-1])
+        return float(self.angle[0]) - step * before, float(self.angle[-1]) + step * after
+
+
+def _steps_to_zero(force: Floats) -> float:
+    """In how many steps, at most one, a force is zero whose last values (2 or 3,), the very last one first, rise from
+    there; by a parabola where it falls ever faster, else by a straight line."""
+    slope = float(force[1] - force[0])
+    bend = max(0.0, float(2.0 * force[1] - force[0] - force[-1])) if len(force) > 2 else 0.0
+    fall = slope + 0.5 * bend  # F(x) = F_0 − fall·x − bend·x²/2 through x = 0, −1, −2
+    full = fall + np.sqrt(fall**2 + 2.0 * bend * force[0])
+    return min(1.0, float(2.0 * force[0] / full)) if full > 0.0 else 1.0
+
 
 def engagement(run: RunData, index: int) -> Engagement:
     """The engagement at friction coefficient number `index`."""

@@ -69,9 +69,7 @@ class HertzEstimate:
         (K/H)(F/L)|1 − v_2/v_1| (He et al. 2022, Eq. 24 without its 4/π) at the ends of the path of contact, with the
         mean line length."""
         load = self.normal_force / self.line_lengths[1]
-        speeds = np.array(self.pair.curvature_radii(np.array(self.pair.path_of_contact)))
-        speeds[1] /= self.pair.ratio
-        slides = [float(np.abs(1.0 - speeds[1 - gear] / speeds[gear]).max()) for gear in (0, 1)]
+        slides = [float(np.abs(ζ).max()) for ζ in self.pair.specific_sliding(self.pair.path_of_contact)]
         return pinion * load * slides[0], wheel * load * slides[1] / self.pair.ratio
 
     def tooth_deflection(self, pinion: Material, wheel: Material) -> float:

@@ -9,17 +9,19 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
+from meshes.data import Floats
 from meshes.flank import contact_points
 from solver.fields import poly_data
-from solver.flank_field import flank_field, flank_patch
+from solver.flank_field import Patch, flank_field, flank_patch
 from solver.gear_position import PositionResult
-from solver.gear_surfaces import all_teeth, place, placed_teeth
+from solver.gear_surfaces import Polygons, all_teeth, place, placed_teeth
 from solver.plots_style import PINION_BODY, PRESSURE_MAP, WHEEL_BODY
 from solver.run_data import RunData
 
 Image = NDArray[np.uint8]
 """(height, width, 3)."""
 BODY = (PINION_BODY, WHEEL_BODY)
+NEAR = 3  # teeth on either side of the mesh are seen from close by
 LIGHT = {"ambient": 0.28, "diffuse": 0.75, "specular": 0.15, "specular_power": 20.0}
 
 
@@ -59,10 +61,27 @@ def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, si
     scene = _plotter(size)
     _add_gear(scene, run, result, gear, all_teeth(run, gear), opacity=1.0)
     _add_flanks(scene, run, result, gear, top)
+    return _picture(scene, _at_the_mesh(run, gear))
+
+
+def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Floats, top: float,
+                  size: tuple[int, int]) -> Image:  # fmt: skip
+    """The gear of a patch, the other one taken away, with `values` (n, m) on the patch of its loaded flanks, which are
+    all alike; top: the value at the upper end of the colours."""
+    scene, gear, near = _plotter(size), patch.gear, list(range(-NEAR, NEAR + 1))
+    _add_gear(scene, run, result, gear, all_teeth(run, gear), 1.0, set(near))
+    surface = patch.polygons(run)
+    for tooth in near:
+        _add_coloured(scene, place(result, gear, tooth, surface), values, top)
+    return _picture(scene, _at_the_mesh(run, gear))
+
+
+def _at_the_mesh(run: RunData, gear: int) -> Camera:
+    """On a gear's teeth at the pitch point, from where the other gear stood."""
     middle = contact_points(run.pair, 0.0, 0.0)
     width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
     along = (0.75, 1.0, 0.3) if gear == 0 else (-0.75, -1.0, 0.3)
-    return _picture(scene, Camera(tuple(middle.tolist()), along, 0.5 * width))
+    return Camera(tuple(middle.tolist()), along, 0.5 * width)
 
 
 def _plotter(size: tuple[int, int]) -> Any:
@@ -73,8 +92,12 @@ def _plotter(size: tuple[int, int]) -> Any:
     return scene
 
 
-def _add_gear(scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float) -> None:
-    placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)))
+def _add_gear(
+    scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float,
+    bare: set[int] | None = None,
+) -> None:  # fmt: skip
+    """bare: the teeth whose loaded flanks are left out; those in contact unless said otherwise."""
+    placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)) if bare is None else bare)
     assert placed is not None
     surface = poly_data(placed).triangulate().clean(tolerance=1e-6, absolute=True)
     smooth = surface.compute_normals(split_vertices=True, feature_angle=35.0, consistent_normals=False)
@@ -90,12 +113,16 @@ def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top
     surface = patch.polygons(run)
     for tooth in contact_teeth(result):
         field = flank_field(run, result, tooth)
-        mesh = poly_data(place(result, gear, tooth, surface))
-        mesh["pressure"] = patch.values(run, result, tooth, field).ravel()
-        scene.add_mesh(
-            mesh, scalars="pressure", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, show_scalar_bar=False,
-            smooth_shading=True, interpolate_before_map=True, **LIGHT,
-        )  # fmt: skip
+        _add_coloured(scene, place(result, gear, tooth, surface), patch.values(run, result, tooth, field), top)
+
+
+def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> None:
+    mesh = poly_data(surface)
+    mesh["values"] = values.ravel()
+    scene.add_mesh(
+        mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, show_scalar_bar=False,
+        smooth_shading=True, interpolate_before_map=True, **LIGHT,
+    )  # fmt: skip
 
 
 def _picture(scene: Any, camera: Camera) -> Image:

@@ -83,6 +83,24 @@ def test_sign_changes() -> None:
     assert len(sign_changes(x, np.ones_like(x))) == 0
 
 
+@pytest.mark.parametrize("step", [0.1, 0.05, 0.013])
+def test_ends_where_the_force_is_zero(step: float) -> None:
+    """Forces that fall as parabolas from −0.731 and 0.684 on both sides: found to rounding from any positions; those
+    that fall by straight lines too; and no further than a step where the force hardly falls."""
+    x = np.arange(-2.0, 2.0, step) + 0.3 * step
+    low, high = -0.731, 0.684
+    for force in ((x - low) * (high - x) * 1000.0, 500.0 * np.minimum(x - low, high - x)):
+        loaded = force > 0.0
+        np.testing.assert_allclose(_loaded(x[loaded], force[loaded]).ends, (low, high), atol=1e-9)
+    x = np.arange(5) * step
+    np.testing.assert_allclose(_loaded(x, np.full(5, 10.0)).ends, (-step, 5.0 * step))
+
+
+def _loaded(angle: np.ndarray, force: np.ndarray) -> Engagement:
+    zero = np.zeros(len(angle))
+    return Engagement(0.0, angle, zero.astype(int), zero.astype(int), force, zero, zero, zero, zero)
+
+
 def _curve(friction: float, angle: np.ndarray, pressure: np.ndarray) -> Engagement:
     zero = np.zeros(len(angle))
     return Engagement(friction, angle, zero.astype(int), zero.astype(int), zero, zero, pressure, pressure, zero)

@@ -140,6 +140,16 @@ def test_curvature_radii_of_he_at_the_ends_of_single_contact() -> None:
     assert pair.relative_curvature_radius(0.0) == pytest.approx(rho[2] / 2.0)
 
 
+def test_specific_sliding_is_sliding_over_rolling() -> None:
+    """ζ_1 v_1 = v_s = −ζ_2 v_2 with v_s = (1 + 1/u) ξ, v_1 = ρ_1, v_2 = ρ_2/u per radian of the pinion."""
+    for pair in (he(), yang(), zhang()):
+        ξ = np.linspace(*pair.path_of_contact, 9)
+        (ρ_1, ρ_2), (ζ_1, ζ_2) = pair.curvature_radii(ξ), pair.specific_sliding(ξ)
+        slip = (1.0 + 1.0 / pair.ratio) * ξ
+        np.testing.assert_allclose(ζ_1 * ρ_1, slip, atol=1e-12)
+        np.testing.assert_allclose(ζ_2 * ρ_2 / pair.ratio, -slip, atol=1e-12)
+
+
 def test_normal_curvature_and_roll_distance_of_a_helical_pair() -> None:
     """Radii across the contact line are ρ / cos β_b; ξ at z is that of the section turned by z tan β/(d/2)."""
     pair = yang()

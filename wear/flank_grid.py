@@ -58,6 +58,14 @@ class FlankGrid:
             raise ValueError(f"flank of {body.gear.z} teeth: wanted the same arcs in all layers, found {spread:.2g} mm")
         return FlankGrid(u[node].mean(axis=0), body.z[node].mean(axis=1), node, body.flank.weights())
 
+    @staticmethod
+    def regular(arcs: Floats, heights: Floats, base_helix: float) -> FlankGrid:
+        """Nodes at all arcs (m,) and heights (l,) [mm] of a flank with base helix angle [rad], as a chart has them; one
+        height: a section, its areas per mm."""
+        widths = _hat_lengths(heights) / np.cos(base_helix) if len(heights) > 1 else np.ones(1)
+        node = np.arange(len(heights) * len(arcs)).reshape(len(heights), -1)
+        return FlankGrid(arcs, heights, node, np.outer(widths, _hat_lengths(arcs)).ravel())
+
     def inner(self, pair: GearPair, gear: int) -> Ints:
         """The nodes between the tip-edge zones."""
         low, high = inner_arcs(pair, gear)
@@ -116,3 +124,9 @@ def _between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:
         return np.zeros(len(x), dtype=np.int64), np.zeros(len(x))
     i = np.clip(np.searchsorted(grid, x) - 1, 0, len(grid) - 2)
     return i, np.clip((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)
+
+
+def _hat_lengths(x: Floats) -> Floats:
+    """∫ψ dx of the hats of an ascending grid (n,)."""
+    steps = np.diff(x)
+    return 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))

@@ -7,20 +7,26 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from meshes.data import Floats
+from solver.display import off_screen
 from solver.engagement import engagement
+from solver.flank_field import flank_patch
+from solver.plots3d import flank_picture
 from solver.plots_style import FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, save, sheet, styled
 from solver.scene import GEARS
 from wear.report import WornPair, WornRun
 
+PATCH = (240, 60)  # points of a flank over profile and width: wear is smooth
 Draw = Callable[[WornRun], Figure]
 
 
 def draw_wear(study: WornRun, folder: Path) -> list[Path]:
     """All pictures of a study into OUT/pictures; gives the files written. Raises OSError."""
-    with styled():
+    with styled(), off_screen():
         return [save(draw(study), folder / f"{name}.png") for name, draw in _figures(study)]
 
 
@@ -31,13 +37,14 @@ def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
     yield "22_wear_growth", growth
     yield "23_force_as_worn", force_on_tooth
     yield "24_transmission_error_as_worn", transmission_error
+    yield "25_worn_teeth", worn_teeth
 
 
-def _wearing(study: WornRun) -> list[int]:
-    """The gears that wear."""
+def wearing(study: WornRun) -> dict[int, float]:
+    """The gears that wear, and their K/H [mm²/N]."""
     wear = study.scene.wear
     assert wear is not None
-    return [gear for gear, K in enumerate((wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0]
+    return {gear: K for gear, K in enumerate((wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
 
 
 def cycles_label(cycles: float) -> str:
@@ -54,7 +61,7 @@ def _colours(study: WornRun) -> list[tuple[float, ...]]:
 
 def depth_over_profile(study: WornRun) -> Figure:
     """Depth over the diameter at each report, mean over the face."""
-    last, own = study.pairs[-1], _wearing(study)
+    last, own = study.pairs[-1], wearing(study)
     found = [getattr(last.report(), GEARS[gear]) for gear in own]
     deepest = ", ".join(
         f"{GEARS[gear]} {each.deepest_um:.3g} µm at d = {each.at_diameter_mm:.1f} mm" for gear, each in zip(own, found)
@@ -66,40 +73,71 @@ def depth_over_profile(study: WornRun) -> Figure:
             ax.plot(*pair.profile(gear), color=colour, label=f"{cycles_label(pair.cycles)} cycles")
         ax.axvline(study.pairs[0].run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
         ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
-        ax.set(xlabel="diameter [mm]", ylim=(0.0, None))
+        ax.set(xlabel="diameter [mm]")
         ax.label_outer()
-    figure.axes[0].set_ylabel("wear depth, mean over the face [µm]")
+    figure.axes[0].set(ylabel="wear depth, mean over the face [µm]", ylim=(0.0, None))  # once all curves are there
     figure.axes[0].legend()
     return figure
 
 
 def depth_over_flank(study: WornRun) -> Figure:
     """The worn flanks unrolled, at the end."""
-    last, own = study.pairs[-1], _wearing(study)
-    top = max(1e3 * float(last.worn[gear].depth[last.inner(gear)].max()) for gear in own)
-    see = f"Colours to {top:.3g} µm, the deepest between the tip-edge zones; tip up, root down"
+    last, own = study.pairs[-1], wearing(study)
     title = f"Worn flanks after {cycles_label(last.cycles)} cycles"
-    figure = sheet(title, see, (5.2 * len(own) + 1.0, 5.6))
+    figure = sheet(title, f"{_most(study)}; tip up, root down", (5.8 * len(own) + 1.0, 5.6))
     for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
         chart = last.worn[gear]
         shown = ax.pcolormesh(
-            chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="gouraud"
-        )
-        ax.axhline(last.run.pair.working_pitch_diameters[gear], color="white", lw=1.0, ls="--")
+            chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=_deepest(last, gear),
+            shading="gouraud",
+        )  # fmt: skip
+        ax.axhline(last.run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
         ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
         ax.set(xlabel="face width z [mm]", ylabel="diameter [mm]")
         ax.grid(False)
-    figure.colorbar(shown, ax=figure.axes, label="wear depth [µm]", shrink=0.8)
+        _depth_bar(figure, ax, shown)
     return figure
+
+
+def worn_teeth(study: WornRun) -> Figure:
+    """The worn flanks on their teeth, at the end."""
+    last, own = study.pairs[-1], wearing(study)
+    title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
+    figure = sheet(title, f"Least along the pitch line, where flanks roll. {_most(study)}", (6.2 * len(own) + 1.0, 5.0))
+    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+        patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)
+        ρ, z = np.meshgrid(patch.roll_length, patch.z, indexing="ij")
+        depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
+        result = last.run.positions[0][0].result
+        ax.imshow(flank_picture(last.run, result, patch, 1e3 * depth, top, (960, 720)))
+        ax.set_title(f"{GEARS[gear]}, {GEARS[1 - gear]} taken away", fontsize=10)
+        ax.axis("off")
+        _depth_bar(figure, ax, ScalarMappable(Normalize(0.0, top), PRESSURE_MAP))
+    return figure
+
+
+def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
+    """Each gear's own: their depths may be far apart. Tip edges are beyond its end."""
+    figure.colorbar(shown, ax=ax, label="wear depth [µm]", shrink=0.85, extend="max")
+
+
+def _most(study: WornRun) -> str:
+    found = [f"{GEARS[gear]} {_deepest(study.pairs[-1], gear):.3g} µm" for gear in wearing(study)]
+    return f"Colours to the most between the tip-edge zones: {', '.join(found)}"
+
+
+def _deepest(pair: WornPair, gear: int) -> float:
+    """Deepest wear [µm] of a gear between the tip-edge zones."""
+    return 1e3 * float(pair.worn[gear].depth[pair.inner(gear)].max())
 
 
 def growth(study: WornRun) -> Figure:
     """Deepest wear and worn volume over the cycles; a dot a block."""
-    see = f"{len(study.rows)} blocks, errors of their volumes at most {max(r.error for r in study.rows):.1%}"
+    see = f"{len(study.rows)} blocks, errors of their volumes at most {100.0 * max(r.error for r in study.rows):.1f} %"
     figure = sheet("How the wear grows", see)
     left, right = figure.subplots(1, 2)
     unit, name = _unit(study)
-    for gear in _wearing(study):
+    for gear in wearing(study):
         style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear]}
         x = np.array([0.0, *(row.cycles for row in study.rows)]) / unit
         deepest = [0.0, *(getattr(row, f"deepest_{GEARS[gear]}_um") for row in study.rows)]
@@ -119,14 +157,19 @@ def _unit(study: WornRun) -> tuple[float, str]:
 
 def force_on_tooth(study: WornRun) -> Figure:
     """Normal force on a tooth over its engagement at each report."""
-    first, last = (engagement(pair.run, 0).force.max() for pair in (study.pairs[0], study.pairs[-1]))
-    see = f"The largest force on a tooth goes from {first:.0f} to {last:.0f} N"
-    return _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
+    curves = [engagement(pair.run, 0) for pair in (study.pairs[0], study.pairs[-1])]
+    (first, last), (new, worn) = (c.force.max() for c in curves), (np.degrees(np.ptp(c.ends)) for c in curves)
+    see = f"Whole engagement from {new:.2f}° to {worn:.2f}°, largest force from {first:.0f} to {last:.0f} N"
+    figure = _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
+    figure.axes[0].set(xlabel="pinion rotation of the tooth from the pitch point [°]", ylim=(0.0, None))
+    return figure
 
 
 def _force(pair: WornPair) -> tuple[Floats, Floats]:
+    """From where the tooth takes up load to where it has given it up."""
     curve = engagement(pair.run, 0)
-    return np.degrees(curve.angle), curve.force
+    first, last = curve.ends
+    return np.degrees([first, *curve.angle, last]), np.array([0.0, *curve.force, 0.0])
 
 
 def transmission_error(study: WornRun) -> Figure:

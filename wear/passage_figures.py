@@ -1,0 +1,102 @@
+"""Figures of one mesh passage of a plane pair, as in He et al. 2022, Figs 17 to 19: stress and sliding of a point, over
+the profile, and the depth of a million meshes; each beside its formula."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from solver.plots_style import FAINT, INK, PINION, WHEEL, save, sheet, styled
+from solver.run_data import RunData
+from solver.scene import GEARS
+from wear.observed import Contacts, Depths, PointPassage, pitch_point_depth
+from wear.plots import wearing
+from wear.report import WornRun
+
+FORMULA = {"color": INK, "linestyle": "--", "linewidth": 1.2}
+MESHES = 1e6
+UM = 1e3 * MESHES  # from mm a mesh to µm in a million
+
+
+def draw_passage(study: WornRun, point: PointPassage, folder: Path) -> list[Path]:
+    """The figures of a plane pair's first passage into OUT/pictures; gives the files written. Raises OSError."""
+    with styled():
+        figures = {
+            "26_point_in_contact": point_in_contact(point),
+            "27_stress_and_sliding": stress_and_sliding(study.pairs[0].run),
+            "28_depth_by_formula": depth_by_formula(study),
+        }
+        return [save(figure, folder / f"{name}.png") for name, figure in figures.items()]
+
+
+def point_in_contact(point: PointPassage) -> Figure:
+    """Stress and sliding of a point of the pinion while it bears (Fig. 17a)."""
+    see = f"It bears over {np.degrees(point.lasts):.3f}° of the pinion, at most {point.pressure.max():.0f} MPa"
+    see += f" (Hertz: {point.hertz.max():.0f}), and slides {1e3 * point.sliding[-1]:.1f} µm"
+    figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
+    left, right = figure.subplots(1, 2)
+    angle = np.degrees(point.rotation)
+    left.plot(angle, point.pressure, color=PINION, lw=2.2, label="computed")
+    left.plot(angle, point.hertz, label="Hertz, own load", **FORMULA)
+    left.set(ylabel="contact stress [MPa]", ylim=(0.0, None))
+    left.legend(loc="upper right")
+    right.plot(angle, 1e3 * point.sliding, color=PINION)
+    right.set(ylabel="sliding distance so far [µm]", ylim=(0.0, None))
+    for ax in (left, right):
+        ax.set(xlabel="pinion rotation from the pitch point [°]")
+    return figure
+
+
+def stress_and_sliding(run: RunData) -> Figure:
+    """Largest stress and sliding distance of the points over the pinion's profile (Figs 17b and 18)."""
+    both = Contacts.of(run, 0), Contacts.of(run, 1)
+    pinion = both[0]
+    stress, width = (
+        100.0 * float(np.median(np.abs(found / wanted - 1.0)))
+        for found, wanted in ((pinion.peak, pinion.hertz), (pinion.half_width, pinion.hertz_half_width))
+    )
+    see = f"Half of all points are within {stress:.1f} % of Hertz' stress and {width:.1f} % of Hertz' width, own load"
+    figure = sheet("One mesh over the profile: contact stress and sliding", see)
+    left, right = figure.subplots(1, 2)
+    left.plot(pinion.radius, pinion.peak, ".", color=PINION, label="computed")
+    left.plot(pinion.radius, pinion.hertz, label="Hertz, own load", **FORMULA)
+    left.set(ylabel="largest contact stress [MPa]", ylim=(0.0, 1.1 * pinion.peak.max()))
+    for own, colour, name in zip(both, (PINION, WHEEL), GEARS):
+        right.plot(pinion.radius, 1e3 * own.sliding, ".", color=colour, label=f"{name}, computed")
+    for own, label in zip(both, ("2b|1 − v₂/v₁|, 2b|1 − v₁/v₂|", None)):
+        right.plot(pinion.radius, 1e3 * own.single_point, label=label, **FORMULA)
+    top = 1e3 * max(float(own.single_point.max()) for own in both)
+    right.set(ylabel="sliding distance in one mesh [µm]", ylim=(0.0, 1.35 * top))
+    for ax, corner in ((left, "lower center"), (right, "upper center")):
+        ax.set(xlabel="radius on the pinion [mm]   (dashed: pitch point)")
+        _pitch_point(ax, run.pair.working_pitch_diameters[0] / 2.0)
+        ax.legend(loc=corner, frameon=True, framealpha=1.0, edgecolor="none")
+    return figure
+
+
+def depth_by_formula(study: WornRun) -> Figure:
+    """Depth of a million meshes of the unworn pair, and two formulas (Fig. 19)."""
+    pair, own = study.pairs[0], wearing(study)
+    see = "Largest stress times sliding distance, He et al. Eq. 24, is 4/π times the exact depth of a line contact"
+    figure = sheet("Wear of a million meshes, flanks as new", see)
+    for ax, (gear, coefficient) in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own.items()):
+        depths = Depths.of(pair, gear, coefficient)
+        ax.plot(depths.radius, UM * depths.own, color=(PINION, WHEEL)[gear], lw=2.6, label="computed")
+        ax.plot(depths.radius, UM * depths.line, label="(K/H) (F/L) |ζ|, own load", **FORMULA)
+        ax.plot(depths.radius, UM * depths.peak_times_sliding, color=FAINT, ls=":", label="He et al., Eq. 24")
+        pitch = pair.run.pair.working_pitch_diameters[gear] / 2.0
+        deep = UM * pitch_point_depth(pair.run, gear, coefficient)
+        ax.plot([pitch], [deep], "o", color=INK, mfc="white", ms=5, label="Hertz ridge over the pitch point")
+        _pitch_point(ax, pitch)
+        ax.set(xlabel=f"radius on the {GEARS[gear]} [mm]")
+        ax.label_outer()
+    figure.axes[0].set(ylabel="wear depth [µm in a million meshes]", ylim=(0.0, None))  # once all curves are there
+    figure.axes[0].legend()
+    return figure
+
+
+def _pitch_point(ax: Axes, at: float) -> None:
+    ax.axvline(at, color=FAINT, lw=1.0, ls="--")

@@ -101,8 +101,8 @@ class Position:
         if not len(found.facet1):
             raise SearchError(
                 f"contact between {contact.first[1]!r} of body {contact.first[0]} and {contact.second[1]!r} of body "
-                f"{contact.second[0]}: wanted surfaces within {reach:.3g} mm of each other, found none; place the bodies "
-                "closer together, or give the contact a larger reach"
+                f"{contact.second[0]}: wanted surfaces within {reach:.3g} mm of each other, found none; place the "
+                "bodies closer together, or give the contact a larger reach"
             )
         return found
 

@@ -169,8 +169,8 @@ def _tried(
 
 
 def _longest(state: WearState[E], settings: BlockSettings) -> float:
-    """The length that is stable, and at which the depth at today's rate is the allowed share of the deformation; without
-    a limit where the pressure follows the wear within the block."""
+    """The length that is stable, and at which the depth at today's rate is the allowed share of the deformation;
+    without a limit where the pressure follows the wear within the block."""
     if settings.implicit:
         return np.inf
     rate = float(state.now.rate.max(initial=0.0))

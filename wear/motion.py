@@ -180,6 +180,14 @@ def _walls(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
     return sp.bsr_matrix((blocks, every, np.append(every, len(every)))).tocsr()
 
 
+def smallest_edge(mesh: MeshData, nodes: Ints) -> float:
+    """Least distance [mm] between two corners of a cell that has one of these nodes."""
+    near = mesh.cells[np.isin(mesh.cells, nodes).any(axis=1)][:, : corner_count(mesh.shape)]
+    corners = mesh.points[near]
+    lengths = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1)
+    return float(lengths[:, *np.triu_indices(near.shape[1], 1)].min())
+
+
 def mesh_volume(mesh: MeshData) -> float:
     """Of all cells [mm³; mm² in 2D]."""
     domain = compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)

@@ -22,11 +22,11 @@ from solver.statement import Contact, Problem, Side
 from solver.surface import Surface
 from wear.blocks import TOO_LONG, Block, BlockSettings, Evaluated, WearState, next_block, unworn
 from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
-from wear.law import Archard, VolumeLost, certify_volume
-from wear.motion import Follow, MeshVolumeLost, WornSurface, mesh_volume, worn_mesh
+from wear.law import Archard, certify_volume
+from wear.motion import Follow, MeshVolumeLost, WornSurface, mesh_volume, smallest_edge, worn_mesh
 
 SHALLOW = 0.25
-"""Of a surface's smallest cell: a gap so deep changes the body's shape by no more than the mesh resolves."""
+"""Of the shortest edge of the cells at a surface: a gap so deep changes no more of the body than the mesh resolves."""
 MESH_VOLUME = 1e-2
 """How far what a moved mesh has lost may be from Σ m h. On a curved surface the two differ by half the depth over the
 radius; 6e-4 was found on worn spheres and cylinders."""
@@ -34,9 +34,9 @@ radius; 6e-4 was found on worn spheres and cylinders."""
 
 @dataclass(frozen=True)
 class Refresh:
-    """When the mesh follows: where depth [mm] is more than this that the mesh does not know of, and in any case where it
-    is more than SHALLOW cells or half of a contact's reach; how its interior does, and the least scaled Jacobian it may
-    have."""
+    """When the mesh follows: where depth [mm] is more than this that the mesh does not know of, and in any case where
+    it is more than SHALLOW cells or half of a contact's reach; how its interior does, and the least scaled Jacobian it
+    may have."""
 
     depth: float = np.inf
     follow: Follow = "harmonic"
@@ -78,10 +78,11 @@ class WearStudy:
         prepared = prepare(problem)
         self._ends = np.cumsum([0] + [len(prepared[b].surfaces[g].points) for b, g in self.sides])
         self.geometry = Geometry(problem, prepared, np.zeros(self._ends[-1]))
-        self.refreshed = 0
+        self.refreshed, self._share = 0, SHALLOW
 
     def evaluate(self, depth: Floats, before: CycleState | None = None) -> CycleState:
-        """One cycle at depths (n,), see `Wearable`."""
+        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter blocks
+        do not help."""
         return self._solved(depth, 0.0)
 
     def implicit(self, depth: Floats, now: CycleState, length: float) -> tuple[Floats, CycleState]:
@@ -95,10 +96,12 @@ class WearStudy:
         states = rubbings(worn, own.prepared)
         rates = added(self.laws, own.problem, states)
         rate = np.concatenate([rates[side] for side in self.sides])
-        return CycleState(
-            rate, self.areas, _deformation(own.problem, states), self._decay(states), tuple(map(tuple, states)), self._volumes(rates),
-            self._integrals(states),
+        state = CycleState(
+            rate, self.areas, _deformation(own.problem, states), self._decay(states),
+            tuple(map(tuple, states)), self._volumes(rates), self._integrals(states),
         )  # fmt: skip
+        _certify(state)
+        return state
 
     def blocks(
         self, cycles: float, settings: BlockSettings, begin: Floats | None = None
@@ -111,9 +114,7 @@ class WearStudy:
             yield block
 
     def accepted(self, depth: Floats, now: CycleState) -> CycleState:
-        """Certifies the volume, and lets the meshes follow where they have to, see `Wearable`. Raises VolumeLost as well,
-        which shorter blocks do not help."""
-        _certify(now)
+        """Lets the meshes follow where they have to, see `Wearable`."""
         self._refuse_beyond_reach(depth)
         if (depth - self.geometry.known).max() <= self._shallow():
             return now
@@ -121,8 +122,10 @@ class WearStudy:
         try:
             self.follow(depth)
             return self.evaluate(depth)
-        except TOO_LONG:
+        except TOO_LONG as error:
             self.geometry, self.refreshed = before
+            if isinstance(error, MeshVolumeLost):  # of curved surfaces: the more the deeper
+                self._share *= 0.5
             raise
 
     def follow(self, depth: Floats) -> None:
@@ -133,8 +136,8 @@ class WearStudy:
         lost = sum(mesh_volume(a.mesh) - mesh_volume(b.mesh) for a, b in pairs if a is not b)
         if not abs(lost - wanted) <= MESH_VOLUME * wanted:
             raise MeshVolumeLost(
-                f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; refine the worn surface, or let "
-                "the mesh follow more often"
+                f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; put all facets that may touch "
+                "into the worn surface, refine it, or let the mesh follow more often"
             )
         self.geometry, self.refreshed = Geometry(new, prepare(new), depth.copy()), self.refreshed + 1
 
@@ -165,9 +168,9 @@ class WearStudy:
             if not opened <= reach:
                 (one, first), (other, second) = contact.first, contact.second
                 raise SearchError(
-                    f"wear between {first!r} of body {one} and {second!r} of body {other}: wanted a block that opens the "
-                    f"gap by less than the contact's reach, {reach:.3g} mm, found {opened:.3g} mm; give the contact a "
-                    "larger reach, or take shorter blocks"
+                    f"wear between {first!r} of body {one} and {second!r} of body {other}: wanted a block that opens "
+                    f"the gap by less than the contact's reach, {reach:.3g} mm, found {opened:.3g} mm; give the "
+                    "contact a larger reach, or take shorter blocks"
                 )
 
     def _reaches(self) -> list[float]:
@@ -182,9 +185,9 @@ class WearStudy:
 
     def _shallow(self) -> float:
         """The largest depth [mm] that the gap alone may take."""
-        surfaces = [self._surface(side) for side in self.sides]
-        cells = [float(s.areas().min()) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces]
-        return min(self.refresh.depth, SHALLOW * min(cells), 0.5 * min(self._reaches()))
+        bodies = self.geometry.problem.bodies
+        edges = [smallest_edge(bodies[b].mesh, self._surface((b, group)).nodes) for b, group in self.sides]
+        return min(self.refresh.depth, self._share * min(edges), 0.5 * min(self._reaches()))
 
     def _surface(self, side: Side) -> Surface:
         return self.geometry.prepared[side[0]].surfaces[side[1]]

@@ -39,6 +39,7 @@ class GearBody:
 
     gear: GearParameters
     mesh: MeshData
+    material: Material
     flank: Surface
     traction: NitscheTraction | None
     chain: Compliance
@@ -112,7 +113,7 @@ def condensed_gear(
         settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
         condensed = ChainedCompliance(condensed, settings)
     end = time.perf_counter()
-    return GearBody(gear, mesh, flank, traction, condensed, sign, assembled - begin, end - assembled)
+    return GearBody(gear, mesh, material, flank, traction, condensed, sign, assembled - begin, end - assembled)
 
 
 def _sector_system(

@@ -12,6 +12,7 @@ from test_equilibrium import FRICTION, cylinder
 from meshes.blocks import rectangle
 from solver.body import Body, Fixed, Freedom, Rigid, Traction
 from solver.problem import Contact, Placement, Problem, Solution, Step, solve, sweep
+from solver.search import SearchError
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -24,6 +25,15 @@ def test_own_problem_page(tmp_path):
     exec(compile(program.replace("hook.msh", str(tmp_path / "hook.msh")), "own_problem.md", "exec"), names)
     force = names["solution"].contacts[0].force
     assert force[1] == pytest.approx(-names["LOAD"], rel=1e-8)
+
+
+def test_surfaces_out_of_reach_are_refused():
+    """Two blocks 1 mm apart, and a reach of 0.1 mm: said, with both surfaces and what to do."""
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0))
+    bodies = Body(upper, rigid=Rigid("top", (Freedom("y", load=-1.0),))), Body(lower, supports=(Fixed("bottom"),))
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    with pytest.raises(SearchError, match=r"'bottom' of body 0 and 'top' of body 1: wanted .* 0\.1 mm.*found none"):
+        solve(problem)
 
 
 def test_load_factor_scales_a_closed_contact():

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from solver.newton import NotConverged
-from wear.blocks import BlockSettings, Evaluated, WearStopped, next_block, unworn
+from wear import blocks
+from wear.blocks import STABLE, BlockSettings, Evaluated, WearStopped, next_block, unworn
+from wear.motion import MeshInverted
 
 END = 20.0
 
@@ -45,6 +47,33 @@ class Failing(Softening):
         if length > self.longest:
             raise NotConverged("too long")
         return super().implicit(depth, now, length)
+
+
+class Inverting(Softening):
+    """The same, but no mesh follows by more than `deepest` at a time, or in all by more than `last`."""
+
+    def __init__(self, deepest: float, last: float) -> None:
+        super().__init__()
+        self.deepest, self.last, self.known = deepest, last, 0.0
+
+    def accepted(self, depth, now):
+        """The meshes follow every block."""
+        if depth[0] - self.known > self.deepest or depth[0] > self.last:
+            raise MeshInverted("cells turned over")
+        self.known = depth[0]
+        return now
+
+
+class Rippling:
+    """dh_k/dN = 1 − (h_k − mean): ripples decay to 1/e in a cycle."""
+
+    def evaluate(self, depth, before=None):
+        """The rate, which is nowhere negative."""
+        return Evaluated(np.maximum(1.0 - (depth - depth.mean()), 0.0), np.ones(2), np.inf, 1.0)
+
+    def accepted(self, depth, now):
+        """Nothing follows."""
+        return now
 
 
 def worn(wearable, settings: BlockSettings):
@@ -98,6 +127,33 @@ def test_stopped() -> None:
     with pytest.raises(WearStopped, match=r"after 0 cycles.*too long.*last good state is kept"):
         next_block(study, state, END, settings)
     assert (state.depth == 0.3).all()
+
+
+def test_a_mesh_that_cannot_follow_shortens_the_block() -> None:
+    """At most 0.5 mm at a time: shorter blocks, to nearly the same end. At most 3 mm in all: the study stops near
+    there, and says why; it does not creep towards it."""
+    settings = BlockSettings(5.0, 0.5)
+    depth, lengths = worn(Inverting(0.5, np.inf), settings)
+    assert len(lengths) > 10
+    assert depth[0] == pytest.approx(np.sqrt(1.0 + 2.0 * END) - 1.0, rel=0.1)
+    study = Inverting(0.5, 3.0)
+    with pytest.raises(WearStopped, match=r"cells turned over.*last good state is kept"):
+        worn(study, settings)
+    assert 2.9 < study.known <= 3.0
+    assert study.calls < 100
+
+
+@pytest.mark.parametrize(("share", "grows"), [(STABLE, False), (1.3 * STABLE, True)])
+def test_explicit_blocks_are_stable(share: float, grows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ripple of 1e-3 on a depth of some cycles, in blocks as long as they may be: it is worn off; in blocks a third
+    longer it grows."""
+    monkeypatch.setattr(blocks, "STABLE", share)
+    study, settings = Rippling(), BlockSettings(END, implicit=False)
+    state = unworn(study, np.array([0.0, 1e-3]), settings)
+    for _ in range(30):
+        state = next_block(study, state, np.inf, settings).state
+    ripple = np.ptp(state.depth)
+    assert ripple > 5e-3 if grows else ripple < 1e-6
 
 
 def test_deformation_limits_a_block() -> None:

@@ -84,6 +84,16 @@ def test_which_equation_keeps_better_cells(shape: str) -> None:
         quality("harmonic", 0.25, 0.3)
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_squeezed_cells_do_not_bulge(order: int) -> None:
+    """Half of a block worn off evenly, elastically: what is squeezed would bulge past its sides, which stay; kept from
+    that only afterwards, the nodes beside them turned the cells over."""
+    mesh = block("quadrilateral", order)
+    top = surface_of(mesh, "top")
+    moved = worn_mesh(mesh, [WornSurface(top, np.full(len(top.points), 0.5))], ["bottom"], "elastic")
+    assert scaled_jacobians(moved).min() > 0.9
+
+
 def test_turned_over_is_refused() -> None:
     """Deeper than the body is high: MeshInverted with the place and what to do."""
     mesh = block("quadrilateral", 2)

@@ -18,9 +18,12 @@ from wear_cases import (
     sphere,
 )  # fmt: skip
 
+from meshes.blocks import rectangle
+from meshes.quality import scaled_jacobians
+from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
-from solver.problem import Placement, Step
-from wear.blocks import BlockSettings
+from solver.problem import Contact, Placement, Problem, Step
+from wear.blocks import BlockSettings, WearStopped
 from wear.cycle import Cycle, Travel
 from wear.law import Archard
 from wear.motion import mesh_volume
@@ -132,6 +135,40 @@ def test_long_steps_are_refused() -> None:
     study = WearStudy(cylinder(4.0, 1, 0.0, steel), (Archard(K),), to_and_fro(0.3))
     with pytest.raises(ValueError, match="wanted steps that slide less than the contact is wide"):
         study.evaluate(np.zeros(len(study.areas)))
+
+
+def slabs(E: float = 2.1e5) -> Problem:
+    """A block of 2 × 1 mm on one of 4 × 2 mm, pressed with a thousandth of E."""
+    steel = Material(E, 0.3)
+    down = Rigid("top", (Freedom("y", -2e-3 * E),))
+    upper = Body(rectangle(2.0, 1.0, 8, 4, 1, origin=(-1.0, 0.0)), steel, rigid=down)
+    lower = Body(rectangle(4.0, 2.0, 20, 8, 1, origin=(-2.0, -2.0)), steel, (Fixed("bottom"),))
+    return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.05),))
+
+
+def test_worn_far_beyond_reach() -> None:
+    """A block worn to a fifth of its height, in one block of cycles if it could be: the contact is looked for within
+    0.05 mm, so that blocks are made shorter, the mesh follows, and the reach with it. The mesh has lost K F s."""
+    study = WearStudy(slabs(), (Archard(1e-6),), MILLIMETRE)
+    cycles = 0.8 * 2.0 / (1e-6 * 2e-3 * 2.1e5)
+    blocks = list(study.blocks(cycles, BlockSettings(first=cycles)))
+    assert len(blocks) > 3 and blocks[0].refused > 0 and study.refreshed > 3
+    assert scaled_jacobians(study.geometry.problem.bodies[0].mesh).min() > 0.3
+    left = mesh_volume(study.meshes(blocks[-1].state.depth)[0])
+    assert left == pytest.approx(2.0 - 1.6, rel=1e-3)
+
+
+def test_worn_away() -> None:
+    """Wear of ten times the block's height: it ends with a message before the block is gone, and the last good state
+    can be solved."""
+    study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), []
+    cycles = 10.0 * 2.0 / (1.0 * 2e-3 * 2.1e5)
+    with pytest.raises(WearStopped, match=r"wanted scaled Jacobians.*last good state is kept"):
+        blocks.extend(study.blocks(cycles, BlockSettings(first=cycles)))
+    depth = blocks[-1].state.depth
+    assert 0.5 < depth.min() < depth.max() < 1.0
+    state = study.evaluate(depth)
+    assert state.volumes[0, "bottom"] == pytest.approx(1.0 * 2e-3 * 2.1e5, rel=1e-6)
 
 
 def test_travel_of_nothing() -> None:

@@ -268,9 +268,21 @@ class GearWear:
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(own) for result in part)
         smooth = None if model.has_friction_terms(self.friction) else found
+        decay = self._decay(rate, positions)
         return PitchState(
-            rate, self.areas, np.inf, np.inf, positions, work, tuple(shared), searched, self.refreshed, smooth
+            rate, self.areas, np.inf, decay, positions, work, tuple(shared), searched, self.refreshed, smooth
         )
+
+    def _decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
+        """Cycles in which a ripple of two nodes along the profile decays to 1/e where flanks wear fastest: 1/(K/H
+        πE*/ℓ s), the sliding distance s of a passage being that of the rate (K/H) p̄ s."""
+        contacts = [position.contact for position in positions]
+        pressure, weights = (np.concatenate([getattr(c, name) for c in contacts]) for name in ("pressure", "weights"))
+        mean = float(weights @ pressure**2) / float(weights @ pressure)
+        ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
+        modulus = 1.0 / sum(1.0 / body.material.plane_modulus for body in self.model.bodies)
+        fastest = sum(float(own.max(initial=0.0)) for own in self.by_gear(rate))
+        return mean * ripple / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""

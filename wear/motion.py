@@ -188,9 +188,17 @@ def certify_loss(before: MeshData, after: MeshData, wanted: float) -> None:
     lost = mesh_volume(before) - mesh_volume(after)
     if not abs(lost - wanted) <= MESH_VOLUME * abs(wanted):
         raise MeshVolumeLost(
-            f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; refine the worn surface, or let "
-            "the mesh follow more often"
+            f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; put all facets that may touch "
+            "into the worn surface, refine it, or let the mesh follow more often"
         )
+
+
+def smallest_edge(mesh: MeshData, nodes: Ints) -> float:
+    """Least distance [mm] between two corners of a cell that has one of these nodes."""
+    near = mesh.cells[np.isin(mesh.cells, nodes).any(axis=1)][:, : corner_count(mesh.shape)]
+    corners = mesh.points[near]
+    lengths = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1)
+    return float(lengths[:, *np.triu_indices(near.shape[1], 1)].min())
 
 
 def mesh_volume(mesh: MeshData) -> float:

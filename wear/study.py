@@ -23,10 +23,10 @@ from solver.surface import Surface
 from wear.blocks import TOO_LONG, Block, BlockSettings, Evaluated, WearState, next_block, unworn
 from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
 from wear.law import Archard, certify_volume
-from wear.motion import Follow, WornSurface, certify_loss, worn_mesh
+from wear.motion import Follow, WornSurface, certify_loss, smallest_edge, worn_mesh
 
 SHALLOW = 0.25
-"""Of a surface's smallest cell: a gap so deep changes the body's shape by no more than the mesh resolves."""
+"""Of the shortest edge of the cells at a surface: a gap so deep changes no more of the body than the mesh resolves."""
 
 
 @dataclass(frozen=True)
@@ -75,10 +75,11 @@ class WearStudy:
         prepared = prepare(problem)
         self._ends = np.cumsum([0] + [len(prepared[b].surfaces[g].points) for b, g in self.sides])
         self.geometry = Geometry(problem, prepared, np.zeros(self._ends[-1]))
-        self.refreshed = 0
+        self.refreshed, self._share = 0, SHALLOW
 
     def evaluate(self, depth: Floats, before: CycleState | None = None) -> CycleState:
-        """One cycle at depths (n,), see `Wearable`."""
+        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter blocks
+        do not help."""
         return self._solved(depth, 0.0)
 
     def implicit(self, depth: Floats, now: CycleState, length: float) -> tuple[Floats, CycleState]:
@@ -92,10 +93,12 @@ class WearStudy:
         states = rubbings(worn, own.prepared)
         rates = added(self.laws, own.problem, states)
         rate = np.concatenate([rates[side] for side in self.sides])
-        return CycleState(
-            rate, self.areas, _deformation(own.problem, states), self._decay(states), tuple(map(tuple, states)),
-            self._volumes(rates), self._integrals(states),
+        state = CycleState(
+            rate, self.areas, _deformation(own.problem, states), self._decay(states),
+            tuple(map(tuple, states)), self._volumes(rates), self._integrals(states),
         )  # fmt: skip
+        _certify(state)
+        return state
 
     def blocks(
         self, cycles: float, settings: BlockSettings, begin: Floats | None = None
@@ -108,9 +111,7 @@ class WearStudy:
             yield block
 
     def accepted(self, depth: Floats, now: CycleState) -> CycleState:
-        """Certifies the volume, and lets the meshes follow where they have to, see `Wearable`. Raises VolumeLost as
-        well, which shorter blocks do not help."""
-        _certify(now)
+        """Lets the meshes follow where they have to, see `Wearable`."""
         self._refuse_beyond_reach(depth)
         if (depth - self.geometry.known).max() <= self._shallow():
             return now
@@ -118,8 +119,10 @@ class WearStudy:
         try:
             self.follow(depth)
             return self.evaluate(depth)
-        except TOO_LONG:
+        except TOO_LONG as error:
             self.geometry, self.refreshed = before
+            if isinstance(error, MeshVolumeLost):  # of curved surfaces: the more the deeper
+                self._share *= 0.5
             raise
 
     def follow(self, depth: Floats) -> None:
@@ -179,9 +182,9 @@ class WearStudy:
 
     def _shallow(self) -> float:
         """The largest depth [mm] that the gap alone may take."""
-        surfaces = [self._surface(side) for side in self.sides]
-        cells = [float(s.areas().min()) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces]
-        return min(self.refresh.depth, SHALLOW * min(cells), 0.5 * min(self._reaches()))
+        bodies = self.geometry.problem.bodies
+        edges = [smallest_edge(bodies[b].mesh, self._surface((b, group)).nodes) for b, group in self.sides]
+        return min(self.refresh.depth, self._share * min(edges), 0.5 * min(self._reaches()))
 
     def _surface(self, side: Side) -> Surface:
         return self.geometry.prepared[side[0]].surfaces[side[1]]

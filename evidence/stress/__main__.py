@@ -1,4 +1,4 @@
-"""`python -m evidence.stress [all | matrix | scenes | wear | independence | faults]`: measures, and writes docs/stress.md.
+"""`python -m evidence.stress [all | matrix | scenes | wear | independence | faults]` measures, writes docs/stress.md.
 
 Each part keeps its own piece of the page, docs/stress/PART.md, so that one can be measured again alone. `seeds FIRST
 COUNT` and `wear-seeds FIRST COUNT` are what `scenes` and `wear` start in a process of its own.

@@ -1,4 +1,4 @@
-"""Hundreds of random scenes or wear studies, solved one after the other in a process of their own that may crash or hang.
+"""Random scenes or wear studies by the hundred, one after the other in a process of their own that may crash or hang.
 
 The process writes one JSON line a scene; whoever watches it kills it when a scene takes too long and starts the next.
 """

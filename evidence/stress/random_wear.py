@@ -31,6 +31,7 @@ GEARS = 0.4  # of the seeds
 PLANE = 0.9  # of the gear pairs: others take longer
 SMALLEST, LARGEST = 1e-13, 1e-6  # K/H [mm²/N] of gears
 ABSURD = 1e3  # mm²/N: bodies vanish within 1 µm of sliding
+MISTAKE = 1e6  # times the body's size: what a study asks for whose K/H is in m²/N
 RADIUS, POISSON = 5.0, 0.3  # mm
 STROKE = 0.2  # of the contact's half-width
 
@@ -107,7 +108,7 @@ def _first(draw: Draw) -> float:
 def _bodies(draw: Draw) -> BodyStudy:
     """A cylinder or a block on a block, which travels under it or goes to and fro."""
     material = Material(draw.decades(2e3, 2e7), POISSON)
-    wanted = draw.decades(1e-4, 2.0)
+    wanted = draw.one_of(draw.decades(1e-4, 0.1), draw.decades(0.1, 3.0), draw.decades(3.0, MISTAKE))
     order, friction = draw.one_of(1, 2), draw.one_of(0.0, 0.0, draw.uniform(0.01, 0.4, 3))
     shape = draw.one_of(_cylinder, _cylinder, _blocks, _boxes)(draw, material, wanted, order)
     travels = draw.often(0.6)
@@ -144,7 +145,7 @@ def _cylinder(draw: Draw, material: Material, wanted: float, order: int) -> Shap
     a, depth = RADIUS * draw.decades(3e-3, 0.06), wanted * RADIUS
     worn = np.sqrt(2.0 * RADIUS * depth)
     fine = min(1.3 * max(a, worn), 0.6 * RADIUS)
-    size = fine / draw.whole(6, 12)
+    size = fine / draw.whole(6, 12)  # few over a contact that is narrow at first
     upper = cylinder_2d(RADIUS, size, fine, order, contact=fine)
     lower = graded_rectangle(4.0 * fine, 2.0 * fine, 0.8 * size, 1.5 * fine, order)
     load = 0.25 * np.pi * modulus * a**2 / RADIUS

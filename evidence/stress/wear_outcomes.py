@@ -75,11 +75,12 @@ class WearOutcome:
 @dataclass(frozen=True)
 class Accepted:
     """A state that a study has accepted. depth (n,) [mm]; volumes: found and wanted ones [mm³; mm² in 2D]; faults: what
-    else is wrong; refused, error: of the block that led there."""
+    else is wrong; block: 1 where a block led there; refused, error: that block's."""
 
     depth: Floats
     volumes: Volumes
     faults: tuple[str, ...] = ()
+    block: int = 0
     refused: int = 0
     error: float = 0.0
 
@@ -96,8 +97,8 @@ def wear_outcome_of(study: Scene | BodyStudy, seed: int) -> WearOutcome:
         found = WearOutcome(seed, WearVerdict.FINISHED, kind=study.kind, fastest=max(study.law.both))
         states, size = body_states(study), study.size
     try:
-        for found in _judged(found, states, size):
-            pass
+        for judged in _judged(found, states, size):
+            found = judged
     except STOPS as error:
         clear = WearVerdict.STOPPED if CLEAR.search(str(error)) else WearVerdict.WRONG
         found = replace(found, verdict=clear, message=f"{type(error).__name__}: {error}")
@@ -112,7 +113,7 @@ def _judged(found: WearOutcome, states: Iterator[Accepted], size: float) -> Iter
     for state in states:
         faults = list(_faults(state, before))
         found = replace(
-            found, blocks=found.blocks + (before is not None), refused=found.refused + state.refused,
+            found, blocks=found.blocks + state.block, refused=found.refused + state.refused,
             error=max(found.error, state.error), depth=float(state.depth.max()) / size,
         )  # fmt: skip
         if faults:
@@ -148,7 +149,7 @@ def body_states(study: BodyStudy) -> Iterator[Accepted]:
             lost += float(block.end.areas @ gained)
             volumes = [*_rates(own, study, block.end), *_gained(own, study, gained, block.length, now, block.end)]
             depth, now = block.state.depth.copy(), block.state.now
-            yield Accepted(depth, volumes, tuple(_mesh_faults(own, study, depth, lost)), block.refused, block.error)
+            yield Accepted(depth, volumes, tuple(_mesh_faults(own, study, depth, lost)), 1, block.refused, block.error)
     except STOPS:
         again = own.evaluate(depth)
         yield Accepted(depth, _rates(own, study, again), tuple(_mesh_faults(own, study, depth, lost)))
@@ -178,26 +179,21 @@ def _at_points(study: BodyStudy, state: CycleState) -> dict[int, float]:
 
 
 def _mesh_faults(own: WearStudy, study: BodyStudy, depth: Floats, lost: float) -> Iterator[str]:
-    """Cells that are turned over, depths of a cell and more that no mesh can have, meshes that have lost another volume
-    than `lost`."""
+    """Cells that are turned over, depths that no mesh can have, meshes that have lost another volume than `lost`."""
     worst = min(float(scaled_jacobians(body.mesh).min()) for body in own.geometry.problem.bodies)
     if not worst > 0.0:
         yield f"a cell of scaled Jacobian {worst:.3g}"
+    wanted, own.refresh = own.refresh, replace(own.refresh, least_quality=0.0)
     try:
         moved = own.meshes(depth)
     except MeshInverted as error:
-        if (depth - own.geometry.known).max() > _smallest_cell(own):
-            yield f"accepted, but no mesh follows: {error}"
+        yield f"accepted, but no mesh follows: {error}"
         return
+    finally:
+        own.refresh = wanted
     gone = sum(mesh_volume(body.mesh) - mesh_volume(mesh) for body, mesh in zip(study.problem.bodies, moved))
     if not abs(gone - lost) <= MESH * lost:
         yield f"mesh: wanted {lost:.6g} to be gone, found {gone:.6g}"
-
-
-def _smallest_cell(own: WearStudy) -> float:
-    """Of the worn surfaces [mm]."""
-    surfaces = [own.geometry.prepared[body].surfaces[group] for body, group in own.sides]
-    return min(float(s.areas().min()) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces)
 
 
 def gear_states(scene: Scene) -> Iterator[Accepted]:
@@ -225,7 +221,7 @@ def _gear_state(gears: GearWear, stage: Stage, before: WearState[PitchState] | N
     volumes.append((done[0], done[-1]))
     if not (1.0 - WORK) * min(ends) <= done[0] <= (1.0 + WORK) * max(ends):
         faults.append(f"a block's work: wanted it near {ends[0]:.4g} and {ends[1]:.4g}, found {done[0]:.4g}")
-    return Accepted(state.depth, volumes, tuple(faults), row.refused, row.error)
+    return Accepted(state.depth, volumes, tuple(faults), 1, row.refused, row.error)
 
 
 def _works(gears: GearWear, rate: Floats) -> list[float]:

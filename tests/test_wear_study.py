@@ -90,12 +90,6 @@ def test_both_sides(laws: Archard, order: int, friction: float) -> None:
             assert abs(lost) / friction == pytest.approx(work, rel=1e-5 if order == 1 else 1e-6)
 
 
-def test_what_travels_does_not_wear_in_place() -> None:
-    """A slab that slides away under the cylinder wears on its whole track, which is not built: it is refused."""
-    with pytest.raises(ValueError, match="found body 1, which travels and wears"):
-        WearStudy(cylinder(3.0), (Archard(K, K),), MILLIMETRE)
-
-
 def test_nothing_that_wears() -> None:
     """Without a K/H above zero there is nothing to study; without a law for a contact neither."""
     with pytest.raises(ValueError, match="wanted a K/H above zero on some surface"):

@@ -8,39 +8,22 @@ wears is put where it ends, so that a step may not be longer than the contact is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
 from solver.nitsche import ContactOperator
 from solver.position import ContactResult, History, Position
 from solver.prepared import PreparedBody
 from solver.statement import Problem, Side, Step
 from wear.law import Archard, Places, StepsTooLong
+from wear.track import Track, Travel
+
+__all__ = ["Cycle", "Depths", "Rubbing", "Travel", "Worn", "added", "rubbings"]
 
 Depths = dict[Side, Floats]
-
-
-@dataclass(frozen=True)
-class Travel:
-    """A rigid motion of a body in each cycle: translation [mm], then rotation [rad] about an axis through `centre`.
-
-    Contact points take the speed that the motion has at the start; a body that turns goes round and round.
-    """
-
-    body: int
-    translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-    def at(self, points: Floats) -> Floats:
-        """Path (q, d) per cycle of points (q, d) [mm]."""
-        d = points.shape[1]
-        arms = np.zeros((len(points), 3))
-        arms[:, :d] = points - np.asarray(self.centre)[:d]
-        return np.asarray(np.asarray(self.translation) + np.cross(self.rotation, arms))[:, :d]
 
 
 @dataclass(frozen=True)
@@ -69,25 +52,28 @@ class Rubbing:
         return self.result.weights * self.result.pressure * self.sliding
 
     def depths(self, law: Archard) -> tuple[Floats, Floats]:
-        """Depth per cycle [mm] at the nodes of both surfaces."""
+        """Depth per cycle [mm] at the nodes of both surfaces, or over their tracks."""
         first, second = (place.depth(K * self.work) for K, place in zip(law.both, self.places))
         return first, second
 
 
 @dataclass(frozen=True)
 class Worn:
-    """What the contact law sees of wear: depths already lost per side, and the cycles to come while it acts."""
+    """What the contact law sees of wear: depths already lost per side, and the cycles to come while it acts. Sides that
+    wear on a track have it in `tracks`, and their depths are over it; the others' are at the nodes."""
 
     problem: Problem
     laws: tuple[Archard, ...]
     cycle: Cycle
     depths: Depths
+    tracks: Mapping[Side, Track]
     ahead: float = 0.0
 
 
 def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbing]]:
     """Solves a cycle: per contact, the states in which it rubs. With `ahead` cycles to come the pressure is that at
-    their end (implicit Euler), which only a cycle with travel can do.
+    their end (implicit Euler), which only a cycle with travel can do; a track keeps its depth meanwhile, as each of its
+    places is under the contact for a part of the time only.
 
     Raises NotConverged, SearchError, StepsTooLong, ValueError.
     """
@@ -116,18 +102,26 @@ class _Wearing(Position):
         self.places = [self._places(i) for i in range(len(self.operators))]
 
     def _places(self, index: int) -> tuple[Places, Places]:
-        pairing, (first, second) = self.pairings[index], self.placed[index]
-        return Places.of(first, pairing.facet1, pairing.xi1), Places.of(second, pairing.facet2, pairing.xi2)
+        pairing, (first, second) = self.pairings[index], self._sides(index)
+        return self._on(first, pairing.facet1, pairing.xi1), self._on(second, pairing.facet2, pairing.xi2)
+
+    def _on(self, side: Side, facets: Ints, xi: Floats) -> Places:
+        surface, track = self.prepared[side[0]].surfaces[side[1]], self.wear.tracks.get(side)
+        if track is None:
+            return Places.of(surface, facets, xi)
+        return Places(track.hats(surface.positions(facets, xi[:, None])[:, 0]), track.areas)
 
     def as_seen(self, contact: int) -> ContactOperator:
         """With the depth that is gone between the surfaces, and what goes within the block."""
         operator, law, ahead = self.operators[contact], self.wear.laws[contact], self.wear.ahead
-        lost = np.zeros(len(operator.weights))
-        for places, side in zip(self.places[contact], self._sides(contact)):
+        lost, rate = np.zeros(len(operator.weights)), 0.0
+        for places, side, K in zip(self.places[contact], self._sides(contact), law.both):
             if side in self.wear.depths:
                 lost += places.at_points(self.wear.depths[side])
+            if side not in self.wear.tracks:
+                rate += K
         normals = operator.shape @ operator.frames[:, 0]
-        going = sum(law.both) * ahead * self._travelled(contact, operator.points, normals) if ahead else 0.0 * lost
+        going = rate * ahead * self._travelled(contact, operator.points, normals) if ahead else 0.0 * lost
         return operator.worn(lost, going)
 
     def _sides(self, contact: int) -> tuple[Side, Side]:
@@ -160,7 +154,7 @@ class _Wearing(Position):
 
 
 def added(laws: Sequence[Archard], problem: Problem, states: list[list[Rubbing]]) -> Depths:
-    """Depth per cycle [mm] on every side that wears."""
+    """Depth per cycle [mm] on every side that wears, at its nodes or over its track."""
     total: Depths = {}
     for contact, law, own in zip(problem.contacts, laws, states):
         for side, K, number in ((contact.first, law.first, 0), (contact.second, law.second, 1)):

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from meshes.data import Floats, Ints
 from meshes.parameters import GearPair
 from solver.gear_body import GearBody
+from wear.law import between
 
 SAME = 1e-6  # of a module: heights that are one layer
 EDGE = 0.1  # modules of arc: next to a tip edge that bears, its own or its mate's, the pressure is a matter of the mesh
@@ -83,7 +84,7 @@ class FlankGrid:
 
     def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
         """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""
-        (i, s), (j, t) = _between(self.arcs, u), _between(self.heights, z)
+        (i, s), (j, t) = between(self.arcs, u), between(self.heights, z)
         m, corners, values = len(self.arcs), [], []
         for row, along in ((j, 1.0 - t), (np.minimum(j + 1, len(self.heights) - 1), t)):
             for column, across in ((i, 1.0 - s), (np.minimum(i + 1, m - 1), s)):
@@ -96,7 +97,7 @@ class FlankGrid:
 
     def gathered(self, u: Floats, z: Floats, volumes: Floats) -> sp.csc_matrix:
         """(n, q) mean depths that take away volumes (q, e) at arcs (q, e) and heights (q,)."""
-        (i, s), (j, t) = _between(self.arcs, u), _between(self.heights, z)
+        (i, s), (j, t) = between(self.arcs, u), between(self.heights, z)
         first = i.min(axis=1, initial=len(self.arcs) - 1)
         width = int((i - first[:, None]).max(initial=0)) + 2  # of the arcs that a point's volumes lie between
         place = (i - first[:, None]) + width * np.arange(len(u))[:, None]
@@ -116,14 +117,6 @@ def _gentle(rows: Floats, x: Floats, slope: float) -> Floats:
     """Of values (k, n) at x (n,), row by row."""
     cone = slope * np.abs(x[:, None] - x)
     return np.array([(row + cone).min(axis=1) for row in rows])
-
-
-def _between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:
-    """Interval and place in it (0 to 1) of x in an ascending grid; clamped to its ends."""
-    if len(grid) == 1:
-        return np.zeros(len(x), dtype=np.int64), np.zeros(len(x))
-    i = np.clip(np.searchsorted(grid, x) - 1, 0, len(grid) - 2)
-    return i, np.clip((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)
 
 
 def _hat_lengths(x: Floats) -> Floats:

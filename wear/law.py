@@ -81,3 +81,11 @@ class Places:
     def volume(self, depth: Floats) -> float:
         """Σ m_k h_k [mm³; mm² in 2D]."""
         return float(self.areas @ depth)
+
+
+def between(grid: Floats, x: Floats) -> tuple[Ints, Floats]:
+    """Interval and place in it (0 to 1) of x in an ascending grid; clamped to its ends."""
+    if len(grid) == 1:
+        return np.zeros(len(x), dtype=np.int64), np.zeros(len(x))
+    i = np.clip(np.searchsorted(grid, x) - 1, 0, len(grid) - 2)
+    return i, np.clip((x - grid[i]) / (grid[i + 1] - grid[i]), 0.0, 1.0)

@@ -3,7 +3,8 @@
     study = WearStudy(problem, (Archard(first=1.4e-10),), Cycle((Step(),), (Travel(1, translation=(1e3, 0, 0)),)))
     for block in study.blocks(1000.0, BlockSettings(first=10.0)): ...
 
-In the example a cycle is 1 m of sliding.
+In the example a cycle is 1 m of sliding. A body that travels wears on its whole track (wear/track.py): its unknowns are
+depths over the track, those of all others are depths at nodes.
 """
 
 from __future__ import annotations
@@ -14,16 +15,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshes.data import Floats, MeshData
+from meshes.lattice import Mask
 from solver.body import Body
 from solver.position import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
-from solver.statement import Contact, Problem, Side
+from solver.statement import Contact, Placement, Problem, Side
 from solver.surface import Surface
 from wear.blocks import TOO_LONG, Block, BlockSettings, Evaluated, WearState, next_block, unworn
 from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
 from wear.law import Archard, certify_volume
-from wear.motion import Follow, WornSurface, certify_loss, smallest_edge, worn_mesh
+from wear.motion import Follow, MeshVolumeLost, WornSurface, certify_loss, smallest_edge, worn_mesh
+from wear.track import Track, track_of
 
 SHALLOW = 0.25
 """Of the shortest edge of the cells at a surface: a gap so deep changes no more of the body than the mesh resolves."""
@@ -60,7 +63,8 @@ class Geometry:
 
 
 class WearStudy:
-    """A problem that wears, cycle after cycle. laws: one a contact. Raises ValueError."""
+    """A problem that wears, cycle after cycle. laws: one a contact. tracks: of the sides that travel. Raises
+    ValueError."""
 
     def __init__(
         self, problem: Problem, laws: Sequence[Archard], cycle: Cycle, refresh: Refresh | None = None
@@ -71,25 +75,28 @@ class WearStudy:
         self.sides = _wearing_sides(problem, self.laws)
         if not self.sides:
             raise ValueError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
-        _refuse_tracks(self.sides, cycle, len(problem.bodies))
+        _known_bodies(cycle, len(problem.bodies))
         prepared = prepare(problem)
-        self._ends = np.cumsum([0] + [len(prepared[b].surfaces[g].points) for b, g in self.sides])
+        self.tracks = _tracks(self.sides, cycle, prepared)
+        self._ends = np.cumsum([0, *map(len, self._areas(prepared))])
         self.geometry = Geometry(problem, prepared, np.zeros(self._ends[-1]))
         self.refreshed, self._share = 0, SHALLOW
 
     def evaluate(self, depth: Floats, before: CycleState | None = None) -> CycleState:
-        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter blocks
-        do not help."""
+        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter
+        blocks do not help."""
         return self._solved(depth, 0.0)
 
     def implicit(self, depth: Floats, now: CycleState, length: float) -> tuple[Floats, CycleState]:
-        """A block with the contact law itself wearing, see `Wearable`. Only for cycles with travel."""
-        end = self._solved(depth, length)
-        return length * end.rate, end
+        """A block with the contact law itself wearing, see `Wearable`. Only for cycles with travel. Tracks wear at the
+        rate of the block's start."""
+        gained = np.where(self._on_track, length * now.rate, 0.0)
+        end = self._solved(depth + gained, length)
+        return np.where(self._on_track, gained, length * end.rate), end
 
     def _solved(self, depth: Floats, ahead: float) -> CycleState:
         own = self.geometry
-        worn = Worn(own.problem, self.laws, self.cycle, self.by_side(depth - own.known), ahead)
+        worn = Worn(own.problem, self.laws, self.cycle, self.by_side(depth - own.known), self.tracks, ahead)
         states = rubbings(worn, own.prepared)
         rates = added(self.laws, own.problem, states)
         rate = np.concatenate([rates[side] for side in self.sides])
@@ -134,17 +141,25 @@ class WearStudy:
         self.geometry, self.refreshed = Geometry(new, prepare(new), depth.copy()), self.refreshed + 1
 
     def _lost(self, body: int, depth: Floats) -> float:
-        """Σ m h of one body."""
-        pairs = zip(self.sides, self.by_side(self.areas * depth).values())
-        return float(sum(own.sum() for (index, _), own in pairs if index == body))
+        """Σ m h of one body's mesh."""
+        return sum(float(w.surface.weights() @ w.depth) for w in self._worn(body, self.by_side(depth)))
 
     @property
     def areas(self) -> Floats:
-        """(n,) of all nodes that wear [mm²; mm in 2D]."""
-        return np.concatenate([self.geometry.prepared[b].surfaces[g].weights() for b, g in self.sides])
+        """(n,) of all nodes that wear, and of the tracks [mm²; mm in 2D]."""
+        return np.concatenate(self._areas(self.geometry.prepared))
+
+    def _areas(self, prepared: tuple[PreparedBody, ...]) -> list[Floats]:
+        own = {side: prepared[side[0]].surfaces[side[1]] for side in self.sides}
+        return [self.tracks[s].areas if s in self.tracks else surface.weights() for s, surface in own.items()]
+
+    @property
+    def _on_track(self) -> Mask:
+        """(n,) which depths are those of a track."""
+        return np.repeat([side in self.tracks for side in self.sides], np.diff(self._ends))
 
     def by_side(self, depth: Floats) -> Depths:
-        """Depths (n,) as one array a side."""
+        """Depths (n,) as one array a side: at its nodes, or over the grid of its track."""
         return {side: depth[a:b] for side, a, b in zip(self.sides, self._ends, self._ends[1:])}
 
     def meshes(self, depth: Floats) -> tuple[MeshData, ...]:
@@ -190,13 +205,21 @@ class WearStudy:
         return self.geometry.prepared[side[0]].surfaces[side[1]]
 
     def _moved_body(self, index: int, body: Body, new: Depths) -> Body:
-        surfaces = self.geometry.prepared[index].surfaces
-        worn = [WornSurface(surfaces[group], new[b, group]) for b, group in self.sides if b == index]
+        worn = self._worn(index, new)
         if not worn:
             return body
         held = _resting(body)
         mesh = worn_mesh(body.mesh, worn, held, self.refresh.follow, self.refresh.least_quality)
         return replace(body, mesh=mesh)
+
+    def _worn(self, body: int, depths: Depths) -> list[WornSurface]:
+        """Surfaces of a body with depths at their nodes, where a track passes them those that it has there."""
+        found = []
+        for side in (side for side in self.sides if side[0] == body):
+            surface, depth = self.geometry.prepared[body].surfaces[side[1]], depths[side]
+            track = self.tracks.get(side)
+            found.append(WornSurface(surface, depth if track is None else track.hats(surface.points) @ depth))
+        return found
 
     def _volumes(self, rates: Depths) -> dict[Side, float]:
         return {side: float(own @ rates[side]) for side, own in self.by_side(self.areas).items()}
@@ -229,17 +252,24 @@ def _wearing_sides(problem: Problem, laws: Sequence[Archard]) -> tuple[Side, ...
     return tuple(dict.fromkeys(sides))
 
 
-def _refuse_tracks(sides: Sequence[Side], cycle: Cycle, bodies: int) -> None:
-    """Raises ValueError where a body travels that there is not, or that wears: it would wear on its whole track, not
-    where it is touched."""
+def _known_bodies(cycle: Cycle, bodies: int) -> None:
+    """Raises ValueError where a body travels that there is not."""
     for travel in cycle.travel:
         if not 0 <= travel.body < bodies:
             raise ValueError(f"wear: wanted travel of a body below {bodies}, found body {travel.body}")
-        if any(body == travel.body for body, _ in sides):
-            raise ValueError(
-                f"wear: wanted bodies that stay where they are, found body {travel.body}, which travels and wears; "
-                "give it no K/H, or let it go to and fro in the cycle's steps"
-            )
+
+
+def _tracks(sides: Sequence[Side], cycle: Cycle, prepared: tuple[PreparedBody, ...]) -> dict[Side, Track]:
+    """Of the sides whose bodies travel, as they stand in the last step. Raises ValueError."""
+    found, placements = {}, cycle.steps[-1].placements
+    for body, group in sides:
+        own = [travel for travel in cycle.travel if travel.body == body]
+        if len(own) > 1:
+            raise ValueError(f"wear of body {body}: wanted one travel of a body that wears, found {len(own)}")
+        if own:
+            where = placements[body] if placements else Placement.at_rest(prepared[body].assembled.d)
+            found[body, group] = track_of(prepared[body].surfaces[group], own[0].in_frame(where))
+    return found
 
 
 def _resting(body: Body) -> list[str]:

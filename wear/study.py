@@ -20,9 +20,10 @@ from solver.body import Body
 from solver.position import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
-from solver.statement import Contact, Placement, Problem, Side
+from solver.statement import Placement, Problem, Side
 from solver.surface import Surface
 from wear.blocks import TOO_LONG, Block, BlockSettings, Evaluated, WearState, next_block, unworn
+from wear.contact_scales import deformation, ripple_decay
 from wear.cycle import Cycle, Depths, Rubbing, Worn, added, rubbings
 from wear.law import Archard, certify_volume
 from wear.motion import Follow, MeshVolumeLost, WornSurface, certify_loss, smallest_edge, worn_mesh
@@ -101,7 +102,7 @@ class WearStudy:
         rates = added(self.laws, own.problem, states)
         rate = np.concatenate([rates[side] for side in self.sides])
         state = CycleState(
-            rate, self.areas, _deformation(own.problem, states), self._decay(states),
+            rate, self.areas, deformation(own.problem, states), self._decay(states),
             tuple(map(tuple, states)), self._volumes(rates), self._integrals(states),
         )  # fmt: skip
         _certify(state)
@@ -225,16 +226,9 @@ class WearStudy:
         return {side: float(own @ rates[side]) for side, own in self.by_side(self.areas).items()}
 
     def _decay(self, states: list[list[Rubbing]]) -> float:
-        """Cycles in which a ripple from node to node decays to 1/e: 1/(K/H πE*/ℓ s), ℓ two nodes, of the contact where
-        it does so fastest."""
-        fastest = 0.0
-        for contact, law, own in zip(self.geometry.problem.contacts, self.laws, states):
-            surfaces = [self._surface(side) for side in (contact.first, contact.second) if side in self.sides]
-            nodes = [float(np.median(s.weights())) ** (1.0 / (s.points.shape[1] - 1)) for s in surfaces]
-            slid = sum(float(state.sliding[state.result.pressure > 0.0].max(initial=0.0)) for state in own)
-            stiff = np.pi * _modulus(self.geometry.problem, contact) / (2.0 * min(nodes, default=np.inf))
-            fastest = max(fastest, sum(law.both) * slid * stiff)
-        return 1.0 / fastest if fastest else np.inf
+        """See `ripple_decay`; of the sides that stay in place: a track is under the contact for a part of the time."""
+        staying = {side: self._surface(side) for side in self.sides if side not in self.tracks}
+        return ripple_decay(self.geometry.problem, self.laws, states, staying)
 
     def _integrals(self, states: list[list[Rubbing]]) -> dict[Side, float]:
         total = dict.fromkeys(self.sides, 0.0)
@@ -277,26 +271,6 @@ def _resting(body: Body) -> list[str]:
     rigid = [body.rigid.group] if body.rigid else []
     fixed = [s.group for s in body.supports if set(s.directions) >= set("xyz"[: body.mesh.dimension])]
     return [*{*fixed, *(t.group for t in body.loads), *rigid}]
-
-
-def _deformation(problem: Problem, states: list[list[Rubbing]]) -> float:
-    """Largest p̄ ℓ/E* [mm] of all contacts, p̄ the mean pressure on the pressed length or area ℓ or ℓ²: what an elastic
-    half-space gives way, π/2 times b²/2R under a Hertzian line."""
-    found = 0.0
-    for contact, own in zip(problem.contacts, states):
-        modulus = _modulus(problem, contact)
-        for result in (state.result for state in own):
-            pressed = float(result.weights[result.pressure > 0.0].sum())
-            length = pressed ** (1.0 / (result.points.shape[1] - 1))
-            mean = float(result.weights @ result.pressure) / pressed if pressed else 0.0
-            found = max(found, mean * length / modulus)
-    return found
-
-
-def _modulus(problem: Problem, contact: Contact) -> float:
-    """E* [MPa] of a contact's two materials."""
-    one, other = (problem.bodies[index].material for index, _ in (contact.first, contact.second))
-    return 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
 
 
 def _certify(state: CycleState) -> None:

@@ -81,8 +81,8 @@ class WearStudy:
         self.refreshed, self._share = 0, SHALLOW
 
     def evaluate(self, depth: Floats, before: CycleState | None = None) -> CycleState:
-        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter blocks
-        do not help."""
+        """One cycle at depths (n,), its volume certified, see `Wearable`. Raises VolumeLost as well, which shorter
+        blocks do not help."""
         return self._solved(depth, 0.0)
 
     def implicit(self, depth: Floats, now: CycleState, length: float) -> tuple[Floats, CycleState]:

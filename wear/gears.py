@@ -13,30 +13,26 @@ from functools import partial
 import numpy as np
 import scipy.sparse as sp
 from mpi4py import MPI
-from scipy.sparse.linalg import LinearOperator, gmres
 
-from meshes.data import Floats, Ints, MeshData
-from solver.equilibrium import normal_part
+from meshes.data import Floats, MeshData
 from solver.gear_model import GearModel
 from solver.gear_position import (
     ContactPoints,
     PositionResult,
     SearchedAt,
     SharedPosition,
-    contact_points,
     searched_at,
     shared_position,
     worn_on,
 )  # fmt: skip
 from solver.gear_sweep import Pitch, SweepState, initial_state, sweep_pitch
 from solver.newton import NotConverged
-from solver.newton_steps import RELATIVE
 from solver.parallel import together
-from solver.pressure_response import PressureResponse
 from solver.rank_sweep import division
 from solver.scene import GEARS
 from wear.blocks import TOO_LONG, Evaluated
 from wear.flank_grid import FlankGrid, line_arc
+from wear.gear_block import LinearBlock, Response
 from wear.law import Archard, certify_volume
 from wear.motion import WornSurface, certify_loss, worn_mesh
 from wear.passage import Passage, passage
@@ -45,10 +41,7 @@ HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
 """Groups of a sector that stay when its mesh follows the wear; end faces, which are plane, slide in themselves."""
 SLOPE = 0.01
 """Of the depth over the flank that a mesh follows: half a degree. Steeper is a tip edge's doing, narrow as a cell."""
-KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
-LEAVINGS = 6  # times at most points are let go that would pull at a block's end
 PUT_ON = 1e-7  # of a block's volume may be left out: depths below zero, a tenth of what its certificate allows
-PULL = 1e-3  # of the largest pressure: less is left to the next block
 
 
 @dataclass(frozen=True)
@@ -63,32 +56,6 @@ class PitchState(Evaluated):
     searched: int
     refreshed: int
     passage: Passage | None
-
-
-class Response:
-    """How the pressures at a position's pressed points follow when the gap opens there: ∂λ = `released` + R ∂g.
-    leaving: (p,) bool, the points that lose their pressure, which is what `released` follows."""
-
-    def __init__(self, shared: SharedPosition, leaving: np.ndarray | None = None) -> None:
-        """In the frictionless state."""
-        system, pressure = shared.system, shared.smooth.traction
-        self._shared, self._pressed, self._size = shared, np.flatnonzero(pressure[:, 0] > 0.0), len(pressure)
-        self.points = contact_points(shared.contact, pressure, 0.0)
-        gone = np.zeros(self._size, dtype=bool)
-        gone[self._pressed] = False if leaving is None else leaving
-        normal = system if system.k == 1 else normal_part(system)
-        self._whole = PressureResponse(normal, shared.smooth, gone)
-        self.leaving, self.released = gone[self._pressed], self._whole.released[self._pressed]
-
-    def __call__(self, opening: Floats) -> Floats:
-        """R ∂g (p,) [MPa] of ∂g (p,) [mm]."""
-        whole = np.zeros(self._size)
-        whole[self._pressed] = opening
-        return self._whole(whole)[self._pressed]
-
-    def without(self, pulled: np.ndarray) -> Response:
-        """The same when those of the p points leave the contact as well."""
-        return Response(self._shared, self.leaving | pulled) if pulled.any() else self
 
 
 @dataclass(frozen=True)
@@ -192,16 +159,9 @@ class GearWear:
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
         responses = together(self._comm, lambda: [Response(shared) for shared in counted])
         found = now.passage or self._passage([r.points for r in responses])
-        right = gained = length * now.rate
         openings = [self._opened(r.points) for r in responses]
-        for _ in range(LEAVINGS):
-            gained, more = self._linearised(right, gained, length, found, responses, openings)
-            pulled = np.split(found.pressure + more < -PULL * found.pressure.max(initial=0.0), _ends(responses))
-            if not self._comm.allreduce(sum(int(own.sum()) for own in pulled)):
-                break
-            responses = together(self._comm, partial(_without, responses, pulled))
-        more = np.maximum(more, -found.pressure)
-        gained = right + length * self._rate(found, more)  # once more: exactly what these pressures wear off
+        block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
+        gained, more = block.solved(responses, self._comm)
         # with friction a point that leaves may have pressed less than without it
         gone, put = np.maximum(gained, 0.0), np.maximum(-gained, 0.0)
         if not float(self.areas @ put) <= PUT_ON * float(self.areas @ gone):
@@ -220,25 +180,6 @@ class GearWear:
         except TOO_LONG:
             self.model, self.known, self.refreshed = before
             raise
-
-    def _linearised(
-        self, right: Floats, start: Floats, length: float, found: Passage, responses: Sequence[Response],
-        openings: Sequence[sp.csr_matrix],
-    ) -> tuple[Floats, Floats]:  # fmt: skip
-        """Δh (n,) = right + ΔN r(∂λ), and this rank's ∂λ (q,). Raises NotConverged."""
-
-        def follow(h: Floats) -> Floats:
-            return np.concatenate([r(opened @ h) for r, opened in zip(responses, openings)] or [np.zeros(0)])
-
-        def slope(h: Floats) -> Floats:
-            return h - length * self._rate(found, follow(h))
-
-        released = np.concatenate([r.released for r in responses] or [np.zeros(0)])
-        size, known = (len(right), len(right)), right + length * self._rate(found, released)
-        solved, failed = gmres(LinearOperator(size, slope), known, x0=start, atol=0.0, **{RELATIVE: KRYLOV})
-        if failed:
-            raise NotConverged("a block of wear: its equations were not solved; take a shorter one")
-        return solved, released + follow(solved)
 
     def _worn(self, depth: Floats) -> GearModel:
         pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth - self.known)))
@@ -321,18 +262,12 @@ class GearWear:
         own = [K * n * (D @ pressure) for K, n, D in zip(self.law.both, self._often, found.depths)]
         return np.asarray(np.sum(self._comm.allgather(np.concatenate(own)), axis=0))
 
+    def _worn_in(self, length: float, found: Passage, pressure: Floats) -> Floats:
+        """Depths (n,) of so many cycles."""
+        return length * self._rate(found, pressure)
+
     def _opened(self, points: ContactPoints) -> sp.csr_matrix:
         """(q, n) by how much depths open the gap at points."""
         places = enumerate((points.across, points.opposite))
         arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
         return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()
-
-
-def _ends(responses: Sequence[Response]) -> Ints:
-    """Where the points of each but the last end in the list of all."""
-    return np.cumsum([len(r.leaving) for r in responses])[:-1]
-
-
-def _without(responses: Sequence[Response], pulled: Sequence[np.ndarray]) -> list[Response]:
-    """The same when the points that pull have left the contact."""
-    return [response.without(own) for response, own in zip(responses, pulled)]

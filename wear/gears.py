@@ -216,13 +216,15 @@ class GearWear:
 
     def _decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
         """Cycles in which a ripple of two nodes along the profile decays to 1/e where flanks wear fastest: 1/(K/H
-        πE*/ℓ s), the sliding distance s of a passage being that of the rate (K/H) p̄ s."""
+        πE*/ℓ s), the sliding distance s of a passage being that of the rate (K/H) p̄ s. Between the tip-edge zones: the
+        pits of edges are as deep as the mesh makes them."""
         contacts = [position.contact for position in positions]
         pressure, weights = (np.concatenate([getattr(c, name) for c in contacts]) for name in ("pressure", "weights"))
         mean = float(weights @ pressure**2) / float(weights @ pressure)
         ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
         modulus = 1.0 / sum(1.0 / body.material.plane_modulus for body in self.model.bodies)
-        fastest = sum(float(own.max(initial=0.0)) for own in self.by_gear(rate))
+        inner = [grid.inner(self.model.pair, gear) for gear, grid in enumerate(self.grids)]
+        fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
         return mean * ripple / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
 
     def _certify(self, depth: Floats, work: float) -> None:

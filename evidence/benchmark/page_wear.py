@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from evidence.benchmark.figures import column
@@ -66,8 +67,11 @@ def precision(rows: Sequence[WearPrecisionRow]) -> Figure:
             own = [row for row in rows if row.method == name]
             x, y = 100.0 * column(own, "error"), column(own, "seconds")
             axes.loglog(x, y, "o-", color=colour, label=name)
-            for row, at, height in zip(own, x, y):
-                axes.annotate(f"{row.tolerance:g}", (at, height), textcoords="offset points", xytext=(4, 5), fontsize=8)
+            for at in np.unique(x.round(2)):  # where stability makes blocks short, all tolerances are one point
+                these = np.flatnonzero(x.round(2) == at)
+                text = ", ".join(f"{own[k].tolerance:g}" for k in these)
+                place = x[these[0]], y[these].max()
+                axes.annotate(text, place, textcoords="offset points", xytext=(4, 6), fontsize=8)
         axes.set(xlabel="error of the depths [%]", ylabel="CPU time of the study [s]")
         axes.legend()
     return figure

@@ -92,8 +92,10 @@ class Start:
 
 
 def normal_part(system: CondensedSystem) -> CondensedSystem:
-    """The frictionless system: normal components only."""
+    """The frictionless system: normal components only; the system itself where it has no others."""
     k = system.k
+    if k == 1:
+        return system
     A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS takes no product with every third column
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 

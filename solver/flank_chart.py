@@ -97,14 +97,18 @@ class FlankChart:
             )
         return self
 
+    def arcs(self, gear: GearParameters) -> Floats:
+        """Involute's length (k,) [mm] from a gear's base circle to the diameters."""
+        return np.maximum(self.diameters**2 / 4.0 - gear.base_radius**2, 0.0) / (2.0 * gear.base_radius)
+
     def at(self, gear: GearParameters, roll_length: Floats, z: Floats) -> Floats:
         """Depth (n,) [mm] at roll lengths √(r² − r_b²) and heights (n,) of a gear."""
-        arc = np.maximum(self.diameters**2 / 4.0 - gear.base_radius**2, 0.0)
-        s = np.clip(roll_length**2, arc[0], arc[-1])
+        arcs = self.arcs(gear)
+        s = np.clip(roll_length**2 / (2.0 * gear.base_radius), arcs[0], arcs[-1])
         if len(self.heights) == 1:
-            return np.interp(s, arc, self.depth[:, 0])
+            return np.interp(s, arcs, self.depth[:, 0])
         t = np.clip(z, self.heights[0], self.heights[-1])
-        return np.asarray(RegularGridInterpolator((arc, self.heights), self.depth)(np.column_stack([s, t])))
+        return np.asarray(RegularGridInterpolator((arcs, self.heights), self.depth)(np.column_stack([s, t])))
 
     def text(self) -> str:
         """As a CSV file that `read` gives back: diameters to 1e-9 mm, depths to 1e-9 µm."""

@@ -165,7 +165,7 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
-        smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, before))
+        smooth = frictionless(normal_part(system), _foreseen(contact, before))
         shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
         if contact.too_deep:
             raise NotConverged(
@@ -191,7 +191,7 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
     contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
     normal_only = not any(map(model.has_friction_terms, frictions))
     system = contact.system(model.load.on, model.load.torque, normal_only)
-    smooth = frictionless(system if normal_only else normal_part(system), _foreseen(contact, None))
+    smooth = frictionless(normal_part(system), _foreseen(contact, None))
     return SharedPosition(contact, system, smooth, unwatched(contact, model.teeth))
 
 
@@ -202,15 +202,15 @@ def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
     return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
 
 
-def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray) -> SharedPosition | None:
+def worn_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
     """The same position after the model's flanks have worn on: search and compliance stay, the gap and the frictionless
-    state are new. pressed: (q,) bool, the points that are thought to touch then. None where the gears have moved so
-    far, or the contact so near to the window's rim, that the position has to be searched again, or where no solution is
-    found."""
+    state are new. None where the gears have moved so far, or the contact so near to the window's rim, that the position
+    has to be searched again, or where no solution is found."""
     contact = shared.contact.on(model.bodies)
     system = replace(shared.system, operator=contact.operator)
+    pressed = shared.smooth.traction[:, 0] > 0.0
     try:
-        smooth = frictionless(system if system.k == 1 else normal_part(system), pressed if pressed.any() else None)
+        smooth = frictionless(normal_part(system), pressed if pressed.any() else None)
     except NotConverged:
         return None
     shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius

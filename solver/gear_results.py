@@ -9,7 +9,7 @@ import numpy as np
 
 from meshes.data import Floats
 from solver.gear_position import PositionResult
-from solver.material import Material
+from solver.material import Material, joint_modulus
 
 FEWEST = 5  # points under pressure that a fit of a half-ellipse needs
 
@@ -52,7 +52,7 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
     edges = layer_edges(heights)
     c = result.contact
     layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, len(edges) - 2)
-    modulus = 1.0 / sum(1.0 / material.plane_modulus for material in materials)
+    modulus = joint_modulus(*materials)
     keys = np.unique(np.column_stack([c.tooth, layer]), axis=0)
     rows = [_slice(result, (c.tooth == t) & (layer == k), edges[k : k + 2], modulus) for t, k in keys]
     columns = list(zip(*rows)) if rows else [()] * 9

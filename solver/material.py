@@ -37,6 +37,11 @@ class Material:
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
 
+def joint_modulus(one: Material, other: Material) -> float:
+    """E* [MPa] of two bodies in contact, 1/E* = Σ (1−ν²)/E."""
+    return 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
+
+
 STEEL = Material()
 
 

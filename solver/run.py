@@ -103,7 +103,7 @@ def _solved(
     for position in sweep_on_ranks(
         preparation.model, pitch_of(scene), frictions, start.state, comm, start.complete
     ):
-        certify(position)
+        certify(position.results)
         yield position
 
 

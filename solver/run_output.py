@@ -20,7 +20,6 @@ from solver.fields import write_fields
 from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
-from solver.gear_sweep import SweptPosition
 from solver.results import MeshFacts, RunFacts, Timings, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_start import Meshes, keep_scene
@@ -105,9 +104,9 @@ def _cells_across(data: RunData) -> float:
     return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
 
 
-def certify(position: SweptPosition) -> None:
-    """Raises BalanceError where the forces of a position do not balance, or its teeth store too much."""
-    for result in position.results:
+def certify(results: Iterable[PositionResult]) -> None:
+    """Raises BalanceError where the forces of one of the positions do not balance, or its teeth store too much."""
+    for result in results:
         error = balance_error(result)
         if not error <= STORED_LIMIT:
             raise BalanceError(

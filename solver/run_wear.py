@@ -14,7 +14,7 @@ from mpi4py import MPI
 from meshes.data import MeshData
 from solver.archive import Archive
 from solver.gear_model import GearModel, prepare_model
-from solver.gear_sweep import SweepState, SweptPosition, uniform_pitch
+from solver.gear_sweep import uniform_pitch
 from solver.parallel import on_first
 from solver.progress import Progress
 from solver.results import Timings, write_tables
@@ -104,8 +104,7 @@ def following_of(scene: Scene, comm: MPI.Comm) -> Following:
 
 def certify_positions(state: PitchState) -> None:
     """What a run asks of a pitch. Raises BalanceError; the volume is certified where it is found."""
-    for result in state.positions:
-        certify(SweptPosition(result.stand.angle, False, (result,), SweepState(result.stand.extra, ())))
+    certify(state.positions)
     certify_pitch([result] for result in state.positions)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from solver.material import joint_modulus
 from solver.statement import Contact, Problem, Side
 from solver.surface import Surface
 from wear.cycle import Rubbing
@@ -43,5 +44,4 @@ def ripple_decay(
 
 def _modulus(problem: Problem, contact: Contact) -> float:
     """E* [MPa] of a contact's two materials."""
-    one, other = (problem.bodies[index].material for index, _ in (contact.first, contact.second))
-    return 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
+    return joint_modulus(*(problem.bodies[index].material for index, _ in (contact.first, contact.second)))

@@ -16,8 +16,8 @@ from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from meshes.data import Floats, Ints
-from solver.equilibrium import normal_part
-from solver.gear_position import SharedPosition, contact_points
+from solver.equilibrium import CondensedSystem, Equilibrium, normal_part
+from solver.gear_position import ContactPoints, SharedPosition, contact_points
 from solver.newton import NotConverged
 from solver.newton_steps import RELATIVE
 from solver.parallel import together
@@ -29,29 +29,39 @@ PULL = 1e-3  # of the largest pressure: less is left to the next block
 
 
 class Response:
-    """How the pressures at a position's pressed points follow when the gap opens there: ∂λ = `released` + R ∂g.
-    leaving: (p,) bool, the points that lose their pressure, which is what `released` follows."""
+    """How the pressures at a position's p pressed points follow when the gap opens there: ∂λ = `released` + R ∂g.
 
-    def __init__(self, shared: SharedPosition, leaving: np.ndarray | None = None) -> None:
-        """In the frictionless state."""
-        system, pressure = shared.system, shared.smooth.traction
-        self._shared, self._pressed, self._size = shared, np.flatnonzero(pressure[:, 0] > 0.0), len(pressure)
-        self.points = contact_points(shared.contact, pressure, 0.0)
-        gone = np.zeros(self._size, dtype=bool)
-        gone[self._pressed] = False if leaving is None else leaving
-        normal = system if system.k == 1 else normal_part(system)
-        self._whole = PressureResponse(normal, shared.smooth, gone)
-        self.leaving, self.released = gone[self._pressed], self._whole.released[self._pressed]
+    points: those. leaving: (p,) bool, which of them lose their pressure; that is what `released` follows.
+    """
+
+    def __init__(self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, leaving: np.ndarray) -> None:
+        """About a state of a frictionless system."""
+        self._normal, self._state, self.points, self.leaving = normal, state, points, leaving
+        self._pressed = np.flatnonzero(state.traction[:, 0] > 0.0)
+        self._whole = PressureResponse(normal, state, self._everywhere(leaving))
+        self.released = self._whole.released[self._pressed]
+
+    @staticmethod
+    def of(shared: SharedPosition) -> Response:
+        """Of a position's frictionless state, in which all pressed points stay."""
+        points = contact_points(shared.contact, shared.smooth.traction, 0.0)
+        return Response(normal_part(shared.system), shared.smooth, points, np.zeros(len(points.weights), dtype=bool))
 
     def __call__(self, opening: Floats) -> Floats:
         """R ∂g (p,) [MPa] of ∂g (p,) [mm]."""
-        whole = np.zeros(self._size)
-        whole[self._pressed] = opening
-        return self._whole(whole)[self._pressed]
+        return self._whole(self._everywhere(opening))[self._pressed]
 
     def without(self, pulled: np.ndarray) -> Response:
         """The same when those of the p points leave the contact as well."""
-        return Response(self._shared, self.leaving | pulled) if pulled.any() else self
+        if not pulled.any():
+            return self
+        return Response(self._normal, self._state, self.points, self.leaving | pulled)
+
+    def _everywhere(self, values: Floats | np.ndarray) -> np.ndarray:
+        """(q,) of values (p,) at the pressed points, nothing elsewhere."""
+        whole = np.zeros(len(self._state.traction), dtype=values.dtype)
+        whole[self._pressed] = values
+        return whole
 
 
 @dataclass(frozen=True)

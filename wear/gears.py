@@ -26,6 +26,7 @@ from solver.gear_position import (
     worn_on,
 )  # fmt: skip
 from solver.gear_sweep import Pitch, SweepState, initial_state, sweep_pitch
+from solver.material import joint_modulus
 from solver.newton import NotConverged
 from solver.parallel import together
 from solver.rank_sweep import division
@@ -157,7 +158,7 @@ class GearWear:
         if now.refreshed != self.refreshed:
             raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
-        responses = together(self._comm, lambda: [Response(shared) for shared in counted])
+        responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
         found = now.passage or self._passage([r.points for r in responses])
         openings = [self._opened(r.points) for r in responses]
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
@@ -191,7 +192,7 @@ class GearWear:
         searched = 0
         for i, k in enumerate(self._own):
             old = kept[i] if kept else None
-            shared = worn_on(model, old, old.smooth.traction[:, 0] > 0.0) if old is not None else None
+            shared = worn_on(model, old) if old is not None else None
             if shared is None:
                 near = old or (found[-1] if found else None)  # where the gears stood in the cycle before
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
@@ -222,7 +223,7 @@ class GearWear:
         pressure, weights = (np.concatenate([getattr(c, name) for c in contacts]) for name in ("pressure", "weights"))
         mean = float(weights @ pressure**2) / float(weights @ pressure)
         ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
-        modulus = 1.0 / sum(1.0 / body.material.plane_modulus for body in self.model.bodies)
+        modulus = joint_modulus(*(body.material for body in self.model.bodies))
         inner = [grid.inner(self.model.pair, gear) for gear, grid in enumerate(self.grids)]
         fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
         return mean * ripple / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf

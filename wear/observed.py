@@ -20,6 +20,7 @@ from meshes.parameters import GearPair
 from solver.engagement import engagement
 from solver.gear_position import ContactPoints
 from solver.hertz import line_half_width, line_peak_pressure
+from solver.material import joint_modulus
 from solver.run_data import RunData
 from wear.flank_grid import FlankGrid, line_arc
 from wear.passage import passage
@@ -111,7 +112,7 @@ class Depths:
         radius = pair.worn[gear].diameters[inner] / 2.0
         ξ = roll_distance_at(run.pair, gear, radius)
         load, ζ = line_load(run, ξ), np.abs(run.pair.specific_sliding(ξ)[gear])
-        R, modulus = run.pair.relative_curvature_radius(ξ), contact_modulus_of(run)
+        R, modulus = run.pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
         product = line_peak_pressure(load, R, modulus) * 2.0 * line_half_width(load, R, modulus) * ζ
         own = coefficient * gathered(pair)[gear][inner]
         return Depths(radius, own, coefficient * load * ζ, coefficient * product)
@@ -130,20 +131,14 @@ def gathered(pair: WornPair) -> tuple[Floats, Floats]:
 def chart_grid(pair: WornPair, gear: int) -> FlankGrid:
     """The nodes of a gear's chart."""
     own, chart = pair.run.pair.gears[gear], pair.worn[gear]
-    arcs = (chart.diameters**2 / 4.0 - own.base_radius**2) / (2.0 * own.base_radius)
-    return FlankGrid.regular(arcs, chart.heights, own.base_helix_angle)
-
-
-def contact_modulus_of(run: RunData) -> float:
-    """E* [MPa] of a run's materials."""
-    return 1.0 / sum(1.0 / material.plane_modulus for material in run.scene.materials())
+    return FlankGrid.regular(chart.arcs(own), chart.heights, own.base_helix_angle)
 
 
 def pitch_point_depth(run: RunData, gear: int, coefficient: float) -> float:
     """Depth [mm] a mesh at the pitch point of a gear, where the line contact's formula has none: a Hertz ridge of the
     load there passes while the sliding goes through zero, (K/H)(1 + 1/u)(r_b²/r_b1 ρ²)·⅔ p0 b², K/H [mm²/N]."""
     pair, zero = run.pair, np.zeros(1)
-    load, R, modulus = line_load(run, zero), pair.relative_curvature_radius(zero), contact_modulus_of(run)
+    load, R, modulus = line_load(run, zero), pair.relative_curvature_radius(zero), joint_modulus(*run.scene.materials())
     p0, b = line_peak_pressure(load, R, modulus), line_half_width(load, R, modulus)
     lever = (pair.gears[gear].base_radius / pair.pitch_point_roll_lengths[gear]) ** 2 / pair.pinion.base_radius
     return float(coefficient * (1.0 + 1.0 / pair.ratio) * lever * 2.0 / 3.0 * p0[0] * b[0] ** 2)
@@ -166,7 +161,7 @@ class PointPassage:
         the rotation at equal distance from the contact line, as wear is gathered."""
         pair, base = run.pair, run.pair.pinion.base_radius
         ξ = roll_distance_at(pair, 0, radius)
-        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), contact_modulus_of(run)
+        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
         b = float(line_half_width(load, R, modulus))
         lasts = b / (pair.pitch_point_roll_lengths[0] + float(ξ))  # half of it; the line moves by ρ over the flank
         rotation = float(ξ) / base + WIDER * lasts * np.linspace(-1.0, 1.0, count)

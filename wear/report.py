@@ -58,10 +58,9 @@ class WornPair:
 
     def inner(self, gear: int) -> np.ndarray:
         """(k,) bool: the chart's diameters between the tip-edge zones, where pressure is singular and so is wear."""
-        base, chart = self.run.pair.gears[gear].base_radius, self.worn[gear]
         low, high = inner_arcs(self.run.pair, gear)
-        arc = (chart.diameters**2 / 4.0 - base**2) / (2.0 * base)
-        return np.asarray((arc >= low) & (arc <= high))
+        arcs = self.worn[gear].arcs(self.run.pair.gears[gear])
+        return np.asarray((arcs >= low) & (arcs <= high))
 
     def profile(self, gear: int) -> tuple[Floats, Floats]:
         """Diameters [mm] between the tip-edge zones, and wear [µm] there, mean over the face."""

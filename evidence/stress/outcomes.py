@@ -92,7 +92,7 @@ def _out_of_balance(swept: list[SweptPosition]) -> str:
     """Why a run would refuse these positions of a pitch; empty where it would not."""
     try:
         for position in swept:
-            certify(position)
+            certify(position.results)
         certify_pitch(position.results for position in swept)
     except BalanceError as error:
         return str(error)

@@ -56,7 +56,8 @@ TOLERANCES = 0.2, 0.1, 0.05, 0.02, 0.01
 
 @dataclass(frozen=True)
 class WearCostRow:
-    """CPU seconds: preparing both gears, a sweep of the unworn pair (median of SWEEPS), BLOCKS blocks with their own first sweep."""
+    """CPU seconds: preparing both gears, a sweep of the unworn pair (median of SWEEPS), BLOCKS blocks with
+    their own first sweep."""
 
     case: str
     dofs: int

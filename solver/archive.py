@@ -158,7 +158,13 @@ class Archive:
 
     def _position(self, index: int, pair: GearPair) -> SweptPosition:
         arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
-        results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+        try:
+            results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+        except KeyError as missing:
+            raise ArchiveError(
+                f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; run the "
+                "scene again, without --resume"
+            ) from missing
         return SweptPosition(float(arrays["angle"]), bool(arrays["warm_up"]), results, SweepState((0.0, 0.0), ()))
 
 

@@ -42,8 +42,9 @@ class ContactPoints:
     tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
     contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
     [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
-    per radian of pinion rotation, local [mm/rad]. sticks, edge: (q,) bool; edge: in the last row of facets before a tip
-    edge.
+    per radian of pinion rotation, local [mm/rad]; elastic: (q,) what deflection adds along the tangent in which it
+    grows with ξ, where a study asks for that (wear/elastic_sliding.py), else 0. sticks, edge: (q,) bool; edge: in the
+    last row of facets before a tip edge.
     """
 
     tooth: Ints
@@ -54,6 +55,7 @@ class ContactPoints:
     weights: Floats
     traction: Floats
     rate: Floats
+    elastic: Floats
     sticks: np.ndarray
     edge: np.ndarray
 
@@ -202,15 +204,16 @@ def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
     return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
 
 
-def worn_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
+def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None = None) -> SharedPosition | None:
     """The same position after the model's flanks have worn on: search and compliance stay, the gap and the frictionless
-    state are new. None where the gears have moved so far, or the contact so near to the window's rim, that the position
-    has to be searched again, or where no solution is found."""
+    state are new. pressed: (q,) bool, points to start from, by default those that were. None where the gears have moved
+    so far, or the contact so near to the window's rim, that the position has to be searched again, or where no solution
+    is found."""
     contact = shared.contact.on(model.bodies)
     system = replace(shared.system, operator=contact.operator)
-    pressed = shared.smooth.traction[:, 0] > 0.0
+    start = shared.smooth.traction[:, 0] > 0.0 if pressed is None else pressed
     try:
-        smooth = frictionless(normal_part(system), pressed if pressed.any() else None)
+        smooth = frictionless(normal_part(system), start if start.any() else None)
     except NotConverged:
         return None
     shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
@@ -306,6 +309,7 @@ def contact_points(contact: GearContact, traction: Floats, friction: float) -> C
         weights=contact.operator.weights[pressed],
         traction=t,
         rate=shape @ relative_velocity(contact),
+        elastic=np.zeros(len(pressed)),
         sticks=size < bound * (1.0 - 1e-9),
         edge=contact.at_edge[pressed],
     )

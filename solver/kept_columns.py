@@ -39,7 +39,8 @@ class KeptColumns:
         return KeptColumns(columns, M[:, columns], A[columns], H)
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) from right, both (m + r,). Raises NotConverged where the system is singular to double precision."""
+        """(f, δ) from right, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular to double
+        precision."""
         b, load = np.split(right, [len(self.H)])
         known = np.concatenate([self.A @ b, (load - self.H.T @ b) / self._balance])
         z, motion = np.split(lu_solve(self._factor, known, check_finite=False), [len(self.columns)])

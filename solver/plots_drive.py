@@ -68,8 +68,11 @@ def transmission_error(run: RunData) -> Figure:
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     see = f"Peak to peak {sizes[low]} µm at μ = {run.frictions[low]:g}"
     see += f", {sizes[high]} µm at μ = {run.frictions[high]:g}" if low != high else ""
-    stiffness = plus_minus(rows[low].mesh_stiffness_N_per_mm_um, run.errors.bar("mesh_stiffness_N_per_mm_um", low), 1)
-    see += f"; mean mesh stiffness {stiffness} N/(mm·µm)."
+    stiffness = rows[low].mesh_stiffness_N_per_mm_um
+    if np.isfinite(stiffness):
+        bar = run.errors.bar("mesh_stiffness_N_per_mm_um", low)
+        see += f"; mean mesh stiffness {plus_minus(stiffness, bar, 1)} N/(mm·µm)"
+    see += "."
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
     for index, colour in enumerate(friction_colours(run.frictions)):

@@ -32,13 +32,14 @@ class PressureResponse:
         self.released = self._slope * (operator.shape @ self._jump(operator.weights * lost)) - lost
 
     def __call__(self, opening: Floats) -> Floats:
-        """∂λ (q,) [MPa] of ∂g (q,) [mm]."""
-        jump = self._jump(self._system.operator.weights * self._slope * opening)
-        return np.asarray(self._slope * (self._system.operator.shape @ jump - opening))
+        """∂λ (q,) or (q, c) [MPa] of ∂g (q,) or (q, c) [mm]."""
+        operator, slope = self._system.operator, self._slope.reshape(-1, *[1] * (opening.ndim - 1))
+        jump = self._jump(operator.weights.reshape(slope.shape) * slope * opening)
+        return np.asarray(slope * (operator.shape @ jump - opening))
 
     def _jump(self, less: Floats) -> Floats:
-        """∂J (n,) when the points push less (q,) [N] at the same jump."""
-        n = len(self._system.jump)
+        """∂J (n, ...) when the points push less (q, ...) [N] at the same jump."""
+        n, r = self._system.motion.shape
         pushed = self._system.operator.shape.T @ less
-        found = self._inverse.solve(np.concatenate([-pushed, np.zeros(self._system.motion.shape[1])]))
+        found = self._inverse.solve(np.concatenate([-pushed, np.zeros((r, *pushed.shape[1:]))]))
         return np.asarray(self._system.motion @ found[n:] - self._system.compliance @ found[:n])

@@ -22,6 +22,7 @@ from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
 from solver.run_data import RunData, SolvedPosition
+from solver.scene import GEARS
 from solver.skips import Skipped
 
 
@@ -102,8 +103,9 @@ class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
     crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
     mesh_stiffness_N_per_mm_um: mean of the tangential force at the base circle over face width and transmission error
-    (a secant: modifications of the flanks soften it). balance_error: of the pitch's energy, over the input; what
-    positions store in deflected teeth cancels out. estimated_error: None where there is none."""
+    (a secant: modifications of the flanks soften it; NaN, null in JSON, where flanks are charted). balance_error: of
+    the pitch's energy, over the input; what positions store in deflected teeth cancels out. estimated_error: None where
+    there is none."""
 
     friction: float
     max_pressure_MPa: float
@@ -179,7 +181,10 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
 
 
 def mesh_stiffness(run: RunData, index: int) -> Floats:
-    """T_1/(r_b1 b) over the transmission error at each position (k,) [N/(mm·µm)]; c_γ of ISO 6336-1 is their mean."""
+    """T_1/(r_b1 b) over the transmission error at each position (k,) [N/(mm·µm)]; c_γ of ISO 6336-1 is their mean. NaN
+    where a flank has a chart: what is worn off it is part of the transmission error, and gives way to nothing."""
+    if any(getattr(run.scene, name).flank_csv is not None for name in GEARS):
+        return np.full(len(run.positions), np.nan)
     results = [each[index].result for each in run.positions]
     force = np.array([result.torques[0] for result in results]) / run.pair.pinion.base_radius
     error = 1e3 * np.array([result.transmission_error for result in results])

@@ -13,6 +13,7 @@ from conftest import Run
 from gear_cases import spur_scene
 
 from solver.archive import Archive, ArchiveError, fingerprint, read_arrays, write_arrays
+from solver.scene import load_scene
 
 SCENE = "demos/he2022.toml"
 SETTINGS = (
@@ -207,3 +208,15 @@ def test_other_mesh_is_refused(whole: Path) -> None:
     pinion.points[3] += 1e-6
     with pytest.raises(ArchiveError, match="on others, made by another version"):
         archive.check_gears((pinion, wheel))
+
+
+def test_results_of_another_version_are_refused(whole: Path, tmp_path: Path) -> None:
+    """A position that lacks a field which this version keeps: ArchiveError, what lacks and what to do."""
+    out = tmp_path / "run"
+    shutil.copytree(whole, out)
+    path = out / "results" / "position_0001.npz"
+    arrays = read_arrays(path)
+    write_arrays(path, {name: array for name, array in arrays.items() if not name.endswith("contact/elastic")})
+    scene = load_scene(out / "scene.toml")
+    with pytest.raises(ArchiveError, match="found some without 'contact/elastic'; run the scene again"):
+        Archive(out, scene).read_positions(scene.gear_pair())

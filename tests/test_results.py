@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +75,18 @@ def test_friction_rows(run: RunData) -> None:
     assert smooth.loss_percent == 0.0
     assert rough.loss_percent > 1.0
     assert np.isnan(smooth.crossing_deg)
+
+
+def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -> None:
+    """The same results of a pair with a charted pinion: what is missing of the flank is part of the transmission error
+    but no deflection, so that no mesh stiffness is given, and JSON has null; without the chart it is a number."""
+    pinion = run.scene.pinion.model_copy(update={"flank_csv": "worn.csv"})
+    charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
+    assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(run))
+    assert all(np.isnan(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
+    write_tables(tmp_path, charted, FACTS)
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(text)["frictions"][0]["mesh_stiffness_N_per_mm_um"] is None
 
 
 def test_plane_run_is_reported_for_the_whole_width() -> None:

@@ -36,7 +36,7 @@ def ridges(pair: GearPair, positions: int) -> list[ContactPoints]:
         traction = np.column_stack([np.tile(λ, n), zero])
         across = np.tile(s, n)
         weights, rate = np.tile(w, n), np.zeros((n * len(s), 2))
-        found.append(ContactPoints(tooth, zero, ξ, across, -across, weights, traction, rate, flags, flags))
+        found.append(ContactPoints(tooth, zero, ξ, across, -across, weights, traction, rate, zero, flags, flags))
     return found
 
 
@@ -98,7 +98,8 @@ def solved(positions: int, friction: float = 0.0, scene: str = "spur") -> tuple[
 
 def test_solved_pitch_against_line_contact() -> None:
     """He's pair, frictionless: the depth along the profile is (K/H)(F/L)|1 − v_2/v_1| for the solution's own load share
-    within 3 % of the largest one, away from the ends of the path and from the changes of the share."""
+    within 1 % of the largest one, 1 mm from the ends of the path and half a millimetre from the pitch point, where a
+    contact of some width wears off up to 4 % of the largest while the formula has nothing."""
     study, state = solved(40)
     pair, grid_ = study.model.pair, study.grids[0]
     h = study.by_gear(state.rate)[0][grid_.node[0]]
@@ -109,8 +110,9 @@ def test_solved_pitch_against_line_contact() -> None:
     ξ, unit = line_contact(pair, 0, grid_.arcs, 1.0)
     exact = unit * np.interp(ξ, places, shares)
     start, end = pair.path_of_contact
-    inner = (ξ > start + 1.0) & (ξ < end - 1.0)
-    assert np.abs(h - exact)[inner].max() < 0.03 * exact[inner].max()
+    inner, pitch_point = (ξ > start + 1.0) & (ξ < end - 1.0), np.abs(ξ) < 4.0 * HALF_WIDTH
+    assert np.abs(h - exact)[inner & ~pitch_point].max() < 0.01 * exact[inner].max()
+    assert np.abs(h - exact)[pitch_point].max() < 0.04 * exact[inner].max()
     at_77 = np.interp((77.0**2 - pair.pinion.base_radius**2) / (2.0 * pair.pinion.base_radius), grid_.arcs, h)
     assert 2.5 < 1e9 * at_77 < 2.885
 

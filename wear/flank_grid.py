@@ -82,6 +82,16 @@ class FlankGrid:
         found[self.node] = field
         return found
 
+    def spread(self, nodes: Ints, values: Floats) -> Floats:
+        """(n, d) of values (k, d) at some nodes (k,): in their layers linear between them and constant beyond."""
+        known, field = np.zeros(self.node.size, dtype=bool), np.zeros((self.node.size, values.shape[1]))
+        known[nodes], field[nodes] = True, values
+        for layer in self.node[known[self.node].any(axis=1)]:
+            own = layer[known[layer]]
+            at = self.arcs[known[layer]]
+            field[layer] = np.column_stack([np.interp(self.arcs, at, column) for column in field[own].T])
+        return field
+
     def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
         """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""
         (i, s), (j, t) = between(self.arcs, u), between(self.heights, z)

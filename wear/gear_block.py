@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,6 +25,7 @@ from solver.pressure_response import PressureResponse
 
 KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
 LEAVINGS = 6  # times at most points are let go that would pull at a block's end
+SMALL = 200  # points of a position at most, whose response is then kept as a matrix
 PULL = 1e-3  # of the largest pressure: less is left to the next block
 
 
@@ -38,7 +39,7 @@ class Response:
         """About a state of a frictionless system."""
         self._normal, self._state, self.points, self.leaving = normal, state, points, leaving
         self._pressed = np.flatnonzero(state.traction[:, 0] > 0.0)
-        self._whole = PressureResponse(normal, state, self._everywhere(leaving))
+        self._whole = PressureResponse(normal, state, self.everywhere(leaving))
         self.released = self._whole.released[self._pressed]
 
     @staticmethod
@@ -48,8 +49,13 @@ class Response:
         return Response(normal_part(shared.system), shared.smooth, points, np.zeros(len(points.weights), dtype=bool))
 
     def __call__(self, opening: Floats) -> Floats:
-        """R ∂g (p,) [MPa] of ∂g (p,) [mm]."""
-        return self._whole(self._everywhere(opening))[self._pressed]
+        """R ∂g (p,) or (p, c) [MPa] of ∂g (p,) or (p, c) [mm]."""
+        return self._whole(self.everywhere(opening))[self._pressed]
+
+    @cached_property
+    def matrix(self) -> Floats:
+        """R (p, p) [MPa/mm]."""
+        return self(np.eye(len(self.leaving)))
 
     def without(self, pulled: np.ndarray) -> Response:
         """The same when those of the p points leave the contact as well."""
@@ -57,22 +63,22 @@ class Response:
             return self
         return Response(self._normal, self._state, self.points, self.leaving | pulled)
 
-    def _everywhere(self, values: Floats | np.ndarray) -> np.ndarray:
-        """(q,) of values (p,) at the pressed points, nothing elsewhere."""
-        whole = np.zeros(len(self._state.traction), dtype=values.dtype)
+    def everywhere(self, values: Floats | np.ndarray) -> np.ndarray:
+        """(q, ...) of values (p, ...) at the pressed points, nothing elsewhere."""
+        whole = np.zeros((len(self._state.traction), *values.shape[1:]), dtype=values.dtype)
         whole[self._pressed] = values
         return whole
 
 
 @dataclass(frozen=True)
 class LinearBlock:
-    """right: ΔN r (n,) [mm] at the block's start. pressure: λ (q,) [MPa] of this rank's points there; openings: per
-    position, (p, n) by how much depths open the gap at its points. worn: depths (n,) that pressures (q,) wear off in
+    """right: ΔN r (n,) [mm] at the block's start. pressure: λ (q,) [MPa] of this rank's points there; openings:
+    (q, n) by how much depths open the gap there. worn: depths (n,) that pressures (q,) wear off in
     the block, over all ranks."""
 
     right: Floats
     pressure: Floats
-    openings: Sequence[sp.csr_matrix]
+    openings: sp.csr_matrix
     worn: Callable[[Floats], Floats]
 
     def solved(self, responses: Sequence[Response], comm: MPI.Comm) -> tuple[Floats, Floats]:
@@ -88,11 +94,17 @@ class LinearBlock:
         more = np.maximum(more, -self.pressure)
         return self.right + self.worn(more), more
 
+    def pressed(self, responses: Sequence[Response], more: Floats) -> list[np.ndarray]:
+        """(q,) bool of each position: the points that still press at the block's end."""
+        ends = np.split(self.pressure + more > 0.0, _ends(responses))
+        return [response.everywhere(own) for response, own in zip(responses, ends)]
+
     def _linear(self, responses: Sequence[Response], start: Floats) -> tuple[Floats, Floats]:
         """Δh (n,) with this contact, and ∂λ (q,) of this rank. Raises NotConverged."""
+        responded = _joined(responses)
 
         def follow(h: Floats) -> Floats:
-            return np.concatenate([r(opened @ h) for r, opened in zip(responses, self.openings)] or [np.zeros(0)])
+            return responded(self.openings @ h)
 
         def slope(h: Floats) -> Floats:
             return h - self.worn(follow(h))
@@ -103,6 +115,16 @@ class LinearBlock:
         if failed:
             raise NotConverged("a block of wear: its equations were not solved; take a shorter one")
         return found, released + follow(found)
+
+
+def _joined(responses: Sequence[Response]) -> Callable[[Floats], Floats]:
+    """R of all positions, (q,) of (q,). Where they are small as one sparse matrix: forty small products take longer to
+    be called than to be made."""
+    if responses and max(len(r.leaving) for r in responses) <= SMALL:
+        whole = sp.block_diag([r.matrix for r in responses], format="csr")
+        return lambda opening: np.asarray(whole @ opening)
+    ends = _ends(responses)
+    return lambda opening: np.concatenate([r(own) for r, own in zip(responses, np.split(opening, ends))] or [opening])
 
 
 def _ends(responses: Sequence[Response]) -> Ints:

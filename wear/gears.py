@@ -6,7 +6,7 @@ cycle, and gathers what they wear off; friction, which has a past, goes from ran
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -25,7 +25,7 @@ from solver.gear_position import (
     shared_position,
     worn_on,
 )  # fmt: skip
-from solver.gear_sweep import Pitch, SweepState, initial_state, sweep_pitch
+from solver.gear_sweep import Pitch
 from solver.material import joint_modulus
 from solver.newton import NotConverged
 from solver.parallel import together
@@ -37,6 +37,7 @@ from wear.gear_block import LinearBlock, Response
 from wear.law import Archard, certify_volume
 from wear.motion import WornSurface, certify_loss, worn_mesh
 from wear.passage import Passage, passage
+from wear.rubbing_sweep import RubbingSweep
 
 HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
 """Groups of a sector that stay when its mesh follows the wear; end faces, which are plane, slide in themselves."""
@@ -98,6 +99,7 @@ class GearWear:
         self.begin = np.concatenate(charted)
         self.known, self.refreshed = np.zeros(len(self.areas)), 0
         self._own = range(len(pitch.angles))[division(len(pitch.angles), comm.size)[comm.rank]]
+        self._sweep = RubbingSweep(pitch, friction, self.grids, step, comm, self._own)
 
     @property
     def areas(self) -> Floats:
@@ -135,9 +137,13 @@ class GearWear:
     def evaluate(self, depth: Floats, before: PitchState | None = None) -> PitchState:
         """One pitch at depths (n,), see `Wearable`; positions near which the gears stood in the
         cycle `before` are not searched again."""
+        return self._evaluated(depth, before, {})
+
+    def _evaluated(self, depth: Floats, before: PitchState | None, foreseen: Mapping[int, np.ndarray]) -> PitchState:
+        """foreseen: of this rank's angles, (q,) bool, which points are likely to be pressed."""
         usable = before is not None and before.refreshed == self.refreshed  # on the same meshes
         model, kept = self._worn(depth), before.shared if before is not None and usable else ()
-        shared, searched = together(self._comm, lambda: self._prepared(model, kept))
+        shared, searched = together(self._comm, lambda: self._prepared(model, kept, foreseen))
         return self._solved(model, shared, self._comm.allreduce(searched))
 
     def resumed(self, depth: Floats, searches: Sequence[SearchedAt]) -> PitchState:
@@ -159,8 +165,9 @@ class GearWear:
             raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
         responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
-        found = now.passage or self._passage([r.points for r in responses])
-        openings = [self._opened(r.points) for r in responses]
+        points = [r.points for r in responses]
+        found = now.passage or self._passage(points)
+        openings = self._opened(points)
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
         gained, more = block.solved(responses, self._comm)
         # with friction a point that leaves may have pressed less than without it
@@ -168,7 +175,8 @@ class GearWear:
         if not float(self.areas @ put) <= PUT_ON * float(self.areas @ gone):
             raise NotConverged(f"a block of {length:.6g} cycles would put {put.max():.2g} mm of material on")
         self._certify(gone, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
-        return gone, self.evaluate(depth + gone, now)
+        foreseen = dict(zip((k for k in self._own if k >= self.pitch.warm_up), block.pressed(responses, more)))
+        return gone, self._evaluated(depth + gone, now, foreseen)
 
     def accepted(self, depth: Floats, now: PitchState) -> PitchState:
         """The pitch once the meshes have followed where they lack too much of depths (n,), see `Wearable`."""
@@ -186,13 +194,15 @@ class GearWear:
         pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth - self.known)))
         return replace(self.model, bodies=(pinion, wheel))
 
-    def _prepared(self, model: GearModel, kept: Sequence[SharedPosition]) -> tuple[list[SharedPosition], int]:
+    def _prepared(
+        self, model: GearModel, kept: Sequence[SharedPosition], foreseen: Mapping[int, np.ndarray]
+    ) -> tuple[list[SharedPosition], int]:
         """This rank's positions without friction, and how many of them had to be searched."""
         found: list[SharedPosition] = []
         searched = 0
         for i, k in enumerate(self._own):
             old = kept[i] if kept else None
-            shared = worn_on(model, old) if old is not None else None
+            shared = worn_on(model, old, foreseen.get(k)) if old is not None else None
             if shared is None:
                 near = old or (found[-1] if found else None)  # where the gears stood in the cycle before
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
@@ -204,7 +214,7 @@ class GearWear:
 
     def _solved(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
         """The pitch with friction, and what it wears off."""
-        own = self._rubbed(model, shared)
+        own = self._sweep.rubbed(model, shared)
         found = self._passage([result.contact for result in own])
         rate, work = self._rate(found, found.pressure), sum(self._comm.allgather(found.work))
         self._certify(rate, work)
@@ -234,29 +244,6 @@ class GearWear:
         for name, areas, own, K, often in pairs:
             certify_volume(name, float(areas @ own), K * often * work)
 
-    def _rubbed(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[PositionResult]:
-        """This rank's positions of the pitch. With friction the ranks take turns: each goes on from the one before."""
-        state = initial_state([self.friction])
-        if not model.has_friction_terms(self.friction):
-            return together(self._comm, partial(self._swept, model, shared, state))[0]
-        results: list[PositionResult] = []
-        for rank in range(self._comm.size):
-            own = shared if rank == self._comm.rank else ()
-            mine, state = together(self._comm, partial(self._swept, model, own, state))
-            state = self._comm.bcast(state, rank)
-            results += mine
-        return results
-
-    def _swept(
-        self, model: GearModel, shared: Sequence[SharedPosition], state: SweepState
-    ) -> tuple[list[PositionResult], SweepState]:
-        results = []
-        for k, common in zip(self._own, shared):
-            swept = next(sweep_pitch(model, self.pitch, [self.friction], state, k, common))
-            state = replace(swept.state, footprint=None)
-            results += [] if swept.warm_up else [swept.results[0]]
-        return results, state
-
     def _passage(self, positions: Sequence[ContactPoints]) -> Passage:
         return passage(self.model.pair, positions, self.grids, self._step)
 
@@ -269,8 +256,11 @@ class GearWear:
         """Depths (n,) of so many cycles."""
         return length * self._rate(found, pressure)
 
-    def _opened(self, points: ContactPoints) -> sp.csr_matrix:
-        """(q, n) by how much depths open the gap at points."""
-        places = enumerate((points.across, points.opposite))
-        arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
-        return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()
+    def _opened(self, positions: Sequence[ContactPoints]) -> sp.csr_matrix:
+        """(q, n) by how much depths open the gap at the points of positions."""
+        if not positions:
+            return sp.csr_matrix((0, len(self.areas)))
+        names = ("z", "ξ", "across", "opposite")
+        z, ξ, *places = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
+        arcs = [line_arc(self.model.pair, gear, ξ) + s for gear, s in enumerate(places)]
+        return sp.hstack([grid.hats(u, z) for grid, u in zip(self.grids, arcs)]).tocsr()

@@ -233,11 +233,12 @@ def _works(gears: GearWear, rate: Floats) -> list[float]:
 
 def _passage_work(gears: GearWear, state: PitchState) -> float:
     """∫∫p|v_s| dA dt of a tooth's passage: every point's pressure for a step before and after its position, rising and
-    falling linearly, ∫B|ξ + η|dη as the second difference of |ξ|³/6."""
+    falling linearly, ∫B|ξ + η|dη as the second difference of |ξ|³/6; ξ where nominal sliding is what was found."""
     pair, total = gears.model.pair, 0.0
+    growth = 1.0 + 1.0 / pair.ratio
     step = pair.pinion.base_radius * 2.0 * np.pi / pair.pinion.z / len(state.positions)
     for position in state.positions:
-        x, p = position.contact.ξ, position.contact.weights * position.contact.pressure
+        x, p = position.contact.ξ + position.contact.elastic / growth, position.contact.weights * position.contact.pressure
         slid = (abs(x + step) ** 3 - 2.0 * abs(x) ** 3 + abs(x - step) ** 3) / (6.0 * step)
         total += float(p @ slid)
-    return total * (1.0 + 1.0 / pair.ratio) / pair.pinion.base_radius
+    return total * growth / pair.pinion.base_radius

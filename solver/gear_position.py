@@ -18,7 +18,7 @@ from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
 from solver.gear_model import GearModel
 from solver.gear_overlap import NEARLY, Unwatched, overlap_outside, unwatched
-from solver.kinematics import Stand
+from solver.kinematics import Stand, line_of_action
 from solver.newton import NotConverged
 
 RELOCATE = 1.7e-4
@@ -42,9 +42,9 @@ class ContactPoints:
     tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
     contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
     [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
-    per radian of pinion rotation, local [mm/rad]; elastic: (q,) what deflection adds along the tangent in which it
-    grows with ξ, where a study asks for that (wear/elastic_sliding.py), else 0. sticks, edge: (q,) bool; edge: in the
-    last row of facets before a tip edge.
+    per radian of pinion rotation, local [mm/rad]; sliding: (q,) its part along the tangent in which it
+    grows with ξ (`line_of_action`), where a study asks for that with what deflection adds (wear/elastic_sliding.py).
+    sticks, edge: (q,) bool; edge: in the last row of facets before a tip edge.
     """
 
     tooth: Ints
@@ -55,7 +55,7 @@ class ContactPoints:
     weights: Floats
     traction: Floats
     rate: Floats
-    elastic: Floats
+    sliding: Floats
     sticks: np.ndarray
     edge: np.ndarray
 
@@ -280,11 +280,13 @@ def position_result(
     k = found.force.shape[1]
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
     weights, traction = contact.operator.averaged(found.traction)
+    on, turned = model.load.on, float(found.motion[0])
+    shift = (1.0, -1.0)[on] * model.pair.pinion.base_radius * turned  # of the sliding, from where it was searched
     return PositionResult(
-        stand=contact.stand.turned(model.load.on, float(found.motion[0])),
+        stand=contact.stand.turned(on, turned),
         friction=friction,
         torques=(torques[0], torques[1]),
-        contact=contact_points(contact, found.traction, friction),
+        contact=contact_points(contact, found.traction, friction, shift),
         tooth=contact.tooth,
         node=contact.node,
         weights=weights,
@@ -294,8 +296,11 @@ def position_result(
     )
 
 
-def contact_points(contact: GearContact, traction: Floats, friction: float) -> ContactPoints:
-    """Of tractions (q, k): what is kept of the points, those under pressure."""
+def contact_points(contact: GearContact, traction: Floats, friction: float, shift: float = 0.0) -> ContactPoints:
+    """Of tractions (q, k): what is kept of the points, those under pressure. shift: more sliding [mm/rad] than where
+    the position was searched."""
+    rate, along = relative_velocity(contact), line_of_action(contact.stand.pair, contact.d)[1]
+    sliding = np.einsum("ji,jia,a->j", rate, contact.operator.frames, along)
     pressed = np.flatnonzero(traction[:, 0] > 0.0)
     shape, t = contact.operator.shape[pressed], traction[pressed]
     bound = friction * t[:, 0]
@@ -308,8 +313,8 @@ def contact_points(contact: GearContact, traction: Floats, friction: float) -> C
         opposite=contact.opposite[pressed],
         weights=contact.operator.weights[pressed],
         traction=t,
-        rate=shape @ relative_velocity(contact),
-        elastic=np.zeros(len(pressed)),
+        rate=shape @ rate,
+        sliding=shape @ sliding + shift,
         sticks=size < bound * (1.0 - 1e-9),
         edge=contact.at_edge[pressed],
     )

@@ -144,7 +144,7 @@ def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, fricti
     start, end = pair.path_of_contact
     edge = (ξ < start + LAST_ROW) | (ξ > end - LAST_ROW)
     slides = np.zeros(len(z), dtype=bool)
-    return ContactPoints(np.full(len(z), tooth), z, ξ, s, -s, weights, traction, rate, 0.0 * z, slides, edge)
+    return ContactPoints(np.full(len(z), tooth), z, ξ, s, -s, weights, traction, rate, rate[:, 1], slides, edge)
 
 
 def layer_points(flank: Surface) -> tuple[Floats, Floats]:

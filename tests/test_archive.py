@@ -216,7 +216,7 @@ def test_results_of_another_version_are_refused(whole: Path, tmp_path: Path) -> 
     shutil.copytree(whole, out)
     path = out / "results" / "position_0001.npz"
     arrays = read_arrays(path)
-    write_arrays(path, {name: array for name, array in arrays.items() if not name.endswith("contact/elastic")})
+    write_arrays(path, {name: array for name, array in arrays.items() if not name.endswith("contact/sliding")})
     scene = load_scene(out / "scene.toml")
-    with pytest.raises(ArchiveError, match="found some without 'contact/elastic'; run the scene again"):
+    with pytest.raises(ArchiveError, match="found some without 'contact/sliding'; run the scene again"):
         Archive(out, scene).read_positions(scene.gear_pair())

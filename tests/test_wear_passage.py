@@ -32,11 +32,12 @@ def ridges(pair: GearPair, positions: int) -> list[ContactPoints]:
         own = [i for i in range(-3, 4) if start <= float(pair.roll_distance(φ, i)) <= end]
         n, tooth = len(own), np.repeat(own, len(s))
         ξ = pair.roll_distance(φ, tooth)
+        sliding = (1.0 + 1.0 / pair.ratio) * ξ
         zero, flags = np.zeros(n * len(s)), np.zeros(n * len(s), dtype=bool)
         traction = np.column_stack([np.tile(λ, n), zero])
         across = np.tile(s, n)
         weights, rate = np.tile(w, n), np.zeros((n * len(s), 2))
-        found.append(ContactPoints(tooth, zero, ξ, across, -across, weights, traction, rate, zero, flags, flags))
+        found.append(ContactPoints(tooth, zero, ξ, across, -across, weights, traction, rate, sliding, flags, flags))
     return found
 
 

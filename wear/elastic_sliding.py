@@ -1,14 +1,14 @@
 """The elastic part of the sliding between gear flanks: what deflected teeth add to the speeds of the nominal rotation.
 
-The points that meet are x = c + R(X + u) on either gear. With n the direction of the line of action, t = e_z × n the
-tangent in which the nominal sliding (1 + 1/u) ξ grows, ε the rotations beyond the nominal ones and a dash for d/dφ,
-they slide per radian of the pinion by (1 + 1/u) ξ + e,
+The points that meet are x = c + R(X + u) on either gear, X on flanks as they are worn. With n the direction of the line
+of action, t = e_z × n the tangent in which sliding grows with ξ, ε the rotations beyond the nominal ones and a dash for
+d/dφ, they slide per radian of the pinion by
 
-    e = d_1 + d_2/u + ρ_1 ε_1' + ρ_2 ε_2' + t·(R_1 u_1' − R_2 u_2')
-    d_1 = r_b1 ε_1 + n·R_1 u_1 ,   d_2 = −r_b2 ε_2 + n·R_2 u_2
+    n·(x_1 − c_1) + n·(x_2 − c_2)/u + ρ_1 ε_1' + ρ_2 ε_2' + t·(R_1 u_1' − R_2 u_2') ,
 
-d is how far along the line of action load and wear have moved the place where they meet, u' belongs to a material
-point. At a fixed distance from the contact line u changes slowly; under the contact it changes at once. So
+nominally by (1 + 1/u) ξ. A position knows that of its flanks as they stand, undeflected and as meshed; what deflection
+and the wear in the gap add is here. u' belongs to a material point. At a fixed distance s from the contact line u
+changes slowly; where the line goes over the flank, at once. So
 
     u' = ∂u/∂φ|_s − a' ∂u/∂a ,
 
@@ -29,7 +29,7 @@ from meshes.data import Floats, Ints
 from meshes.parameters import GearPair
 from solver.gear_body import GearBody
 from solver.gear_position import ContactPoints
-from solver.kinematics import Stand
+from solver.kinematics import Stand, line_of_action
 from wear.flank_grid import FlankGrid, line_arc
 
 Grids = tuple[FlankGrid, FlankGrid]
@@ -40,11 +40,11 @@ Both = tuple[Floats, Floats]
 class Deflection:
     """How the flanks of a position have deflected.
 
-    extra: ε of both gears [rad]. teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame
+    stand: with the free rotation. teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame
     of their own tooth, beyond the window as at its rim. axes: per gear (t, 2, d), n and e_z × n in that frame.
     """
 
-    extra: tuple[float, float]
+    stand: Stand
     teeth: Ints
     displacements: Both
     axes: Both
@@ -54,8 +54,8 @@ class Deflection:
         bodies: tuple[GearBody, GearBody], stand: Stand, rows: tuple[Ints, Ints], forces: Both, grids: Grids
     ) -> Deflection:
         """Under forces (m, d) [N; N/mm in 2D] on rows (m, 2) of each gear's chain, in the gear's frame."""
-        d, α, teeth = bodies[0].d, stand.pair.operating_pressure_angle, np.unique(rows[0][:, 0])
-        directions = np.array([[np.sin(α), np.cos(α), 0.0], [-np.cos(α), np.sin(α), 0.0]])[:, :d]
+        d, teeth = bodies[0].d, np.unique(rows[0][:, 0])
+        directions = line_of_action(stand.pair, d)
         fields, axes = [], []
         for gear, (body, own, pushed) in enumerate(zip(bodies, rows, forces)):
             loaded = pushed.any(axis=1)
@@ -65,7 +65,7 @@ class Deflection:
             spread = [grids[gear].spread(own[here, 1], u[here] @ R) for here, R in zip(of_tooth, frames)]
             fields.append(np.stack(spread))
             axes.append(np.stack([directions @ R for R in frames]))
-        return Deflection(stand.extra, teeth, (fields[0], fields[1]), (axes[0], axes[1]))
+        return Deflection(stand, teeth, (fields[0], fields[1]), (axes[0], axes[1]))
 
 
 @dataclass(frozen=True)
@@ -73,29 +73,28 @@ class PitchDeflection:
     """The positions of one pitch, equal steps [rad] apart; all teeth are alike, so the next pitch is the same again, a
     tooth pair on."""
 
-    pair: GearPair
+    bodies: tuple[GearBody, GearBody]
     grids: Grids
     step: float
     positions: tuple[Deflection, ...]
 
     def sliding(self, numbers: Sequence[int], points: Sequence[ContactPoints]) -> list[Floats]:
-        """e (q,) [mm/rad] at the points of each of the positions of these numbers."""
+        """What is to be added (q,) [mm/rad] at the points of each of the positions of these numbers."""
         if not points:
             return []
         k = np.repeat(numbers, [len(own.ξ) for own in points])
         tooth, z, ξ, *across = (
-            np.concatenate([getattr(own, name) for own in points])
-            for name in ("tooth", "z", "ξ", "across", "opposite")
+            np.concatenate([getattr(own, name) for own in points]) for name in ("tooth", "z", "ξ", "across", "opposite")
         )
         stands = self._stand(k - 1, tooth), self._stand(k, tooth), self._stand(k + 1, tooth)
-        e = sum(self._of_gear(gear, k, stands, z, ξ, s) for gear, s in enumerate(across))
-        return np.split(np.asarray(e), np.cumsum([len(own.ξ) for own in points])[:-1])
+        more = sum(self._of_gear(gear, k, stands, z, ξ, s) for gear, s in enumerate(across))
+        return np.split(np.asarray(more), np.cumsum([len(own.ξ) for own in points])[:-1])
 
     def _of_gear(self, gear: int, k: Ints, stands: tuple[Ints, Ints, Ints], z: Floats, ξ: Floats, s: Floats) -> Floats:
-        """Its part of e, at distances s (q,) from the contact line on its flank."""
+        """Its part, at distances s (q,) from the contact line on its flank."""
         before, now, after = stands
         ρ, arc = self.pair.curvature_radii(ξ)[gear], line_arc(self.pair, gear, ξ) + s
-        speed, sign = (1.0, -1.0 / self.pair.ratio)[gear], (1.0, -1.0)[gear]  # of rotation; of u in the sliding
+        speed, sign = (1.0, -1.0 / self.pair.ratio)[gear], (1.0, -1.0)[gear]  # of rotation; of x in the sliding
         onward = self.pair.pinion.base_radius * self.step
         here = self._moved(gear, now, arc, z)
         earlier = self._moved(gear, before, line_arc(self.pair, gear, ξ - onward) + s, z)
@@ -103,10 +102,21 @@ class PitchDeflection:
         at_distance = self._difference((before, earlier), here, (after, later))
         u_rate = at_distance - (speed * ρ)[:, None] * self._slope(gear, now, arc, z)
         n, t = np.moveaxis(self._axes[gear][now], 1, 0)
-        ε = np.array([position.extra[gear] for position in self.positions])
+        ε = np.array([position.stand.extra[gear] for position in self.positions])
         ε_rate = (np.roll(ε, -1) - np.roll(ε, 1)) / (2.0 * self.step)
-        shift = sign * self.pair.gears[gear].base_radius * ε[k] + _dots(n, here)
+        shift = _dots(n, here) - sign * self._worn(gear, arc, z)
         return np.asarray(abs(speed) * shift + ρ * ε_rate[k] + sign * _dots(t, u_rate))
+
+    def _worn(self, gear: int, arc: Floats, z: Floats) -> Floats:
+        """(q,) [mm] how far wear of which the mesh does not know has moved a flank in the transverse section."""
+        worn = self.bodies[gear].worn
+        lost = np.zeros(len(arc)) if worn is None else self.grids[gear].hats(arc, z) @ worn
+        return np.asarray(np.cos(self.pair.pinion.base_helix_angle) * lost)
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears' geometry."""
+        return self.positions[0].stand.pair
 
     def _difference(self, earlier: tuple[Ints, Floats], here: Floats, later: tuple[Ints, Floats]) -> Floats:
         """∂u/∂φ (q, d) from stands (q,) and u (q, d) a step before and after; to one side where a tooth does not bear

@@ -5,11 +5,10 @@ distance s across the contact line; to the neighbouring positions it travels ove
 little. So each contact point is a parcel that goes with the line, over the step before its position and the one after,
 while its share rises and falls linearly: that is the ridge interpolated linearly in ξ at fixed s. It takes away
 
-    (K/H) w λ ∫ B(η) |v_s(ξ + η)| dη / r_b1 ,   v_s(ξ) = (1 + 1/u) ξ + e per radian of the pinion,
+    (K/H) w λ ∫ B(η) |v_s(ξ + η)| dη / r_b1 ,   v_s(ξ + η) = v_s(ξ) + (1 + 1/u) η per radian of the pinion,
 
-B the hat of the step, e the elastic sliding that the position has found there, at the places that it passes. A parcel
-that leaves the flank stays at its rim, where the tip's edge bears instead. The volume is the integral of the parcels'
-work, whatever the step.
+B the hat of the step, at the places that it passes. A parcel that leaves the flank stays at its rim, where the tip's
+edge bears instead. The volume is the integral of the parcels' work, whatever the step.
 """
 
 from __future__ import annotations
@@ -61,9 +60,9 @@ def passage(
     step = pair.pinion.base_radius * turn
     count = max(int(np.ceil(step / (FINE * np.diff(grid.arcs).min()))) for grid in grids)
     η = step * ((np.arange(-count, count) + 0.5) / count)
-    names = ("z", "ξ", "across", "opposite", "weights", "pressure", "elastic")
-    z, ξ, across, opposite, w, λ, e = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
-    works = _shares(pair, ξ + e / (1.0 + 1.0 / pair.ratio), η, step) * w[:, None]
+    names = ("z", "ξ", "across", "opposite", "weights", "pressure", "sliding")
+    z, ξ, across, opposite, w, λ, v = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
+    works = _shares(pair, v / (1.0 + 1.0 / pair.ratio), η, step) * w[:, None]
     depths = []
     for gear, s in enumerate((across, opposite)):
         u = line_arc(pair, gear, ξ[:, None] + η) + s[:, None]
@@ -72,8 +71,8 @@ def passage(
 
 
 def _shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:
-    """(q, e) parts of the sliding distance [mm] ∫B|v_s| dη/r_b1 of each parcel, whose sliding is that at roll distances
-    ξ (q,) without deflection: by midpoints, their sum exact."""
+    """(q, e) parts of the sliding distance [mm] ∫B|v_s| dη/r_b1 of each parcel, whose sliding is the nominal one at
+    roll distances ξ (q,): by midpoints, their sum exact."""
     rough = (1.0 - np.abs(η) / step) * np.abs(ξ[:, None] + η)
     x = np.minimum(np.abs(ξ) / step, 1.0)
     whole = np.where(np.abs(ξ) >= step, np.abs(ξ), step * (1.0 / 3.0 + x**2 - x**3 / 3.0))

@@ -32,11 +32,11 @@ class RubbingSweep:
         """This rank's positions that count, from all that it has searched. Raises NotConverged."""
         found = self._solved(model, shared)
         everyone = tuple(each for part in self.comm.allgather([own for _, own in found]) for each in part)
-        deflected = PitchDeflection(model.pair, self.grids, self.step, everyone)
+        deflected = PitchDeflection(model.bodies, self.grids, self.step, everyone)
         numbers = [k - self.pitch.warm_up for k in self.own if k >= self.pitch.warm_up]
-        sliding = deflected.sliding(numbers, [result.contact for result, _ in found])
-        pairs = zip(found, sliding)
-        return [replace(result, contact=replace(result.contact, elastic=e)) for (result, _), e in pairs]
+        points = [result.contact for result, _ in found]
+        slid = [replace(p, sliding=p.sliding + e) for p, e in zip(points, deflected.sliding(numbers, points))]
+        return [replace(result, contact=own) for (result, _), own in zip(found, slid)]
 
     def _solved(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[Rubbed]:
         """With friction the ranks take turns: each goes on from the one before."""

@@ -238,7 +238,7 @@ def _passage_work(gears: GearWear, state: PitchState) -> float:
     growth = 1.0 + 1.0 / pair.ratio
     step = pair.pinion.base_radius * 2.0 * np.pi / pair.pinion.z / len(state.positions)
     for position in state.positions:
-        x, p = position.contact.ξ + position.contact.elastic / growth, position.contact.weights * position.contact.pressure
+        x, p = position.contact.sliding / growth, position.contact.weights * position.contact.pressure
         slid = (abs(x + step) ** 3 - 2.0 * abs(x) ** 3 + abs(x - step) ** 3) / (6.0 * step)
         total += float(p @ slid)
     return total * growth / pair.pinion.base_radius

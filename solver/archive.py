@@ -24,7 +24,8 @@ import numpy as np
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearPair
 from solver.gear_memory import Memory
-from solver.gear_position import ContactPoints, PositionResult
+from solver.gear_points import ContactPoints
+from solver.gear_position import PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 from solver.scene import GEARS, Scene

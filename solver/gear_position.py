@@ -18,7 +18,8 @@ from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Past, known_heading, relative_velocity, slipped
 from solver.gear_model import GearModel
 from solver.gear_overlap import NEARLY, Unwatched, overlap_outside, unwatched
-from solver.kinematics import Stand, line_of_action
+from solver.gear_points import ContactPoints, contact_points
+from solver.kinematics import Stand
 from solver.newton import NotConverged
 
 RELOCATE = 1.7e-4
@@ -33,36 +34,6 @@ within 3 nm of 5 µm; 24 searches instead of 400."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
-
-
-@dataclass(frozen=True)
-class ContactPoints:
-    """The contact of a position at its q quadrature points on the pinion's flanks.
-
-    tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
-    contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
-    [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
-    per radian of pinion rotation, local [mm/rad]; sliding: (q,) its part along the tangent in which it
-    grows with ξ (`line_of_action`), where a study asks for that with what deflection adds (wear/elastic_sliding.py).
-    sticks, edge: (q,) bool; edge: in the last row of facets before a tip edge.
-    """
-
-    tooth: Ints
-    z: Floats
-    ξ: Floats
-    across: Floats
-    opposite: Floats
-    weights: Floats
-    traction: Floats
-    rate: Floats
-    sliding: Floats
-    sticks: np.ndarray
-    edge: np.ndarray
-
-    @property
-    def pressure(self) -> Floats:
-        """λ (q,) [MPa]."""
-        return self.traction[:, 0]
 
 
 @dataclass(frozen=True)
@@ -211,10 +182,8 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     is found."""
     contact = shared.contact.on(model.bodies)
     system = replace(shared.system, operator=contact.operator)
-    start = shared.smooth.traction[:, 0] > 0.0 if pressed is None else pressed
-    try:
-        smooth = frictionless(normal_part(system), start if start.any() else None)
-    except NotConverged:
+    smooth = _smooth(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
+    if smooth is None:
         return None
     shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
     good = abs(shift) <= STALE * model.pair.pinion.normal_module
@@ -222,6 +191,16 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     rotation = _rotation(model, smooth)
     good = good and overlap_outside(contact, shared.unwatched, smooth.force, rotation) == 0.0
     return SharedPosition(contact, system, smooth, shared.unwatched) if good else None
+
+
+def _smooth(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equilibrium | None:
+    """From the first of the starts, (q,) bool or none, that leads to a solution; None where none does."""
+    for start in (start for start in starts if start is not None):
+        try:
+            return frictionless(system, start if start.any() else None)
+        except NotConverged:
+            continue
+    return None
 
 
 def _rotation(model: GearModel, found: Equilibrium) -> tuple[float, float]:
@@ -280,41 +259,16 @@ def position_result(
     k = found.force.shape[1]
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
     weights, traction = contact.operator.averaged(found.traction)
-    on, turned = model.load.on, float(found.motion[0])
-    shift = (1.0, -1.0)[on] * model.pair.pinion.base_radius * turned  # of the sliding, from where it was searched
+    stand = contact.stand.turned(model.load.on, float(found.motion[0]))
     return PositionResult(
-        stand=contact.stand.turned(on, turned),
+        stand=stand,
         friction=friction,
         torques=(torques[0], torques[1]),
-        contact=contact_points(contact, found.traction, friction, shift),
+        contact=contact_points(contact, found.traction, friction, stand.extra),
         tooth=contact.tooth,
         node=contact.node,
         weights=weights,
         traction=traction,
         iterations=found.iterations + (extra_iterations if model.has_friction_terms(friction) else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
-    )
-
-
-def contact_points(contact: GearContact, traction: Floats, friction: float, shift: float = 0.0) -> ContactPoints:
-    """Of tractions (q, k): what is kept of the points, those under pressure. shift: more sliding [mm/rad] than where
-    the position was searched."""
-    rate, along = relative_velocity(contact), line_of_action(contact.stand.pair, contact.d)[1]
-    sliding = np.einsum("ji,jia,a->j", rate, contact.operator.frames, along)
-    pressed = np.flatnonzero(traction[:, 0] > 0.0)
-    shape, t = contact.operator.shape[pressed], traction[pressed]
-    bound = friction * t[:, 0]
-    size = np.linalg.norm(t[:, 1:], axis=1)
-    return ContactPoints(
-        tooth=contact.point_tooth[pressed],
-        z=shape @ contact.bodies[0].z[contact.node],
-        ξ=shape @ contact.ξ,
-        across=contact.across[pressed],
-        opposite=contact.opposite[pressed],
-        weights=contact.operator.weights[pressed],
-        traction=t,
-        rate=shape @ rate,
-        sliding=shape @ sliding + shift,
-        sticks=size < bound * (1.0 - 1e-9),
-        edge=contact.at_edge[pressed],
     )

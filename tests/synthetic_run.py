@@ -21,7 +21,8 @@ from meshes.parameters import GearPair
 from meshes.sector import sector_mesh
 from solver.archive import GearShape, gear_shape
 from solver.estimates import hertz_estimate
-from solver.gear_position import ContactPoints, PositionResult
+from solver.gear_points import ContactPoints
+from solver.gear_position import PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.hertz import line_half_width, line_peak_pressure, line_pressure
 from solver.kinematics import Stand

@@ -9,7 +9,7 @@ import pytest
 from gear_cases import helical_scene, model_of, spur_scene
 
 from meshes.parameters import GearPair
-from solver.gear_position import ContactPoints
+from solver.gear_points import ContactPoints
 from solver.gear_sweep import Pitch, uniform_pitch
 from wear.flank_grid import FlankGrid
 from wear.gears import GearWear, PitchState

@@ -18,7 +18,7 @@ arc of the contact line.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,143 +26,187 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
+from meshes.lattice import Mask
 from meshes.parameters import GearPair
 from solver.gear_body import GearBody
-from solver.gear_position import ContactPoints
+from solver.gear_points import ContactPoints
 from solver.kinematics import Stand, line_of_action
 from wear.flank_grid import FlankGrid, line_arc
+from wear.law import between
 
 Grids = tuple[FlankGrid, FlankGrid]
 Both = tuple[Floats, Floats]
+SIGNS = 1.0, -1.0  # of pinion and wheel where the one moves over the other
 
 
 @dataclass(frozen=True)
 class Deflection:
     """How the flanks of a position have deflected.
 
-    stand: with the free rotation. teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame
-    of their own tooth, beyond the window as at its rim. axes: per gear (t, 2, d), n and e_z × n in that frame.
+    teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame of their own tooth, outside the
+    window as at its rim; seen: per gear (t, l), layers of nodes that the window has. axes: per gear (t, 2, d), n and
+    e_z × n in that frame.
     """
 
-    stand: Stand
     teeth: Ints
     displacements: Both
+    seen: tuple[Mask, Mask]
     axes: Both
 
     @staticmethod
     def of(
         bodies: tuple[GearBody, GearBody], stand: Stand, rows: tuple[Ints, Ints], forces: Both, grids: Grids
     ) -> Deflection:
-        """Under forces (m, d) [N; N/mm in 2D] on rows (m, 2) of each gear's chain, in the gear's frame."""
+        """Under forces (m, d) [N; N/mm in 2D] on rows (m, 2) of each gear's chain, in the gear's frame. As contact
+        sees the pinion, by the extended trace of solver/nitsche.py."""
         d, teeth = bodies[0].d, np.unique(rows[0][:, 0])
-        directions = line_of_action(stand.pair, d)
-        fields, axes = [], []
+        fields, seen, axes = [], [], []
         for gear, (body, own, pushed) in enumerate(zip(bodies, rows, forces)):
             loaded = pushed.any(axis=1)
             u = body.chain.apply(own[loaded], pushed[loaded], own) @ stand.rotation(gear, d).T
             frames = [stand.rotation(gear, d, tooth) for tooth in teeth]
-            of_tooth = [own[:, 0] == body.sign * tooth for tooth in teeth]
-            spread = [grids[gear].spread(own[here, 1], u[here] @ R) for here, R in zip(of_tooth, frames)]
-            fields.append(np.stack(spread))
-            axes.append(np.stack([directions @ R for R in frames]))
-        return Deflection(stand, teeth, (fields[0], fields[1]), (axes[0], axes[1]))
+            parts = [own[:, 0] == body.sign * tooth for tooth in teeth]
+            fields.append(np.stack([grids[gear].spread(own[here, 1], u[here] @ R) for here, R in zip(parts, frames)]))
+            seen.append(np.stack([grids[gear].seen(own[here, 1]) for here in parts]))
+            axes.append(np.stack([line_of_action(stand.pair, d) @ R for R in frames]))
+        return Deflection(teeth, (fields[0], fields[1]), (seen[0], seen[1]), (axes[0], axes[1]))
 
 
 @dataclass(frozen=True)
 class PitchDeflection:
-    """The positions of one pitch, equal steps [rad] apart; all teeth are alike, so the next pitch is the same again, a
-    tooth pair on."""
+    """The positions of one pitch, equal steps apart; all teeth are alike, so the next pitch is the same again, a tooth
+    pair on.
 
-    bodies: tuple[GearBody, GearBody]
+    stands: all of them, with their free rotations. known: deflections of some, with both neighbours of each that is
+    asked for. worn: of pinion and wheel (n,) [mm] what the meshes do not know of, or None.
+    """
+
     grids: Grids
     step: float
-    positions: tuple[Deflection, ...]
-
-    def sliding(self, numbers: Sequence[int], points: Sequence[ContactPoints]) -> list[Floats]:
-        """What is to be added (q,) [mm/rad] at the points of each of the positions of these numbers."""
-        if not points:
-            return []
-        k = np.repeat(numbers, [len(own.ξ) for own in points])
-        tooth, z, ξ, *across = (
-            np.concatenate([getattr(own, name) for own in points]) for name in ("tooth", "z", "ξ", "across", "opposite")
-        )
-        stands = self._stand(k - 1, tooth), self._stand(k, tooth), self._stand(k + 1, tooth)
-        more = sum(self._of_gear(gear, k, stands, z, ξ, s) for gear, s in enumerate(across))
-        return np.split(np.asarray(more), np.cumsum([len(own.ξ) for own in points])[:-1])
-
-    def _of_gear(self, gear: int, k: Ints, stands: tuple[Ints, Ints, Ints], z: Floats, ξ: Floats, s: Floats) -> Floats:
-        """Its part, at distances s (q,) from the contact line on its flank."""
-        before, now, after = stands
-        ρ, arc = self.pair.curvature_radii(ξ)[gear], line_arc(self.pair, gear, ξ) + s
-        speed, sign = (1.0, -1.0 / self.pair.ratio)[gear], (1.0, -1.0)[gear]  # of rotation; of x in the sliding
-        onward = self.pair.pinion.base_radius * self.step
-        here = self._moved(gear, now, arc, z)
-        earlier = self._moved(gear, before, line_arc(self.pair, gear, ξ - onward) + s, z)
-        later = self._moved(gear, after, line_arc(self.pair, gear, ξ + onward) + s, z)
-        at_distance = self._difference((before, earlier), here, (after, later))
-        u_rate = at_distance - (speed * ρ)[:, None] * self._slope(gear, now, arc, z)
-        n, t = np.moveaxis(self._axes[gear][now], 1, 0)
-        ε = np.array([position.stand.extra[gear] for position in self.positions])
-        ε_rate = (np.roll(ε, -1) - np.roll(ε, 1)) / (2.0 * self.step)
-        shift = _dots(n, here) - sign * self._worn(gear, arc, z)
-        return np.asarray(abs(speed) * shift + ρ * ε_rate[k] + sign * _dots(t, u_rate))
-
-    def _worn(self, gear: int, arc: Floats, z: Floats) -> Floats:
-        """(q,) [mm] how far wear of which the mesh does not know has moved a flank in the transverse section."""
-        worn = self.bodies[gear].worn
-        lost = np.zeros(len(arc)) if worn is None else self.grids[gear].hats(arc, z) @ worn
-        return np.asarray(np.cos(self.pair.pinion.base_helix_angle) * lost)
+    stands: tuple[Stand, ...]
+    known: Mapping[int, Deflection]
+    worn: tuple[Floats | None, Floats | None]
 
     @property
     def pair(self) -> GearPair:
         """The gears' geometry."""
-        return self.positions[0].stand.pair
+        return self.stands[0].pair
 
-    def _difference(self, earlier: tuple[Ints, Floats], here: Floats, later: tuple[Ints, Floats]) -> Floats:
-        """∂u/∂φ (q, d) from stands (q,) and u (q, d) a step before and after; to one side where a tooth does not bear
-        on the other."""
-        there = [(stand >= 0)[:, None] for stand, _ in (earlier, later)]
-        before, after = (np.where(known, u, here) for known, (_, u) in zip(there, (earlier, later)))
-        return np.asarray((after - before) / (self.step * np.maximum(np.sum(there, axis=0), 1)))
-
-    def _moved(self, gear: int, stand: Ints, arc: Floats, z: Floats) -> Floats:
-        """u (q, d) on a gear's flank at arcs and heights (q,) of stands (q,), in the tooth's frame."""
-        hats, field = self.grids[gear].hats(arc, z), self._fields[gear]
-        _, n, d = field.shape
-        columns = hats.indices + n * np.repeat(np.maximum(stand, 0), np.diff(hats.indptr))
-        at = sp.csr_matrix((hats.data, columns, hats.indptr), (len(arc), n * len(field)))
-        return np.asarray(at @ field.reshape(-1, d))
-
-    def _slope(self, gear: int, stand: Ints, arc: Floats, z: Floats) -> Floats:
-        """∂u/∂a (q, d), over two of the flank's spacings."""
-        arcs = self.grids[gear].arcs
-        h = float(np.median(np.diff(arcs)))
-        low, high = np.clip(arc - h, arcs[0], arcs[-2]), np.clip(arc + h, arcs[1], arcs[-1])
-        return (self._moved(gear, stand, high, z) - self._moved(gear, stand, low, z)) / (high - low)[:, None]
+    def added(self, numbers: Sequence[int], points: Sequence[ContactPoints]) -> list[Floats]:
+        """What is to be added (q,) [mm/rad] to the sliding of undeflected flanks, at points of positions k."""
+        if not points:
+            return []
+        names, counts = ("tooth", "z", "ξ", "across", "opposite"), [len(own.ξ) for own in points]
+        tooth, z, ξ, *across = (np.concatenate([getattr(own, name) for own in points]) for name in names)
+        k = np.repeat(numbers, counts)
+        teeth = self._stand(k - 1, tooth), self._stand(k, tooth), self._stand(k + 1, tooth)
+        more = np.zeros(len(k))
+        for gear, s in enumerate(across):
+            own = _OnFlank(self, gear, z, ξ, s, teeth)
+            turning = self.pair.curvature_radii(ξ)[gear] * self._turning[gear, k]
+            more += own.shift() / (1.0, self.pair.ratio)[gear] + turning + SIGNS[gear] * own.tangential_rate()
+        return np.split(more, np.cumsum(counts)[:-1])
 
     @cached_property
-    def _fields(self) -> Both:
-        """Per gear (stands, n, d)."""
-        first, second = (np.concatenate([p.displacements[gear] for p in self.positions]) for gear in (0, 1))
-        return first, second
-
-    @cached_property
-    def _axes(self) -> Both:
-        """Per gear (stands, 2, d)."""
-        first, second = (np.concatenate([p.axes[gear] for p in self.positions]) for gear in (0, 1))
-        return first, second
+    def _turning(self) -> Floats:
+        """ε' (2, positions) [rad/rad]."""
+        ε = np.array([stand.extra for stand in self.stands]).T
+        return np.asarray((np.roll(ε, -1, axis=1) - np.roll(ε, 1, axis=1)) / (2.0 * self.step))
 
     def _stand(self, k: Ints, tooth: Ints) -> Ints:
-        """(q,) number of a tooth at position k, which may be one of the next pitch; −1 where it does not bear."""
-        pitch, own = np.divmod(k, len(self.positions))
-        keys, found = _key(own, tooth + pitch), self._keys
-        place = np.minimum(np.searchsorted(found, keys), len(found) - 1)
-        return np.where(found[place] == keys, place, -1)
+        """(q,) number of a tooth at position k, which may be of the next pitch; −1 where it is not in the window."""
+        pitch, own = np.divmod(k, len(self.stands))
+        wanted, keys = _key(own, tooth + pitch), self._keys
+        place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[place] == wanted, place, -1)
 
     @cached_property
     def _keys(self) -> Ints:
-        """Ascending, of all stands."""
-        return np.concatenate([_key(np.full(len(p.teeth), k), p.teeth) for k, p in enumerate(self.positions)])
+        """Ascending, of all teeth of the known positions."""
+        parts = [_key(np.full(len(own.teeth), k), own.teeth) for k, own in sorted(self.known.items())]
+        return np.concatenate(parts)
+
+    @cached_property
+    def all(self) -> Deflection:
+        """The known positions' teeth in the order of their numbers."""
+        parts = [own for _, own in sorted(self.known.items())]
+
+        def both(name: str) -> tuple[np.ndarray, np.ndarray]:
+            first, second = (np.concatenate([getattr(own, name)[gear] for own in parts]) for gear in (0, 1))
+            return first, second
+
+        teeth = np.concatenate([own.teeth for own in parts])
+        return Deflection(teeth, both("displacements"), both("seen"), both("axes"))
+
+
+@dataclass(frozen=True)
+class _OnFlank:
+    """Points of one gear: heights z, roll distances ξ, distances s across the contact line (q,); numbers (q,) of their
+    teeth at the position before, now and after."""
+
+    pitch: PitchDeflection
+    gear: int
+    z: Floats
+    ξ: Floats
+    s: Floats
+    teeth: tuple[Ints, Ints, Ints]
+
+    def shift(self) -> Floats:
+        """(q,) [mm] how far along the line of action deflection and wear have moved the points."""
+        worn, β = self.pitch.worn[self.gear], self.pitch.pair.pinion.base_helix_angle
+        lost = np.zeros(len(self.z)) if worn is None else self._hats(self._arc(self.ξ)) @ worn
+        return _dots(self._axis(0), self._moved(1, self._arc(self.ξ))) - SIGNS[self.gear] * np.cos(β) * lost
+
+    def tangential_rate(self) -> Floats:
+        """t·R u' (q,) [mm/rad]."""
+        pair, onward = self.pitch.pair, self.pitch.pair.pinion.base_radius * self.pitch.step
+        here, there = self._moved(1, self._arc(self.ξ)), [self._seen(0), self._seen(2)]
+        ends = [self._moved(i, self._arc(self.ξ + way)) for i, way in ((0, -onward), (2, onward))]
+        before, after = (np.where(known[:, None], end, here) for known, end in zip(there, ends))
+        change = (after - before) / (self.pitch.step * np.maximum(np.sum(there, axis=0), 1)[:, None])
+        line_speed = pair.curvature_radii(self.ξ)[self.gear] * (1.0, -1.0 / pair.ratio)[self.gear]
+        line_speed = np.where(self._bearing(self.ξ) == self.ξ, line_speed, 0.0)
+        return _dots(self._axis(1), change - line_speed[:, None] * self._slope())
+
+    def _bearing(self, ξ: Floats) -> Floats:
+        """Roll distances (q,) at which this flank is touched; beyond the path of contact by its tip, which stays."""
+        start, end = self.pitch.pair.path_of_contact
+        return np.minimum(ξ, end) if self.gear == 0 else np.maximum(ξ, start)
+
+    def _arc(self, ξ: Floats) -> Floats:
+        """(q,) of the points when the contact line is at ξ (q,)."""
+        pair, gear = self.pitch.pair, self.gear
+        offset = line_arc(pair, gear, self.ξ) - line_arc(pair, gear, self._bearing(self.ξ)) + self.s
+        return line_arc(pair, gear, self._bearing(ξ)) + offset
+
+    def _axis(self, which: int) -> Floats:
+        """(q, d) n (0) or t (1) in the frame of the tooth, now."""
+        return self.pitch.all.axes[self.gear][self.teeth[1], which]
+
+    def _hats(self, arc: Floats) -> sp.csr_matrix:
+        return self.pitch.grids[self.gear].hats(arc, self.z)
+
+    def _moved(self, when: int, arc: Floats) -> Floats:
+        """u (q, d) at arcs (q,) before (0), now (1) or after (2), in the tooth's frame; anything where not seen."""
+        hats, field = self._hats(arc), self.pitch.all.displacements[self.gear]
+        _, n, d = field.shape
+        columns = hats.indices + n * np.repeat(np.maximum(self.teeth[when], 0), np.diff(hats.indptr))
+        at = sp.csr_matrix((hats.data, columns, hats.indptr), (len(arc), n * len(field)))
+        return np.asarray(at @ field.reshape(-1, d))
+
+    def _seen(self, when: int) -> Mask:
+        """(q,) bool: whether the window has the points' layers before (0) or after (2)."""
+        tooth, layers = self.teeth[when], self.pitch.all.seen[self.gear]
+        low, _ = between(self.pitch.grids[self.gear].heights, self.z)
+        high = np.minimum(low + 1, layers.shape[1] - 1)
+        return np.asarray((tooth >= 0) & layers[tooth, low] & layers[tooth, high])
+
+    def _slope(self) -> Floats:
+        """∂u/∂a (q, d), over two of the flank's spacings."""
+        arcs, arc = self.pitch.grids[self.gear].arcs, self._arc(self.ξ)
+        h = float(np.median(np.diff(arcs)))
+        low, high = np.clip(arc - h, arcs[0], arcs[-2]), np.clip(arc + h, arcs[1], arcs[-1])
+        return (self._moved(1, high) - self._moved(1, low)) / (high - low)[:, None]
 
 
 def _key(k: Ints, tooth: Ints) -> Ints:

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
+from meshes.lattice import Mask
 from meshes.parameters import GearPair
 from solver.gear_body import GearBody
 from wear.law import between
@@ -83,14 +84,23 @@ class FlankGrid:
         return found
 
     def spread(self, nodes: Ints, values: Floats) -> Floats:
-        """(n, d) of values (k, d) at some nodes (k,): in their layers linear between them and constant beyond."""
+        """(n, d) of values (k, d) at some nodes (k,): in their layers linear between them and constant beyond, other
+        layers as the nearest one that has some."""
         known, field = np.zeros(self.node.size, dtype=bool), np.zeros((self.node.size, values.shape[1]))
         known[nodes], field[nodes] = True, values
-        for layer in self.node[known[self.node].any(axis=1)]:
-            own = layer[known[layer]]
-            at = self.arcs[known[layer]]
+        filled = np.flatnonzero(self.seen(nodes))
+        for layer in self.node[filled]:
+            own, at = layer[known[layer]], self.arcs[known[layer]]
             field[layer] = np.column_stack([np.interp(self.arcs, at, column) for column in field[own].T])
+        nearest = np.abs(self.heights[:, None] - self.heights[filled]).argmin(axis=1)
+        field[self.node] = field[self.node[filled[nearest]]]
         return field
+
+    def seen(self, nodes: Ints) -> Mask:
+        """(l,) bool: layers that have some of these nodes."""
+        known = np.zeros(self.node.size, dtype=bool)
+        known[nodes] = True
+        return np.asarray(known[self.node].any(axis=1))
 
     def hats(self, u: Floats, z: Floats) -> sp.csr_matrix:
         """(q, n) hats of the nodes at q places; beyond the flank those of its rim."""

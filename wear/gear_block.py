@@ -17,7 +17,8 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from meshes.data import Floats, Ints
 from solver.equilibrium import CondensedSystem, Equilibrium, normal_part
-from solver.gear_position import ContactPoints, SharedPosition, contact_points
+from solver.gear_points import ContactPoints, contact_points
+from solver.gear_position import SharedPosition
 from solver.newton import NotConverged
 from solver.newton_steps import RELATIVE
 from solver.parallel import together
@@ -45,7 +46,7 @@ class Response:
     @staticmethod
     def of(shared: SharedPosition) -> Response:
         """Of a position's frictionless state, in which all pressed points stay."""
-        points = contact_points(shared.contact, shared.smooth.traction, 0.0)
+        points = contact_points(shared.contact, shared.smooth.traction, 0.0, shared.contact.stand.extra)
         return Response(normal_part(shared.system), shared.smooth, points, np.zeros(len(points.weights), dtype=bool))
 
     def __call__(self, opening: Floats) -> Floats:

@@ -16,15 +16,8 @@ from mpi4py import MPI
 
 from meshes.data import Floats, MeshData
 from solver.gear_model import GearModel
-from solver.gear_position import (
-    ContactPoints,
-    PositionResult,
-    SearchedAt,
-    SharedPosition,
-    searched_at,
-    shared_position,
-    worn_on,
-)  # fmt: skip
+from solver.gear_points import ContactPoints
+from solver.gear_position import PositionResult, SearchedAt, SharedPosition, searched_at, shared_position, worn_on
 from solver.gear_sweep import Pitch
 from solver.material import joint_modulus
 from solver.newton import NotConverged
@@ -50,14 +43,14 @@ PUT_ON = 1e-7  # of a block's volume may be left out: depths below zero, a tenth
 class PitchState(Evaluated):
     """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
     width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were;
-    refreshed: how often the meshes had followed. passage: of this rank's positions, where they are without friction."""
+    refreshed: how often the meshes had followed. passage: of this rank's positions in the states without friction."""
 
     positions: tuple[PositionResult, ...]
     work: float
     shared: tuple[SharedPosition, ...]
     searched: int
     refreshed: int
-    passage: Passage | None
+    passage: Passage
 
 
 @dataclass(frozen=True)
@@ -165,9 +158,7 @@ class GearWear:
             raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
         responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
-        points = [r.points for r in responses]
-        found = now.passage or self._passage(points)
-        openings = self._opened(points)
+        found, openings = now.passage, self._opened([r.points for r in responses])
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
         gained, more = block.solved(responses, self._comm)
         # with friction a point that leaves may have pressed less than without it
@@ -214,12 +205,11 @@ class GearWear:
 
     def _solved(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
         """The pitch with friction, and what it wears off."""
-        own = self._sweep.rubbed(model, shared)
-        found = self._passage([result.contact for result in own])
+        rubbed = self._sweep.rubbed(model, shared)
+        found, smooth = self._passage([own.contact for own in rubbed.results]), self._passage(rubbed.smooth)
         rate, work = self._rate(found, found.pressure), sum(self._comm.allgather(found.work))
         self._certify(rate, work)
-        positions = tuple(result for part in self._comm.allgather(own) for result in part)
-        smooth = None if model.has_friction_terms(self.friction) else found
+        positions = tuple(result for part in self._comm.allgather(rubbed.results) for result in part)
         decay = self._decay(rate, positions)
         return PitchState(
             rate, self.areas, np.inf, decay, positions, work, tuple(shared), searched, self.refreshed, smooth

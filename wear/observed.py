@@ -18,7 +18,7 @@ from scipy.integrate import cumulative_trapezoid
 from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.engagement import engagement
-from solver.gear_position import ContactPoints
+from solver.gear_points import ContactPoints
 from solver.hertz import line_half_width, line_peak_pressure
 from solver.material import joint_modulus
 from solver.run_data import RunData

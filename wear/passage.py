@@ -21,7 +21,7 @@ import scipy.sparse as sp
 
 from meshes.data import Floats
 from meshes.parameters import GearPair
-from solver.gear_position import ContactPoints
+from solver.gear_points import ContactPoints
 from wear.flank_grid import FlankGrid, line_arc
 
 FINE = 0.5  # of the grid's finest spacing a parcel goes at a time

@@ -36,7 +36,7 @@ def test_response_as_a_matrix() -> None:
         opening = 1e-3 * np.cos(np.arange(len(response.leaving)))
         product = response(opening)
         np.testing.assert_allclose(response.matrix @ opening, product, atol=1e-10 * np.abs(product).max())
-        assert not response.matrix[response.leaving].any()
+        assert np.abs(response.matrix[response.leaving]).max(initial=0.0) < 1e-12 * np.abs(response.matrix).max()
     left = whole.without(pulled)
     np.testing.assert_allclose(left.released[pulled], -left.points.pressure[pulled], rtol=1e-12)
 

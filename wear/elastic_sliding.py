@@ -36,6 +36,7 @@ from wear.law import between
 
 Grids = tuple[FlankGrid, FlankGrid]
 Both = tuple[Floats, Floats]
+REACH = 3  # spacings of arc about loaded nodes: a slope takes one to either side of a point between them
 SIGNS = 1.0, -1.0  # of pinion and wheel where the one moves over the other
 
 
@@ -43,9 +44,9 @@ SIGNS = 1.0, -1.0  # of pinion and wheel where the one moves over the other
 class Deflection:
     """How the flanks of a position have deflected.
 
-    teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame of their own tooth, outside the
-    window as at its rim; seen: per gear (t, l), layers of nodes that the window has. axes: per gear (t, 2, d), n and
-    e_z × n in that frame.
+    teeth (t,). displacements: per gear (t, n, d) [mm] of the flank's nodes in the frame of their own tooth, found about
+    those that carry force, farther away as at the last ones; seen: per gear (t, l), layers where they were found. axes:
+    per gear (t, 2, d), n and e_z × n in that frame.
     """
 
     teeth: Ints
@@ -59,15 +60,17 @@ class Deflection:
     ) -> Deflection:
         """Under forces (m, d) [N; N/mm in 2D] on rows (m, 2) of each gear's chain, in the gear's frame. As contact
         sees the pinion, by the extended trace of solver/nitsche.py."""
-        d, teeth = bodies[0].d, np.unique(rows[0][:, 0])
+        d, teeth = bodies[0].d, np.unique(rows[0][forces[0].any(axis=1), 0])
         fields, seen, axes = [], [], []
         for gear, (body, own, pushed) in enumerate(zip(bodies, rows, forces)):
-            loaded = pushed.any(axis=1)
-            u = body.chain.apply(own[loaded], pushed[loaded], own) @ stand.rotation(gear, d).T
+            loaded = own[pushed.any(axis=1)]
+            wanted = own[_about(grids[gear], own, loaded)]
+            u = body.chain.apply(loaded, pushed[pushed.any(axis=1)], wanted) @ stand.rotation(gear, d).T
             frames = [stand.rotation(gear, d, tooth) for tooth in teeth]
-            parts = [own[:, 0] == body.sign * tooth for tooth in teeth]
-            fields.append(np.stack([grids[gear].spread(own[here, 1], u[here] @ R) for here, R in zip(parts, frames)]))
-            seen.append(np.stack([grids[gear].seen(own[here, 1]) for here in parts]))
+            nodes = [wanted[:, 0] == body.sign * tooth for tooth in teeth]
+            spread = [grids[gear].spread(wanted[here, 1], u[here] @ R) for here, R in zip(nodes, frames)]
+            fields.append(np.stack(spread))
+            seen.append(np.stack([grids[gear].seen(wanted[here, 1]) for here in nodes]))
             axes.append(np.stack([line_of_action(stand.pair, d) @ R for R in frames]))
         return Deflection(teeth, (fields[0], fields[1]), (seen[0], seen[1]), (axes[0], axes[1]))
 
@@ -207,6 +210,15 @@ class _OnFlank:
         h = float(np.median(np.diff(arcs)))
         low, high = np.clip(arc - h, arcs[0], arcs[-2]), np.clip(arc + h, arcs[1], arcs[-1])
         return (self._moved(1, high) - self._moved(1, low)) / (high - low)[:, None]
+
+
+def _about(grid: FlankGrid, rows: Ints, loaded: Ints) -> Mask:
+    """(m,) bool: which rows are within REACH of loaded ones of their tooth."""
+    found = np.zeros(len(rows), dtype=bool)
+    for tooth in np.unique(loaded[:, 0]):
+        own = np.flatnonzero(rows[:, 0] == tooth)
+        found[own] = grid.near(loaded[loaded[:, 0] == tooth, 1], REACH)[rows[own, 1]]
+    return found
 
 
 def _key(k: Ints, tooth: Ints) -> Ints:

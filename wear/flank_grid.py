@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.ndimage import binary_dilation
 
 from meshes.data import Floats, Ints
 from meshes.lattice import Mask
@@ -95,6 +96,13 @@ class FlankGrid:
         nearest = np.abs(self.heights[:, None] - self.heights[filled]).argmin(axis=1)
         field[self.node] = field[self.node[filled[nearest]]]
         return field
+
+    def near(self, nodes: Ints, spacings: int) -> Mask:
+        """(n,) bool: nodes so many spacings of arc from these, also in the next layers."""
+        marked, found = np.zeros(self.node.size, dtype=bool), np.zeros(self.node.size, dtype=bool)
+        marked[nodes] = True
+        found[self.node] = binary_dilation(marked[self.node], np.ones((3, 2 * spacings + 1)))
+        return found
 
     def seen(self, nodes: Ints) -> Mask:
         """(l,) bool: layers that have some of these nodes."""

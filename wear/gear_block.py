@@ -36,33 +36,72 @@ class Response:
     points: those. leaving: (p,) bool, which of them lose their pressure; that is what `released` follows.
     """
 
-    def __init__(self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, leaving: np.ndarray) -> None:
-        """About a state of a frictionless system."""
+    def __init__(
+        self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, leaving: np.ndarray,
+        staying: Response | None = None,
+    ) -> None:  # fmt: skip
+        """About a state of a frictionless system. staying: the response in which all points stay, where the matrix is
+        to follow from its matrix."""
         self._normal, self._state, self.points, self.leaving = normal, state, points, leaving
-        self._pressed = np.flatnonzero(state.traction[:, 0] > 0.0)
-        self._whole = PressureResponse(normal, state, self.everywhere(leaving))
-        self.released = self._whole.released[self._pressed]
+        self._pressed, self._staying = np.flatnonzero(state.traction[:, 0] > 0.0), staying
 
     @staticmethod
     def of(shared: SharedPosition) -> Response:
-        """Of a position's frictionless state, in which all pressed points stay."""
+        """Of a position's frictionless state, in which all pressed points stay. Raises NotConverged."""
         points = contact_points(shared.contact, shared.smooth.traction, 0.0, shared.contact.stand.extra)
-        return Response(normal_part(shared.system), shared.smooth, points, np.zeros(len(points.weights), dtype=bool))
+        none = np.zeros(len(points.weights), dtype=bool)
+        return Response(normal_part(shared.system), shared.smooth, points, none)._ready()
 
     def __call__(self, opening: Floats) -> Floats:
         """R ∂g (p,) or (p, c) [MPa] of ∂g (p,) or (p, c) [mm]."""
         return self._whole(self.everywhere(opening))[self._pressed]
 
+    def _ready(self) -> Response:
+        """With all that may fail done: a rank that fails later would fail alone."""
+        _ = self.released, self.matrix if self.few else None
+        return self
+
+    @cached_property
+    def _whole(self) -> PressureResponse:
+        return PressureResponse(self._normal, self._state, self.everywhere(self.leaving))
+
     @cached_property
     def matrix(self) -> Floats:
         """R (p, p) [MPa/mm]."""
-        return self(np.eye(len(self.leaving)))
+        if self._staying is None:
+            return self(np.eye(len(self.leaving)))
+        R = self._staying.matrix
+        return R + self._held(-R[self.leaving])
+
+    @cached_property
+    def released(self) -> Floats:
+        """(p,) [MPa]."""
+        if self._staying is None:
+            return self._whole.released[self._pressed]
+        return self._held(-self.points.pressure[self.leaving])
+
+    def _held(self, change: Floats) -> Floats:
+        """∂λ (p, ...) when the leaving points' pressures change so: by openings there, R_LL ∂g = change."""
+        assert self._staying is not None
+        R, left = self._staying.matrix, self.leaving
+        if left.all():
+            raise NotConverged("a block of wear: all points of a position would pull; take a shorter one")
+        try:
+            return np.asarray(R[:, left] @ np.linalg.solve(R[np.ix_(left, left)], change))
+        except np.linalg.LinAlgError as error:
+            raise NotConverged(f"a block of wear: points cannot leave ({error}); take a shorter one") from error
 
     def without(self, pulled: np.ndarray) -> Response:
-        """The same when those of the p points leave the contact as well."""
+        """The same when those of the p points leave the contact as well. Raises NotConverged."""
         if not pulled.any():
             return self
-        return Response(self._normal, self._state, self.points, self.leaving | pulled)
+        staying = (self._staying or self) if self.few else None
+        return Response(self._normal, self._state, self.points, self.leaving | pulled, staying)._ready()
+
+    @property
+    def few(self) -> bool:
+        """Whether its matrix is worth having."""
+        return len(self.leaving) <= SMALL
 
     def everywhere(self, values: Floats | np.ndarray) -> np.ndarray:
         """(q, ...) of values (p, ...) at the pressed points, nothing elsewhere."""
@@ -121,7 +160,7 @@ class LinearBlock:
 def _joined(responses: Sequence[Response]) -> Callable[[Floats], Floats]:
     """R of all positions, (q,) of (q,). Where they are small as one sparse matrix: forty small products take longer to
     be called than to be made."""
-    if responses and max(len(r.leaving) for r in responses) <= SMALL:
+    if responses and all(r.few for r in responses):
         whole = sp.block_diag([r.matrix for r in responses], format="csr")
         return lambda opening: np.asarray(whole @ opening)
     ends = _ends(responses)

@@ -206,7 +206,8 @@ class GearWear:
     def _solved(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
         """The pitch with friction, and what it wears off."""
         rubbed = self._sweep.rubbed(model, shared)
-        found, smooth = self._passage([own.contact for own in rubbed.results]), self._passage(rubbed.smooth)
+        found = self._passage([own.contact for own in rubbed.results])
+        smooth = self._passage(rubbed.smooth) if model.has_friction_terms(self.friction) else found
         rate, work = self._rate(found, found.pressure), sum(self._comm.allgather(found.work))
         self._certify(rate, work)
         positions = tuple(result for part in self._comm.allgather(rubbed.results) for result in part)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from meshes.limits import check_gear
 
@@ -118,7 +119,7 @@ class GearParameters:
         """m_t = m_n / cos β [4.2.7]."""
         return self.normal_module / math.cos(self.helix_angle)
 
-    @property
+    @cached_property
     def transverse_pressure_angle(self) -> float:
         """α_t, tan α_t = tan α_n / cos β [4.3.6]."""
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
@@ -133,12 +134,12 @@ class GearParameters:
         """d_b = d cos α_t [4.3.10]."""
         return self.reference_diameter * math.cos(self.transverse_pressure_angle)
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """r_b = d_b / 2."""
         return self.base_diameter / 2.0
 
-    @property
+    @cached_property
     def base_helix_angle(self) -> float:
         """β_b ≥ 0, sin β_b = sin β cos α_n [4.3.3]."""
         return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
@@ -148,7 +149,7 @@ class GearParameters:
         """p_bt = π m_t cos α_t [4.4.5]."""
         return math.pi * self.base_diameter / self.z
 
-    @property
+    @cached_property
     def twist(self) -> float:
         """Turn of the transverse section about +z per mm of z [rad/mm]: hand·tan β / (d/2) = hand·tan β_b / r_b."""
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
@@ -168,7 +169,7 @@ class GearParameters:
         """ψ = (π + 4x tan α_n) / 2z: half the tooth's angle on the reference circle [4.7.2]."""
         return (math.pi + 4.0 * self.profile_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
 
-    @property
+    @cached_property
     def base_half_angle(self) -> float:
         """ψ_b = ψ + inv α_t: half the tooth's angle on the base circle [4.7.2]."""
         return self.tooth_half_angle + involute(self.transverse_pressure_angle)

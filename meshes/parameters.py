@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,7 +55,7 @@ class GearPair:
         """b_w, the common face width; the wider gear overhangs evenly."""
         return min(self.pinion.face_width, self.wheel.face_width)
 
-    @property
+    @cached_property
     def operating_pressure_angle(self) -> float:
         """α_wt, cos α_wt = (r_b1 + r_b2) / a [5.2.4]."""
         return math.acos((self.pinion.base_radius + self.wheel.base_radius) / self.centre_distance)
@@ -82,13 +83,13 @@ class GearPair:
         cosine = math.cos(self.operating_pressure_angle)
         return self.pinion.base_diameter / cosine, self.wheel.base_diameter / cosine
 
-    @property
+    @cached_property
     def pitch_point_roll_lengths(self) -> tuple[float, float]:
         """Transverse curvature radii (ρ_C1, ρ_C2) = r_b tan α_wt at the pitch point [5.4.5.3]."""
         tangent = math.tan(self.operating_pressure_angle)
         return self.pinion.base_radius * tangent, self.wheel.base_radius * tangent
 
-    @property
+    @cached_property
     def path_of_contact(self) -> tuple[float, float]:
         """Roll distances (ξ_A, ξ_E) of the start (wheel tip) and the end (pinion tip) of engagement [5.4.5.2]."""
         pitch_1, pitch_2 = self.pitch_point_roll_lengths

@@ -29,8 +29,8 @@ def fresh() -> tuple[GearWear, PitchState]:
 def test_response_as_a_matrix() -> None:
     """R times an opening is the same by the matrix and by the product, to rounding; points that have left the contact
     keep no pressure, whatever opens."""
-    shared = fresh()[1].shared[0]
-    whole = Response.of(shared)
+    now = fresh()[1]
+    whole = Response.of(now.shared[0], now.points[0])
     pulled = np.arange(len(whole.leaving)) % 3 == 0
     for response in (whole, whole.without(pulled)):
         opening = 1e-3 * np.cos(np.arange(len(response.leaving)))

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from meshes.data import Floats, Ints
 from solver.equilibrium import CondensedSystem, Equilibrium, normal_part
-from solver.gear_points import ContactPoints, contact_points
+from solver.gear_points import ContactPoints
 from solver.gear_position import SharedPosition
 from solver.newton import NotConverged
 from solver.newton_steps import RELATIVE
@@ -46,9 +46,8 @@ class Response:
         self._pressed, self._staying = np.flatnonzero(state.traction[:, 0] > 0.0), staying
 
     @staticmethod
-    def of(shared: SharedPosition) -> Response:
-        """Of a position's frictionless state, in which all pressed points stay. Raises NotConverged."""
-        points = contact_points(shared.contact, shared.smooth.traction, 0.0, shared.contact.stand.extra)
+    def of(shared: SharedPosition, points: ContactPoints) -> Response:
+        """Of a position's frictionless state, in which all its pressed points stay. Raises NotConverged."""
         none = np.zeros(len(points.weights), dtype=bool)
         return Response(normal_part(shared.system), shared.smooth, points, none)._ready()
 

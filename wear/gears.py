@@ -43,13 +43,14 @@ PUT_ON = 1e-7  # of a block's volume may be left out: depths below zero, a tenth
 class PitchState(Evaluated):
     """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
     width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were;
-    refreshed: how often the meshes had followed. passage: of this rank's positions in the states without friction."""
+    refreshed: how often the meshes had followed. points, passage: of this rank's positions without friction."""
 
     positions: tuple[PositionResult, ...]
     work: float
     shared: tuple[SharedPosition, ...]
     searched: int
     refreshed: int
+    points: tuple[ContactPoints, ...]
     passage: Passage
 
 
@@ -157,7 +158,7 @@ class GearWear:
         if now.refreshed != self.refreshed:
             raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
-        responses = together(self._comm, lambda: [Response.of(shared) for shared in counted])
+        responses = together(self._comm, lambda: [Response.of(*each) for each in zip(counted, now.points)])
         found, openings = now.passage, self._opened([r.points for r in responses])
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
         gained, more = block.solved(responses, self._comm)
@@ -213,8 +214,9 @@ class GearWear:
         positions = tuple(result for part in self._comm.allgather(rubbed.results) for result in part)
         decay = self._decay(rate, positions)
         return PitchState(
-            rate, self.areas, np.inf, decay, positions, work, tuple(shared), searched, self.refreshed, smooth
-        )
+            rate, self.areas, np.inf, decay, positions, work, tuple(shared), searched, self.refreshed,
+            tuple(rubbed.smooth), smooth,
+        )  # fmt: skip
 
     def _decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
         """Cycles in which a ripple of two nodes along the profile decays to 1/e where flanks wear fastest: 1/(K/H

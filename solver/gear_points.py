@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -35,6 +36,12 @@ class ContactPoints:
     sliding: Floats
     sticks: np.ndarray
     edge: np.ndarray
+
+    @staticmethod
+    def joined(positions: Sequence[ContactPoints]) -> ContactPoints:
+        """All points of one or more positions, in their order."""
+        names = [field.name for field in fields(ContactPoints)]
+        return ContactPoints(*(np.concatenate([getattr(own, name) for own in positions]) for name in names))
 
     @property
     def pressure(self) -> Floats:

@@ -10,7 +10,7 @@ so torques, energy and the friction trend are known in closed form, and every fi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -96,7 +96,7 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
     stand = Stand(pair, angle, (error / pair.pinion.base_radius, 0.0))
     teeth = [each.tooth for each in contact_lines(pair, angle)]
     parts = [contact_points(stand, flank, tooth, line, friction) for tooth in teeth]
-    points = ContactPoints(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(ContactPoints)))
+    points = ContactPoints.joined(parts)
     tooth, node, traction = (np.concatenate(c) for c in zip(*(nodal(stand, flank, t, line, friction) for t in teeth)))
     torque = estimate.pinion_torque / (pair.face_width if d == 2 else 1.0)
     loss = float(np.sum(points.weights[:, None] * points.traction[:, 1:] * points.rate[:, 1:]))

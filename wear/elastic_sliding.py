@@ -99,13 +99,12 @@ class PitchDeflection:
         """What is to be added (q,) [mm/rad] to the sliding of undeflected flanks, at points of positions k."""
         if not points:
             return []
-        names, counts = ("tooth", "z", "ξ", "across", "opposite"), [len(own.ξ) for own in points]
-        tooth, z, ξ, *across = (np.concatenate([getattr(own, name) for own in points]) for name in names)
-        k = np.repeat(numbers, counts)
+        counts, every = [len(own.ξ) for own in points], ContactPoints.joined(points)
+        k, tooth, ξ = np.repeat(numbers, counts), every.tooth, every.ξ
         teeth = self._stand(k - 1, tooth), self._stand(k, tooth), self._stand(k + 1, tooth)
         more = np.zeros(len(k))
-        for gear, s in enumerate(across):
-            own = _OnFlank(self, gear, z, ξ, s, teeth)
+        for gear, s in enumerate((every.across, every.opposite)):
+            own = _OnFlank(self, gear, every.z, ξ, s, teeth)
             turning = self.pair.curvature_radii(ξ)[gear] * self._turning[gear, k]
             more += own.shift() / (1.0, self.pair.ratio)[gear] + turning + SIGNS[gear] * own.tangential_rate()
         return np.split(more, np.cumsum(counts)[:-1])
@@ -158,18 +157,23 @@ class _OnFlank:
         """(q,) [mm] how far along the line of action deflection and wear have moved the points."""
         worn, β = self.pitch.worn[self.gear], self.pitch.pair.pinion.base_helix_angle
         lost = np.zeros(len(self.z)) if worn is None else self._hats(self._arc(self.ξ)) @ worn
-        return _dots(self._axis(0), self._moved(1, self._arc(self.ξ))) - SIGNS[self.gear] * np.cos(β) * lost
+        return _dots(self._axis(0), self._here) - SIGNS[self.gear] * np.cos(β) * lost
 
     def tangential_rate(self) -> Floats:
         """t·R u' (q,) [mm/rad]."""
         pair, onward = self.pitch.pair, self.pitch.pair.pinion.base_radius * self.pitch.step
-        here, there = self._moved(1, self._arc(self.ξ)), [self._seen(0), self._seen(2)]
+        there = self._seen(0), self._seen(2)
         ends = [self._moved(i, self._arc(self.ξ + way)) for i, way in ((0, -onward), (2, onward))]
-        before, after = (np.where(known[:, None], end, here) for known, end in zip(there, ends))
+        before, after = (np.where(known[:, None], end, self._here) for known, end in zip(there, ends))
         change = (after - before) / (self.pitch.step * np.maximum(np.sum(there, axis=0), 1)[:, None])
         line_speed = pair.curvature_radii(self.ξ)[self.gear] * (1.0, -1.0 / pair.ratio)[self.gear]
         line_speed = np.where(self._bearing(self.ξ) == self.ξ, line_speed, 0.0)
         return _dots(self._axis(1), change - line_speed[:, None] * self._slope())
+
+    @cached_property
+    def _here(self) -> Floats:
+        """u (q, d) of the points now."""
+        return self._moved(1, self._arc(self.ξ))
 
     def _bearing(self, ξ: Floats) -> Floats:
         """Roll distances (q,) at which this flank is touched; beyond the path of contact by its tip, which stays."""

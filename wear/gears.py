@@ -222,9 +222,8 @@ class GearWear:
         """Cycles in which a ripple of two nodes along the profile decays to 1/e where flanks wear fastest: 1/(K/H
         πE*/ℓ s), the sliding distance s of a passage being that of the rate (K/H) p̄ s. Between the tip-edge zones: the
         pits of edges are as deep as the mesh makes them."""
-        contacts = [position.contact for position in positions]
-        pressure, weights = (np.concatenate([getattr(c, name) for c in contacts]) for name in ("pressure", "weights"))
-        mean = float(weights @ pressure**2) / float(weights @ pressure)
+        points = ContactPoints.joined([position.contact for position in positions])
+        mean = float(points.weights @ points.pressure**2) / float(points.weights @ points.pressure)
         ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
         modulus = joint_modulus(*(body.material for body in self.model.bodies))
         inner = [grid.inner(self.model.pair, gear) for gear, grid in enumerate(self.grids)]
@@ -253,7 +252,7 @@ class GearWear:
         """(q, n) by how much depths open the gap at the points of positions."""
         if not positions:
             return sp.csr_matrix((0, len(self.areas)))
-        names = ("z", "ξ", "across", "opposite")
-        z, ξ, *places = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
-        arcs = [line_arc(self.model.pair, gear, ξ) + s for gear, s in enumerate(places)]
-        return sp.hstack([grid.hats(u, z) for grid, u in zip(self.grids, arcs)]).tocsr()
+        points = ContactPoints.joined(positions)
+        places = enumerate((points.across, points.opposite))
+        arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
+        return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()

@@ -60,14 +60,13 @@ def passage(
     step = pair.pinion.base_radius * turn
     count = max(int(np.ceil(step / (FINE * np.diff(grid.arcs).min()))) for grid in grids)
     η = step * ((np.arange(-count, count) + 0.5) / count)
-    names = ("z", "ξ", "across", "opposite", "weights", "pressure", "sliding")
-    z, ξ, across, opposite, w, λ, v = (np.concatenate([getattr(p, name) for p in positions]) for name in names)
-    works = _shares(pair, v / (1.0 + 1.0 / pair.ratio), η, step) * w[:, None]
+    points = ContactPoints.joined(positions)
+    works = _shares(pair, points.sliding / (1.0 + 1.0 / pair.ratio), η, step) * points.weights[:, None]
     depths = []
-    for gear, s in enumerate((across, opposite)):
-        u = line_arc(pair, gear, ξ[:, None] + η) + s[:, None]
-        depths.append(grids[gear].gathered(u, z, works))
-    return Passage((depths[0], depths[1]), works.sum(axis=1), λ)
+    for gear, s in enumerate((points.across, points.opposite)):
+        u = line_arc(pair, gear, points.ξ[:, None] + η) + s[:, None]
+        depths.append(grids[gear].gathered(u, points.z, works))
+    return Passage((depths[0], depths[1]), works.sum(axis=1), points.pressure)
 
 
 def _shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:

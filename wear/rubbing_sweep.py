@@ -91,10 +91,11 @@ class RubbingSweep:
         self, model: GearModel, swept: Sequence[SweptPosition], shared: Sequence[SharedPosition], pitch: PitchDeflection
     ) -> Rubbed:
         results = [position.results[0] for position in swept]
-        smooth = [self._smooth_points(model, common) for common in shared]
         rough = self._with_more([result.contact for result in results], pitch)
         found = [replace(result, contact=points) for result, points in zip(results, rough)]
-        return Rubbed(found, self._with_more(smooth, pitch) if model.has_friction_terms(self.friction) else rough)
+        if not model.has_friction_terms(self.friction):
+            return Rubbed(found, rough)
+        return Rubbed(found, self._with_more([self._smooth_points(model, common) for common in shared], pitch))
 
     def _smooth_points(self, model: GearModel, shared: SharedPosition) -> ContactPoints:
         stand = shared.contact.stand.turned(model.load.on, float(shared.smooth.motion[0]))

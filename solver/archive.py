@@ -134,6 +134,11 @@ class Archive:
         self.require_own(arrays)
         return arrays
 
+    def is_own(self) -> bool:
+        """Whether positions of this very scene are kept. Raises ArchiveError where what is kept cannot be read."""
+        path = self.folder / "state.npz"
+        return path.exists() and str(read_arrays(path)["fingerprint"]) == self.fingerprint
+
     def require_own(self, arrays: dict[str, Any]) -> None:
         """Raises ArchiveError where what was kept is another scene's."""
         if str(arrays["fingerprint"]) != self.fingerprint:

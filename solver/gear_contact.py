@@ -7,10 +7,12 @@ be searched instead, to show that it changes nothing.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,39 +22,13 @@ from solver.chain import Part
 from solver.cores import Threads
 from solver.equilibrium import CondensedSystem
 from solver.gear_body import GearBody
-from solver.gear_normals import pressing_normals
-from solver.gear_window import arc_distance, facets_in_window, placed_flanks
+from solver.gear_window import arc_distance
 from solver.kinematics import Stand, spin
-from solver.nitsche import ContactOperator, contact_operator, stacked
-from solver.search import Pairing, pair_surfaces
+from solver.nitsche import ContactOperator, stacked
+from solver.tooth_contact import PENETRATION, Displaced, ToothContact, tooth_contact
 
-GAP = 0.2  # how far apart [module] flanks are looked at
 GEOMETRIC = "as_made", "hats", "tooth", "node", "spins", "ξ", "at_edge", "point_tooth", "across", "opposite", "distance"
 """What of a contact does not depend on wear."""
-PENETRATION = 0.5  # how deep [module] undeformed flanks may overlap: far beyond any deflection of small strain
-
-
-@dataclass(frozen=True)
-class ToothContact:
-    """One tooth pair at a position: its index and its contact operator on the flank nodes of the pinion, before wear;
-    and where its points lie on both flanks."""
-
-    tooth: int
-    operator: ContactOperator
-    pairing: Pairing
-
-    def touched(self, gear: int) -> Ints:
-        """Flank nodes of a gear that the jump sees, sorted."""
-        return self.operator.nodes if gear == 0 else self._wheel_nodes
-
-    @cached_property
-    def _wheel_nodes(self) -> Ints:
-        return np.unique(self.operator.jump2.indices)
-
-    @cached_property
-    def projection(self) -> Floats:
-        """Π from the wheel's touched nodes, (n, m); dense in most of its entries."""
-        return np.asarray(self.operator.jump2[:, self._wheel_nodes].toarray())
 
 
 @dataclass(frozen=True)
@@ -136,12 +112,20 @@ class GearContact:
 
     @cached_property
     def points(self) -> tuple[Floats, Floats]:
-        """Positions (n, d) of the pinion's nodes and of the wheel's flank opposite, in the common frame."""
+        """Positions (n, d) of the pinion's nodes and of the wheel's flank opposite in the common frame, undeflected."""
         first, second = [], []
         for t in self.teeth:
             first.append(t.operator.jump1 @ self._placed_points(0, t.tooth))
             second.append(t.operator.jump2 @ self._placed_points(1, t.tooth))
         return np.concatenate(first), np.concatenate(second)
+
+    @cached_property
+    def pressed_at(self) -> tuple[Floats, Floats]:
+        """Where the forces act: the same, displaced as the flanks were when they were searched."""
+        found = []
+        for gear, points in enumerate(self.points):
+            found.append(np.concatenate([t.displaced_from(gear, x) for t, x in zip(self.teeth, self._split(points))]))
+        return found[0], found[1]
 
     def _placed_points(self, gear: int, tooth: int) -> Floats:
         R = self.stand.rotation(gear, self.d, tooth)
@@ -152,9 +136,13 @@ class GearContact:
         """Local jumps (n, d) per radian of pinion rotation and of wheel rotation (about +z each)."""
         result = []
         for gear, sign in ((0, 1.0), (1, -1.0)):
-            moved = spin(self.points[gear], self.stand.centre(gear, self.d), self.stand.axis(gear))
+            moved = spin(self.pressed_at[gear], self.stand.centre(gear, self.d), self.stand.axis(gear))
             result.append(sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
         return result[0], result[1]
+
+    def _split(self, values: Floats) -> list[Floats]:
+        """Values (n, …) of the nodes by tooth pair."""
+        return np.split(values, np.cumsum([len(t.operator.nodes) for t in self.teeth])[:-1])
 
     @cached_property
     def ξ(self) -> Floats:
@@ -196,9 +184,8 @@ class GearContact:
 
     def pushed(self, gear: int, contact_forces: Floats) -> Floats:
         """What contact forces (n, k) do to a gear, (m, d) on its `rows` in its own frame [N]."""
-        parts = np.split(contact_forces, np.cumsum([len(t.operator.nodes) for t in self.teeth])[:-1])
         maps = self.jump_maps(gear, contact_forces.shape[1])
-        return np.concatenate([-E.forces(f) for E, f in zip(maps, parts)])
+        return np.concatenate([-E.forces(f) for E, f in zip(maps, self._split(contact_forces))])
 
     def _compliance(self, gear: int, k: int, threads: Threads) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
@@ -262,31 +249,13 @@ class GearContact:
 
 
 def gear_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float
-) -> GearContact:
+    bodies: tuple[GearBody, GearBody], stand: Stand, teeth: list[int], half_width: float,
+    displaced: Mapping[int, Displaced] = MappingProxyType({}),
+) -> GearContact:  # fmt: skip
     """Searches all tooth pairs that may touch at this stand. half_width: of the window [mm of profile arc],
-    infinite where the whole flanks are searched.
+    infinite where the whole flanks are searched. displaced: of tooth pairs that are searched as they have deflected.
 
     Raises SearchError.
     """
-    found = [_tooth_contact(bodies, stand, tooth, half_width) for tooth in teeth]
+    found = [tooth_contact(bodies, stand, tooth, half_width, displaced.get(tooth)) for tooth in teeth]
     return GearContact(bodies, stand, tuple(contact for contact in found if contact is not None), half_width)
-
-
-def _tooth_contact(
-    bodies: tuple[GearBody, GearBody], stand: Stand, tooth: int, half_width: float
-) -> ToothContact | None:
-    pinion = bodies[0]
-    assert pinion.traction is not None
-    facets = np.flatnonzero(facets_in_window(pinion, stand, tooth, half_width))
-    if len(facets) == 0:
-        return None
-    first, second = placed_flanks(bodies, stand, tooth)
-    module = pinion.gear.normal_module
-    pairing = pair_surfaces(first, second, GAP * module, PENETRATION * module, facets)
-    if len(pairing.weight) == 0:
-        return None
-    frames = pinion.traction.frames @ stand.rotation(0, pinion.d, tooth).T
-    operator = contact_operator(pairing, first, second, pinion.traction.stabiliser, frames)
-    operator = operator.pressing_along(pressing_normals(operator, pinion, second, stand, tooth))
-    return ToothContact(tooth, operator, pairing)

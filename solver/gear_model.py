@@ -39,7 +39,8 @@ class GearModel:
     """All that positions share.
 
     teeth: tooth pairs that may touch within the pitch. half_width: of the window to start with [mm of arc],
-    infinite where the whole flanks are searched. friction_terms: also keep them where μ = 0.
+    infinite where the whole flanks are searched. friction_terms: also keep them where μ = 0. deflected: flanks touch as
+    they have deflected.
     """
 
     pair: GearPair
@@ -48,6 +49,7 @@ class GearModel:
     load: GearLoad
     half_width: float
     friction_terms: bool = False
+    deflected: bool = False
 
     def has_friction_terms(self, friction: float) -> bool:
         """Whether tangential components and a memory are kept at this μ."""
@@ -97,7 +99,7 @@ def prepare_model(
     load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
     model = GearModel(
         pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
-        friction_terms="friction-terms" in switched_off(scene),
+        friction_terms="friction-terms" in switched_off(scene), deflected="deflected-flanks" in switched_off(scene),
     )  # fmt: skip
     return Preparation(model, meshed - begin, time.perf_counter() - meshed)
 

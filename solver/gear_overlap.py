@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats, Ints
-from solver.gear_contact import PENETRATION, GearContact
+from solver.gear_contact import GearContact
 from solver.gear_window import facets_in_window, placed_flanks
 from solver.kinematics import spin
 from solver.lagrange import tabulate
 from solver.search import Pairing, pair_surfaces
 from solver.surface import Surface
+from solver.tooth_contact import PENETRATION
 
 NEARLY = 5e-3  # modules: flanks so far apart may overlap once the gears have turned on, see gear_position.STALE
 

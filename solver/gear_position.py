@@ -231,12 +231,20 @@ def solve_position(
     contact, smooth = shared.contact, shared.smooth
     found = smooth
     if before is not None:
-        ξ_before = contact.ξ - model.pair.pinion.base_radius * span
-        rate = relative_velocity(contact)
-        slip = slipped(model, contact, before, rate, ξ_before, span)
         near = foretold(friction, [Solved(0.0, smooth), *solved])
-        found = frictional(shared.system, friction, slip, known_heading(contact, rate), smooth, near)
+        found = rubbing(model, contact, shared.system, friction, smooth, before, span, near)
     return position_result(model, contact, found, friction, smooth.iterations), Solved(friction, found)
+
+
+def rubbing(
+    model: GearModel, contact: GearContact, system: CondensedSystem, friction: float, smooth: Equilibrium,
+    before: Past, span: float, near: Start | None = None,
+) -> Equilibrium:  # fmt: skip
+    """Equilibrium with friction, from the past; smooth: the one without; near: a guess of it. Raises NotConverged."""
+    ξ_before = contact.ξ - model.pair.pinion.base_radius * span
+    rate = relative_velocity(contact)
+    slip = slipped(model, contact, before, rate, ξ_before, span)
+    return frictional(system, friction, slip, known_heading(contact, rate), smooth, near)
 
 
 def foretold(friction: float, solved: Sequence[Solved]) -> Start | None:

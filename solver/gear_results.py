@@ -120,6 +120,7 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
 
     After a pitch all teeth are as deflected as before it, so that nothing is stored. What remains is the error of the
     contact's geometry, which takes the flanks' normals before deflection: it falls with the load, not with the mesh
-    (7e-4 where a is 3 % of the radius of curvature and tips bear, a fifteenth of it at a tenth of the load).
+    (7e-4 where a is 3 % of the radius of curvature and tips bear, a fifteenth of it at a tenth of the load, and as
+    little on deflected flanks, `gear_deflected`).
     """
     return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)

@@ -14,9 +14,17 @@ from itertools import cycle
 
 import numpy as np
 
+from solver.gear_deflected import settled
 from solver.gear_memory import Footprint, Memory, Past, recalled, remembered
 from solver.gear_model import GearModel
-from solver.gear_position import PositionResult, SharedPosition, Solved, shared_position, solve_position
+from solver.gear_position import (
+    PositionResult,
+    SharedPosition,
+    Solved,
+    position_result,
+    shared_position,
+    solve_position,
+)
 from solver.newton import NotConverged
 
 HALVINGS = 4
@@ -108,32 +116,43 @@ def _position(
     begin = time.perf_counter()
     if shared is None:
         shared = shared_position(model, angle, state.extra, frictions, state.footprint)
-    pasts, span = _pasts(model, shared, frictions, state, span)
+    before, span = _remembered(model, shared, frictions, state, span)
+    pasts = iter(_pasts(shared, before))
     spent = time.perf_counter() - begin
     results: list[PositionResult] = []
     memories: list[Memory | None] = []
     solved: list[Solved] = []
-    for μ, past in zip(frictions, pasts):
+    for μ, memory in zip(frictions, before):
         begin = time.perf_counter()
-        result, found = solve_position(model, shared, μ, past, span, solved)
+        result, found = solve_position(model, shared, μ, next(pasts) if memory is not None else None, span, solved)
         solved.append(found)
-        memories.append(remembered(model, shared.contact, found.state) if past is not None else None)
+        contact, equilibrium = shared.contact, found.state
+        if model.deflected:
+            contact, equilibrium = settled(model, contact, equilibrium, μ, memory, span)
+            result = position_result(model, contact, equilibrium, μ, shared.smooth.iterations)
+        memories.append(remembered(model, contact, equilibrium) if memory is not None else None)
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
     return SweptPosition(angle, False, tuple(results), after)
 
 
-def _pasts(
+def _remembered(
     model: GearModel, shared: SharedPosition, frictions: Sequence[float], state: SweepState, span: float
-) -> tuple[list[Past | None], float]:
-    """The past of each friction coefficient (None for μ = 0) and the step [rad] since then. Where nothing is
+) -> tuple[tuple[Memory | None, ...], float]:
+    """The memory of each friction coefficient (None for μ = 0) and the step [rad] since then. Where nothing is
     remembered, the flanks are taken to have moved by `span` in the state without friction."""
-    contact, rough = shared.contact, [model.has_friction_terms(μ) for μ in frictions]
-    kept = [memory for memory in state.memories if memory is not None]
-    if kept:
-        pasts, span = iter(recalled(contact, kept)), contact.stand.angle - kept[0].stand.angle
-    else:
-        fresh = [remembered(model, contact, shared.smooth)] if any(rough) else []
-        pasts = cycle(recalled(contact, fresh))
-    return [next(pasts) if slips else None for slips in rough], span
+    kept = next((memory for memory in state.memories if memory is not None), None)
+    if kept is not None:
+        return state.memories, shared.contact.stand.angle - kept.stand.angle
+    rough = [model.has_friction_terms(μ) for μ in frictions]
+    fresh = remembered(model, shared.contact, shared.smooth) if any(rough) else None
+    return tuple(fresh if slips else None for slips in rough), span
+
+
+def _pasts(shared: SharedPosition, memories: Sequence[Memory | None]) -> Iterator[Past]:
+    """What each memory tells; the same one is asked once."""
+    known = [memory for memory in memories if memory is not None]
+    if len(known) > 1 and all(memory is known[0] for memory in known):
+        return cycle(recalled(shared.contact, known[:1]))
+    return iter(recalled(shared.contact, known))

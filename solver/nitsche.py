@@ -67,6 +67,12 @@ class ContactOperator:
         shorter = np.einsum("ja,ja->j", normals, self.frames[:, 0])
         return replace(self, frames=tangent_frames(normals), gap=self.gap * (self.shape @ shorter))
 
+    def before(self, jump: Floats) -> ContactOperator:
+        """Of surfaces that were searched after displacements with jumps (q, d) at the points: with the gap from before,
+        as a jump counts these displacements too."""
+        normals = self.shape @ self.frames[:, 0]
+        return replace(self, gap=self.gap + np.einsum("qa,qa->q", normals, jump))
+
     def worn(self, depth: Floats, softness: Floats) -> ContactOperator:
         """Between surfaces that have lost `depth` (q,) [mm] together, and lose `softness` (q,) [mm/MPa] times the
         pressure more while it acts: in series with γ, as λ = γ(J − g − h − cλ)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -21,38 +21,80 @@ from solver.parallel import on_first
 from solver.progress import Progress
 from solver.rank_sweep import sweep_on_ranks
 from solver.results import Timings
-from solver.run_output import Sweep, certify, peak_memory_MB, timings_of, write_output
-from solver.run_start import Start, kept_start, logged, open_archive, same_meshes
+from solver.run_output import (
+    PitchImbalance,
+    Sweep,
+    certify,
+    certify_pitch,
+    peak_memory_MB,
+    timings_of,
+    write_output,
+)
+from solver.run_start import Start, continued, kept_start, logged, open_archive, same_meshes
 from solver.run_wear import wear_scene, write_wear
 from solver.scene import Scene
-from solver.skips import pitches, skipped, skips, switched_off, wanted_output, warm_up_positions
+from solver.skips import pitches, skipped, skips, switched_off, wanted_output, warm_up_positions, with_deflected_flanks
 
 
 def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
     resume: go on after the positions, or the blocks of wear, that `out` holds; else what an earlier run left there is
-    removed once the gears are ready. Raises NotConverged, BalanceError, MeshError, ArchiveError, WearStopped,
+    removed once the gears are ready. A pitch whose energy does not balance is solved again on deflected flanks, as the
+    scene that asks for these. Raises NotConverged, BalanceError, MeshError, ArchiveError, WearStopped,
     VolumeLost, OSError, on all ranks; nothing unconverged is ever written.
     """
     comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
-    archive = Archive(out, scene)
-    start = on_first(comm, lambda: kept_start(scene, archive, resume))  # before the first file is touched
+    scene = on_first(comm, lambda: continued(scene, Archive(out, scene), resume))
+    start = on_first(comm, lambda: kept_start(scene, Archive(out, scene), resume))  # before the first file is touched
     with logged(out, comm, start) as log:
+        task = _Task(scene, Archive(out, scene), comm, begin, quiet, log)
+        try:
+            task.run(start, resume)
+        except PitchImbalance as error:
+            deflected = with_deflected_flanks(scene)
+            if deflected is scene:
+                raise
+            log.info("%s", error)
+            log.info("solved again, on deflected flanks")
+            replace(task, scene=deflected, archive=Archive(out, deflected)).run(None, False)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A scene on its way: its archive, ranks, when it began."""
+
+    scene: Scene
+    archive: Archive
+    comm: MPI.Comm
+    begin: float
+    quiet: bool
+    log: logging.Logger
+
+    def run(self, start: Start | None, resume: bool) -> None:
+        """Everything, from the beginning or what the archive holds. Raises what `run_scene` does."""
+        scene, archive, comm, log = self.scene, self.archive, self.comm, self.log
         for skip in skipped(scene):
             log.info("skipped, %s: %s", skip.name, skip.sentence)
         for name in switched_off(scene):
             log.info("not skipped, as asked: %s", name)
         if scene.wear is None:
-            sweep = _swept(scene, archive, start, comm, quiet, log)
+            sweep = _swept(scene, archive, start, comm, self.quiet, log)
+            on_first(comm, lambda: _certify_archive(scene, archive))  # before anything else is computed
         else:
-            sweep = wear_scene(scene, archive, resume, comm, quiet, log)
+            sweep = wear_scene(scene, archive, resume, comm, self.quiet, log)
         companion = companion_of(scene, archive, pitch_of(scene), comm) if wanted_output(scene).error_bars else None
         memory = comm.allreduce(peak_memory_MB())
-        on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
+        on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, self.begin, memory, log))
         if scene.wear is not None:
-            on_first(comm, lambda: write_wear(scene, out, log))
+            on_first(comm, lambda: write_wear(scene, archive.out, log))
+
+
+def _certify_archive(scene: Scene, archive: Archive) -> None:
+    """Raises PitchImbalance."""
+    positions = archive.read_positions(scene.gear_pair())
+    certify_pitch(position.results for position in positions if not position.warm_up)
 
 
 def _swept(

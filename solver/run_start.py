@@ -18,6 +18,7 @@ from solver.parallel import together
 from solver.results import write_text
 from solver.scene import GEARS, Scene
 from solver.sectors import sector_meshes
+from solver.skips import with_deflected_flanks
 from solver.surface import surface_of
 
 Meshes = tuple[MeshData, MeshData]
@@ -39,6 +40,12 @@ def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
     kept = archive.read_state(scene.gear_pair()) if resume else None
     return None if kept is None else Start(*kept)
+
+
+def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:
+    """The scene as it is to be solved: on deflected flanks where an earlier run, to be resumed, has come to that."""
+    other = with_deflected_flanks(scene)
+    return other if resume and Archive(archive.out, other).is_own() else scene
 
 
 def same_meshes(scene: Scene, archive: Archive) -> Meshes:

@@ -123,6 +123,11 @@ class Surface:
         turn = np.asarray(rotation, dtype=np.float64)
         return replace(self, points=self.points @ turn.T + np.asarray(translation), normals=self.normals @ turn.T)
 
+    def displaced(self, u: Floats) -> Surface:
+        """The surface whose nodes have moved by u (n, d) [mm], with normals of its own. Raises ValueError where a facet
+        folds."""
+        return Surface.from_arrays(self.points + u, self.facets, self.shape, self.order, self.nodes)
+
     def _rule(self) -> tuple[Floats, Floats, Floats]:
         """Hats (q, k), shape functions (q, k) and measures (m, q) of a rule on all sub-facets."""
         xi, w = subcell_rule(self.shape, self.order, MASS_DEGREE)

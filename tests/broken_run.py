@@ -4,7 +4,8 @@ HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive re
 written); full-N (no space for the N-th); raise-R-N (rank R fails in its N-th turn, the first of one
 position and then of two); killrank-R-N (rank
 R is killed there); nan-N (its compliance is no number at the N-th search); unbalanced (a position fails
-its balance); count (prints how many gears this rank condensed and how many positions it searched).
+its balance); leaking, strict, strict-N (a pitch fails its balance; fails only before deflection, and the N-th file
+is not replaced); count (prints how many gears this rank condensed and how many positions it searched).
 """
 
 from __future__ import annotations
@@ -117,6 +118,9 @@ def break_it(how: str) -> None:
         run_output.STORED_LIMIT = 1e-9
     elif how == "leaking":
         run_output.BALANCE_LIMIT = 1e-9
+    elif kind == "strict":
+        run_output.BALANCE_LIMIT = 2e-3
+        before_call(archive.os, "replace", kill_when(int(numbers[0]) if numbers else 0))
 
 
 if __name__ == "__main__":

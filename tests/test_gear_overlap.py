@@ -9,7 +9,7 @@ import pytest
 from gear_cases import helical_scene, model_of
 
 from evidence.stress.random_scenes import random_scene
-from solver import gear_contact, gear_position
+from solver import gear_contact, gear_position, tooth_contact
 from solver.gear_contact import GearContact
 from solver.gear_model import GearModel
 from solver.gear_overlap import overlap_outside, unwatched
@@ -89,9 +89,9 @@ def test_deep_overlap_is_not_left_out(deep: GearModel, monkeypatch: pytest.Monke
 
     found = loaded(TIMES)
     assert 0.2 * module < -found.contact.operator.gap.min() < 0.4 * module
-    monkeypatch.setattr(gear_contact, "PENETRATION", 1.0)
+    monkeypatch.setattr(tooth_contact, "PENETRATION", 1.0)
     assert approach(loaded(TIMES)) == pytest.approx(approach(found), rel=1e-9)
-    monkeypatch.setattr(gear_contact, "PENETRATION", 0.2)
+    monkeypatch.setattr(tooth_contact, "PENETRATION", 0.2)
     monkeypatch.setattr(GearContact, "too_deep", False)
     with pytest.raises(NotConverged, match="found none"):
         loaded(TIMES)

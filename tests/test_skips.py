@@ -53,6 +53,7 @@ ANSWERS = {
     "one-sector": Case("one-sector", SPUR),
     "far-teeth": Case("far-teeth", SPUR),
     "window": Case("window", SPUR),
+    "deflected-flanks": Case("deflected-flanks", SPUR),
     "coarse-body": Case("coarse-body", SPUR),
     "reuse": Case("reuse", SPUR),
     "fields": Case("fields", (*SPUR, SMOOTH)),

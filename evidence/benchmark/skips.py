@@ -47,6 +47,7 @@ CASES = (
     Case("one-sector", SPUR, (*QUICK, SMOOTH, FOUR)),
     Case("far-teeth", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("window", HELICAL, (*QUICK, SMOOTH, FOUR)),
+    Case("deflected-flanks", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("coarse-body", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("reuse", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("error-bars", HELICAL, (*QUICK, SMOOTH, FOUR)),

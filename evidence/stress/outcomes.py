@@ -19,6 +19,7 @@ from solver.newton import NotConverged
 from solver.run_output import BalanceError, certify, certify_pitch
 from solver.scene import Scene
 from solver.search import SearchError
+from solver.skips import with_deflected_flanks
 
 POSITIONS = 6
 REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)
@@ -63,6 +64,8 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
     begin = time.process_time()
     try:
         found = _swept(scene, seed)
+        if found.verdict is Verdict.UNBALANCED:
+            found = _swept(with_deflected_flanks(scene), seed)
     except REFUSALS as error:
         found = Outcome(seed, Verdict.REFUSED, f"{type(error).__name__}: {error}")
     except Exception:

@@ -16,12 +16,12 @@ from evidence.stress.gear_steps import spur_scene
 from meshes.data import Floats, MeshData
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.gear_body import matching_cuts
-from solver.gear_contact import GAP
 from solver.gear_results import fitted_peak
 from solver.kinematics import Stand
 from solver.problem import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
 from solver.scene import Scene
 from solver.sectors import gear_mesh
+from solver.tooth_contact import GAP
 from solver.whole_gear import whole_mesh
 
 TEETH = (-1, 0, 1)

@@ -1,0 +1,89 @@
+"""A position on its flanks as they have deflected: searched again, along normals and with levers that deflection has
+tilted and moved.
+
+Small strain takes both before deflection, and one search a position is enough. Where teeth give way by hundredths of a
+module, or friction takes nearly all of the input, forces along such normals take or give a hundredth of the power that
+goes through the mesh; along those of the deflected flanks energy is kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.equilibrium import Equilibrium, frictionless, normal_part
+from solver.gear_contact import GearContact, gear_contact
+from solver.gear_memory import Footprint, Memory, recalled
+from solver.gear_model import GearModel
+from solver.gear_position import rubbing
+from solver.newton import NotConverged
+from solver.tooth_contact import Displaced
+
+SETTLED = 5e-4
+"""Modules by which the free rotation moves the flanks after the last search: the next one would move them by a third of
+it or less."""
+ROUNDS = 12
+
+
+def settled(
+    model: GearModel, contact: GearContact, found: Equilibrium, friction: float, before: Memory | None, span: float
+) -> tuple[GearContact, Equilibrium]:
+    """The contact of flanks that deflect as its equilibrium says, and that equilibrium; from the one of undeflected
+    flanks. Its iterations are those of all searches. before: what friction remembers, None without; span: Δφ [rad]
+    since then.
+
+    Raises NotConverged, SearchError.
+    """
+    for _ in range(ROUNDS):
+        pressed, spent = Footprint.of(contact, found.traction[:, 0]), found.iterations
+        contact = deflected_contact(model, contact, found)
+        found = _equilibrium(model, contact, pressed, friction, before, span)
+        found = replace(found, iterations=spent + found.iterations)
+        if contact.reaches_rim(found.traction[:, 0] > 0.0):
+            contact = replace(contact, half_width=1.5 * contact.half_width)
+        elif abs(_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
+            return contact, found
+    raise NotConverged(
+        f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that settle, found "
+        f"them moved by {1e3 * _shift(model, found):.2f} µm after {ROUNDS} searches; lower the torque"
+    )
+
+
+def deflected_contact(model: GearModel, contact: GearContact, found: Equilibrium) -> GearContact:
+    """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged, SearchError.
+    """
+    pushed = contact.pushed(0, found.force), contact.pushed(1, found.force)
+    displaced = {t.tooth: _displaced(contact, pushed, t.tooth) for t in contact.teeth}
+    stand = contact.stand.turned(model.load.on, float(found.motion[0]))
+    try:
+        return gear_contact(model.bodies, stand, list(displaced), contact.half_width, displaced)
+    except ValueError as folded:
+        raise NotConverged(f"{folded}; deflection has folded the flanks: lower the torque") from folded
+
+
+def _displaced(contact: GearContact, pushed: tuple[Floats, Floats], tooth: int) -> Displaced:
+    """The whole flanks of a tooth pair, the pinion's as contact sees it (the extended trace of solver/nitsche.py)."""
+    found = []
+    for gear, body in enumerate(contact.bodies):
+        every = body.rows(tooth, np.arange(len(body.flank.points)))
+        u = body.chain.apply(contact.rows(gear)[0], pushed[gear], every)
+        found.append(u @ contact.stand.rotation(gear, contact.d).T)
+    return found[0], found[1]
+
+
+def _equilibrium(
+    model: GearModel, contact: GearContact, pressed: Footprint, friction: float, before: Memory | None, span: float
+) -> Equilibrium:
+    system = contact.system(model.load.on, model.load.torque, normal_only=before is None)
+    smooth = frictionless(normal_part(system), pressed.at(contact))
+    if before is None:
+        return smooth
+    found = rubbing(model, contact, system, friction, smooth, recalled(contact, [before])[0], span)
+    return replace(found, iterations=smooth.iterations + found.iterations)
+
+
+def _shift(model: GearModel, found: Equilibrium) -> float:
+    """How far [mm] the free rotation moves the flanks."""
+    return float(found.motion[0]) * model.bodies[model.load.on].gear.base_radius

@@ -79,6 +79,11 @@ class GearContact:
     def d(self) -> int:
         return self.bodies[0].d
 
+    @property
+    def is_deflected(self) -> bool:
+        """Whether the flanks were searched as they have deflected."""
+        return any(t.displaced is not None for t in self.teeth)
+
     @cached_property
     def as_made(self) -> ContactOperator:
         """All teeth's nodes in one list, before wear."""

@@ -17,8 +17,10 @@ from solver.equilibrium import Equilibrium, frictionless, normal_part
 from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Memory, recalled
 from solver.gear_model import GearModel
+from solver.gear_overlap import overlap_outside, unwatched
 from solver.gear_position import rubbing
 from solver.newton import NotConverged
+from solver.search import SearchError
 from solver.tooth_contact import Displaced
 
 SETTLED = 5e-4
@@ -34,7 +36,7 @@ def settled(
     flanks. Its iterations are those of all searches. before: what friction remembers, None without; span: Δφ [rad]
     since then.
 
-    Raises NotConverged, SearchError.
+    Raises NotConverged.
     """
     for _ in range(ROUNDS):
         pressed, spent = Footprint.of(contact, found.traction[:, 0]), found.iterations
@@ -44,23 +46,29 @@ def settled(
         if contact.reaches_rim(found.traction[:, 0] > 0.0):
             contact = replace(contact, half_width=1.5 * contact.half_width)
         elif abs(_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
-            return contact, found
+            if _overlap_outside(model, contact, found) == 0.0:
+                return contact, found
+            contact = replace(contact, half_width=np.inf)
     raise NotConverged(
-        f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that settle, found "
-        f"them moved by {1e3 * _shift(model, found):.2f} µm after {ROUNDS} searches; lower the torque"
+        f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that move by less "
+        f"than {1e3 * SETTLED * model.pair.pinion.normal_module:.2f} µm within their window, found them moved by "
+        f"{1e3 * abs(_shift(model, found)):.2f} µm after {ROUNDS} searches; lower the torque"
     )
 
 
 def deflected_contact(model: GearModel, contact: GearContact, found: Equilibrium) -> GearContact:
-    """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged, SearchError.
-    """
+    """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged."""
     pushed = contact.pushed(0, found.force), contact.pushed(1, found.force)
     displaced = {t.tooth: _displaced(contact, pushed, t.tooth) for t in contact.teeth}
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
+    where = f"pinion at {np.degrees(stand.angle):.3f}°: wanted deflected flanks that face each other, found"
     try:
-        return gear_contact(model.bodies, stand, list(displaced), contact.half_width, displaced)
-    except ValueError as folded:
-        raise NotConverged(f"{folded}; deflection has folded the flanks: lower the torque") from folded
+        again = gear_contact(model.bodies, stand, list(displaced), contact.half_width, displaced)
+    except SearchError as error:
+        raise NotConverged(f"{where} {error}; or lower the torque") from error
+    if not again.teeth:
+        raise NotConverged(f"{where} none within reach; lower the torque")
+    return again
 
 
 def _displaced(contact: GearContact, pushed: tuple[Floats, Floats], tooth: int) -> Displaced:
@@ -82,6 +90,12 @@ def _equilibrium(
         return smooth
     found = rubbing(model, contact, system, friction, smooth, recalled(contact, [before])[0], span)
     return replace(found, iterations=smooth.iterations + found.iterations)
+
+
+def _overlap_outside(model: GearModel, contact: GearContact, found: Equilibrium) -> float:
+    """How deep [mm] the flanks overlap where the window does not look."""
+    turned = (float(found.motion[0]), 0.0) if model.load.on == 0 else (0.0, float(found.motion[0]))
+    return overlap_outside(contact, unwatched(contact, model.teeth), found.force, turned)
 
 
 def _shift(model: GearModel, found: Equilibrium) -> float:

@@ -105,17 +105,26 @@ def recalled(contact: GearContact, memories: Sequence[Memory]) -> list[Past]:
     """What memories of one position, at several friction coefficients, tell the present contact."""
     if not memories:
         return []
+    if not _same_rows(memories):  # deflected flanks are searched for each coefficient
+        return [past for memory in memories for past in recalled(contact, [memory])]
     u1, u2 = (_traces(contact, memories, gear) for gear in (0, 1))
     return [Past(memory.stand, _past_jump(contact, memory.stand, *u)) for memory, *u in zip(memories, u1, u2)]
 
 
+def _same_rows(memories: Sequence[Memory]) -> bool:
+    first, *others = (memory.rows for memory in memories)
+    return all(np.array_equal(own, rows) for other in others for own, rows in zip(other, first))
+
+
 def _past_jump(contact: GearContact, before: Stand, u1: Floats, u2: Floats) -> Floats:
-    """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the past, turned with the wheel to the present."""
+    """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the past, turned with the wheel to the present. The velocity of points on
+    deflected flanks tells that displacements turn with their gears: there each has been turned with its own."""
     d = contact.d
-    R1, R2 = (before.rotation(gear, d) for gear in (0, 1))
-    onward = contact.stand.rotation(1, d) @ R2.T
+    R1, R2 = (contact.stand.rotation(gear, d) for gear in (0, 1))
+    if not contact.is_deflected:
+        R1 = R2 @ before.rotation(1, d).T @ before.rotation(0, d)
     parts = zip(contact.teeth, contact.rows(0)[1], contact.rows(1)[1])
-    w = [(u1[own] @ R1.T - t.projection @ u2[other] @ R2.T) @ onward.T for t, own, other in parts]
+    w = [u1[own] @ R1.T - t.projection @ u2[other] @ R2.T for t, own, other in parts]
     return np.einsum("jia,ja->ji", contact.operator.frames, np.concatenate(w))
 
 

@@ -21,7 +21,7 @@ class ContactPoints:
     contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
     [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
     per radian of pinion rotation, local [mm/rad]; sliding: (q,) its part along e_z × n of `line_of_action`, between
-    undeflected flanks; in a wear study with what deflection adds (wear/elastic_sliding.py). sticks, edge: (q,) bool;
+    flanks as searched; in a wear study with what deflection adds (wear/elastic_sliding.py). sticks, edge: (q,) bool;
     edge: in the last row of facets before a tip edge.
     """
 

@@ -119,7 +119,7 @@ def pitch_imbalance(results: Sequence[PositionResult]) -> float:
     """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
 
     After a pitch all teeth are as deflected as before it, so that nothing is stored. What remains is the error of the
-    contact's geometry, which takes the flanks' normals before deflection: it falls with the load, not with the mesh
+    contact's geometry, where it takes the flanks' normals before deflection: it falls with the load, not with the mesh
     (7e-4 where a is 3 % of the radius of curvature and tips bear, a fifteenth of it at a tenth of the load, and as
     little on deflected flanks, `gear_deflected`).
     """

@@ -1,4 +1,4 @@
-"""What a run writes once its positions are there: fields, pictures, tables; nothing that does not balance."""
+"""What a run writes once its positions are there, fields, pictures, tables; and the certificates they need before."""
 
 from __future__ import annotations
 

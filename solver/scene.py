@@ -122,9 +122,11 @@ class Scene(Section):
         if self.wear is not None and len(self.contact.friction) > 1:
             found, remedy = shown(self.contact.friction), "give one coefficient, and a scene for each other one"
             raise scene_problem(Problem("contact.friction", found, "a single one where the flanks wear", remedy))
-        if self.wear is not None and "one-pitch" in self.skip.off:
-            allowed = "the other skips where the flanks wear: one pitch is one tooth's passage"
-            raise scene_problem(Problem("skip.off", shown(self.skip.off), allowed, "leave one-pitch out"))
+        needed = ("one-pitch", "one pitch is one tooth's passage"), ("deflected-flanks", "they wear undeflected")
+        for name, why in needed:
+            if self.wear is not None and name in self.skip.off:
+                allowed = f"the other skips where the flanks wear: {why}"
+                raise scene_problem(Problem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
         return self
 
     def flank_chart(self, name: GearName) -> FlankChart | None:

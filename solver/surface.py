@@ -125,7 +125,7 @@ class Surface:
 
     def displaced(self, u: Floats) -> Surface:
         """The surface whose nodes have moved by u (n, d) [mm], with normals of its own. Raises ValueError where a facet
-        folds."""
+        has folded."""
         return Surface.from_arrays(self.points + u, self.facets, self.shape, self.order, self.nodes)
 
     def _rule(self) -> tuple[Floats, Floats, Floats]:

@@ -15,7 +15,7 @@ from solver.gear_normals import pressing_normals
 from solver.gear_window import facets_in_window, placed_flanks
 from solver.kinematics import Stand
 from solver.nitsche import ContactOperator, contact_operator
-from solver.search import Pairing, pair_surfaces
+from solver.search import Pairing, SearchError, pair_surfaces
 from solver.surface import Surface
 
 GAP = 0.2  # how far apart [module] flanks are looked at
@@ -61,7 +61,7 @@ def tooth_contact(
     """Searches a tooth pair at this stand; None where its flanks are out of reach. half_width: of the window [mm of
     profile arc]. displaced: by what to displace the flanks first.
 
-    Raises SearchError, ValueError where a displaced facet folds.
+    Raises SearchError.
     """
     pinion = bodies[0]
     assert pinion.traction is not None
@@ -70,7 +70,7 @@ def tooth_contact(
         return None
     first, second = placed_flanks(bodies, stand, tooth)
     if displaced is not None:
-        first, second = first.displaced(displaced[0]), second.displaced(displaced[1])
+        first, second = _moved(first, displaced[0]), _moved(second, displaced[1])
     module = pinion.gear.normal_module
     pairing = pair_surfaces(first, second, GAP * module, PENETRATION * module, facets)
     if len(pairing.weight) == 0:
@@ -80,6 +80,13 @@ def tooth_contact(
     if displaced is not None:
         operator = operator.before(_jump(pairing, first, second, displaced))
     return ToothContact(tooth, operator, pairing, displaced)
+
+
+def _moved(flank: Surface, u: Floats) -> Surface:
+    try:
+        return flank.displaced(u)
+    except ValueError as folded:
+        raise SearchError(str(folded)) from folded
 
 
 def _jump(pairing: Pairing, first: Surface, second: Surface, displaced: Displaced) -> Floats:

@@ -24,8 +24,9 @@ from solver.companion import Companion, coarser, companion_mesh, solved_run
 from solver.error_bars import Curve, difference, errors_between, estimated_errors
 from solver.estimated_errors import EstimatedErrors, FigureErrors, keep_errors, kept_errors, plus_minus
 from solver.newton import NotConverged
-from solver.run import pitch_of, run_scene
+from solver.run import run_scene
 from solver.run_data import RunData
+from solver.run_sweep import pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 

@@ -27,7 +27,7 @@ from solver.gear_model import GearModel
 from solver.gear_position import shared_position
 from solver.gear_results import balance_error, pitch_imbalance, slices
 from solver.newton import NotConverged
-from solver.run import pitch_of
+from solver.run_sweep import pitch_of
 
 FRICTIONS = [0.0, 0.1, 0.3]
 STEP = 0.18

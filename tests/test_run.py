@@ -156,6 +156,7 @@ def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Pat
     done = run_script("tests/broken_run.py", "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
     assert done.returncode == 3
     assert "wanted an energy balance within 1e-09 of the input, found" in done.stderr
+    assert "solved again, on deflected flanks" in (out / "run.log").read_text(encoding="utf-8")
     assert not (out / "summary.json").exists()
 
 

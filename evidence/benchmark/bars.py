@@ -19,8 +19,8 @@ from solver.companion import companion_mesh, solved_run
 from solver.error_bars import errors_between
 from solver.estimated_errors import FigureErrors
 from solver.results import friction_rows
-from solver.run import pitch_of
 from solver.run_data import RunData
+from solver.run_sweep import pitch_of
 from solver.scene import Scene, load_scene, scene_from_text
 from solver.sectors import gear_mesh
 

@@ -26,8 +26,8 @@ from solver.condense import Factor
 from solver.gear_model import prepare_model
 from solver.gear_sweep import SweptPosition, initial_state
 from solver.rank_sweep import sweep_on_ranks
-from solver.run import pitch_of
 from solver.run_output import peak_memory_MB
+from solver.run_sweep import pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 

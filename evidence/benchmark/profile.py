@@ -21,7 +21,7 @@ from evidence.benchmark.runs import Command, run
 from solver import compat
 from solver.gear_model import prepare_model
 from solver.gear_sweep import initial_state, sweep_pitch
-from solver.run import pitch_of
+from solver.run_sweep import pitch_of
 
 ELEMENTS, POSITIONS = 1.7, 20
 PARTS = (

@@ -16,7 +16,7 @@ from solver.gear_model import prepare_model
 from solver.gear_results import pitch_imbalance
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from solver.newton import NotConverged
-from solver.run_output import BalanceError, certify, certify_pitch
+from solver.run_output import BalanceError, PitchImbalance, certify, certify_pitch
 from solver.scene import Scene
 from solver.search import SearchError
 from solver.skips import with_deflected_flanks
@@ -63,9 +63,7 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
     """Prepares and sweeps the scene, and applies the balance certificate. Raises nothing but what ends Python."""
     begin = time.process_time()
     try:
-        found = _swept(scene, seed)
-        if found.verdict is Verdict.UNBALANCED:
-            found = _swept(with_deflected_flanks(scene), seed)
+        found = _solved(scene, seed)
     except REFUSALS as error:
         found = Outcome(seed, Verdict.REFUSED, f"{type(error).__name__}: {error}")
     except Exception:
@@ -73,30 +71,38 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
     return Outcome(**{**vars(found), "cpu": time.process_time() - begin})
 
 
-def _swept(scene: Scene, seed: int) -> Outcome:
+def _solved(scene: Scene, seed: int) -> Outcome:
+    """Again on deflected flanks where the pitch alone is out of balance."""
+    found, pitch = _swept(scene, seed)
+    return _swept(with_deflected_flanks(scene), seed)[0] if pitch else found
+
+
+def _swept(scene: Scene, seed: int) -> tuple[Outcome, bool]:
+    """And whether only the pitch was refused."""
     model = prepare_model(scene, MPI.COMM_SELF).model
     pitch = some_positions(scene, seed)
     swept = list(sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction)))
     results = [result for position in swept for result in position.results]
     rubbed = [r for r in results if r.friction > 0.0] or results
-    message = _out_of_balance(swept)
-    return Outcome(
+    refusal = _out_of_balance(swept)
+    outcome = Outcome(
         seed,
-        Verdict.UNBALANCED if message else Verdict.CONVERGED,
-        message,
+        Verdict.UNBALANCED if refusal else Verdict.CONVERGED,
+        str(refusal or ""),
         max(map(pitch_imbalance, zip(*(position.results for position in swept), strict=True))),
         float(np.mean([r.iterations for r in rubbed])),
         max(r.iterations for r in rubbed),
         sum(body.mesh.points.shape[0] * body.d for body in model.bodies),
     )
+    return outcome, isinstance(refusal, PitchImbalance)
 
 
-def _out_of_balance(swept: list[SweptPosition]) -> str:
-    """Why a run would refuse these positions of a pitch; empty where it would not."""
+def _out_of_balance(swept: list[SweptPosition]) -> BalanceError | None:
+    """Why a run would refuse these positions of a pitch; None where it would not."""
     try:
         for position in swept:
             certify(position.results)
         certify_pitch(position.results for position in swept)
     except BalanceError as error:
-        return str(error)
-    return ""
+        return error
+    return None

@@ -1,0 +1,149 @@
+"""All positions of a scene into its archive, certified; once more on deflected flanks where energy asks for it."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from mpi4py import MPI
+
+from solver.archive import Archive
+from solver.gear_model import Preparation, prepare_model
+from solver.gear_results import balance_error
+from solver.gear_sweep import Pitch, SweptPosition, initial_state, uniform_pitch
+from solver.parallel import on_first
+from solver.progress import Progress
+from solver.rank_sweep import sweep_on_ranks
+from solver.results import Timings
+from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
+from solver.run_start import Start, open_archive, same_meshes
+from solver.scene import Scene
+from solver.skips import pitches, skips, switched_off, warm_up_positions, with_deflected_flanks
+
+
+def sweep_scene(
+    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, quiet: bool, log: logging.Logger
+) -> tuple[Scene, Sweep]:
+    """The scene whose positions are then in its archive: this one, or, where the energy of its pitch does not balance,
+    the one on deflected flanks. Raises what `run_scene` does, on all ranks."""
+    gears = _Gears(scene, comm, log)
+    sweep = _swept(scene, out, start, gears, quiet)
+    loss = on_first(comm, lambda: _imbalance(scene, out))
+    if loss is None:
+        return scene, sweep
+    deflected = with_deflected_flanks(scene)
+    if deflected is scene:
+        raise loss
+    log.info("%s", loss)
+    log.info("solved again, on deflected flanks")
+    again = _swept(deflected, out, None, replace(gears, scene=deflected), quiet)
+    if loss := on_first(comm, lambda: _imbalance(deflected, out)):
+        raise loss
+    both = zip(astuple(sweep.timings), astuple(again.timings))
+    return deflected, Sweep(again.meshes, Timings(*(one + other for one, other in both)))
+
+
+def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
+    positions = Archive(out, scene).read_positions(scene.gear_pair())
+    try:
+        certify_pitch(position.results for position in positions if not position.warm_up)
+    except PitchImbalance as error:
+        return error
+    return None
+
+
+@dataclass(frozen=True)
+class _Gears:
+    """A scene's gears on some ranks. kept: those that all friction coefficients share, for a second sweep."""
+
+    scene: Scene
+    comm: MPI.Comm
+    log: logging.Logger
+    kept: list[Preparation] = field(default_factory=list)
+
+    def prepared(self) -> tuple[Preparation, Timings]:
+        """And what it took now."""
+        if self.kept:
+            deflected = "deflected-flanks" in switched_off(self.scene)
+            return replace(self.kept[0], model=replace(self.kept[0].model, deflected=deflected)), Timings()
+        preparation = prepare_model(self.scene, self.comm)
+        self.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+        if len(friction_groups(self.scene)) == 1:
+            self.kept.append(preparation)
+        return preparation, timings_of(preparation)
+
+
+def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: bool) -> Sweep:
+    """All positions in the archive. Where they are there already the gears are not even condensed."""
+    comm, log, archive = gears.comm, gears.log, Archive(out, scene)
+    count, begun = len(pitch_of(scene).angles), time.perf_counter()
+    if start is not None:
+        log.info("resumed after %d of %d positions", start.complete, count)
+        if start.complete == count:
+            return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
+    begin = start or Start(0, initial_state(scene.contact.friction))
+    made: list[Sweep] = []
+
+    def solved(group: slice) -> Iterator[SweptPosition]:
+        """Positions of some friction coefficients, each certified, on gears of their own where these are not kept."""
+        preparation, timings = gears.prepared()
+        pinion, wheel = (body.mesh for body in preparation.model.bodies)
+        if not made:
+            on_first(comm, lambda: open_archive(scene, archive, (pinion, wheel), start))
+        made.append(Sweep((pinion, wheel), timings))
+        frictions, state = scene.contact.friction[group], begin.only(group).state
+        for position in sweep_on_ranks(preparation.model, pitch_of(scene), frictions, state, comm, begin.complete):
+            certify(position.results)
+            yield position
+
+    sweeps = [solved(group) for group in friction_groups(scene)]
+    if len(sweeps) > 1:  # each with its own gears, one after the other
+        sweeps = [iter(list(each)) for each in sweeps]
+    with Progress(count, begin.complete, hidden=quiet or comm.rank > 0) as progress:
+        for k, parts in enumerate(zip(*sweeps), begin.complete):
+            position = _joined(parts)
+            on_first(comm, partial(archive.write_position, k, position))
+            log.info(_line(position))
+            progress.advance()
+    return _total(made, time.perf_counter() - begun)
+
+
+def friction_groups(scene: Scene) -> list[slice]:
+    """Which friction coefficients share gears, search and compliance: all, or each its own."""
+    count = len(scene.contact.friction)
+    shared = count == 1 or skips(scene, "reuse")
+    return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
+
+
+def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
+    """One position from its groups of friction coefficients."""
+    results = tuple(result for part in parts for result in part.results)
+    memories = tuple(memory for part in parts for memory in part.state.memories)
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
+
+
+def _total(made: list[Sweep], seconds: float) -> Sweep:
+    """Of all groups; what was not preparing was solving."""
+    mesh, assemble, factor, preparing = (
+        sum(getattr(each.timings, name) for each in made) for name in ("mesh", "assemble", "factor", "total")
+    )
+    return Sweep(made[0].meshes, Timings(mesh, assemble, factor, seconds - preparing))
+
+
+def pitch_of(scene: Scene) -> Pitch:
+    """The pinion rotations that a scene asks for."""
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene), pitches(scene))
+
+
+def _line(position: SweptPosition) -> str:
+    """One line of the log."""
+    first = position.results[0]
+    iterations = max(r.iterations for r in position.results)
+    worst = max(balance_error(r) for r in position.results)
+    seconds = sum(r.seconds for r in position.results)
+    kind = "warm-up " if position.warm_up else "position"
+    return f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"

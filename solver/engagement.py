@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats, Ints
+from meshes.parameters import GearPair
 from solver.gear_results import Slices
 from solver.run_data import RunData, SolvedPosition
 
@@ -90,29 +91,39 @@ def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...
 def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
     """Largest fitted peak pressure [MPa] along a tooth's contact line between the tip-edge zones; NaN: not there.
 
-    The line is cut where it enters these zones, by linear interpolation of p0√R between slices: which slices
-    happen to lie inside would make the maximum jump from position to position, for the pressure is steepest there.
+    The line is cut where it enters these zones: which slices happen to lie inside would make the maximum jump from
+    position to position, for the pressure is steepest there.
     """
-    whole = cut.ξ[cut.tooth == tooth]
-    here = np.flatnonzero((cut.tooth == tooth) & np.isfinite(cut.peak))
-    here = here[np.argsort(cut.ξ[here])]
-    ξ, peak = cut.ξ[here], cut.peak[here]
+    line = np.flatnonzero(cut.tooth == tooth)
+    line = line[np.argsort(cut.ξ[line])]
+    fitted = line[np.isfinite(cut.peak[line]) & (cut.hertz[line] > 0.0)]
+    ξ, peak = cut.ξ[fitted], cut.peak[fitted]
     low, high = run.inner_path
     inside = peak[(ξ >= low) & (ξ <= high)]
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
-    half = 0.5 * np.max(np.diff(ξ))
-    limits = [limit for limit in (low, high) if whole.min() - half <= limit <= whole.max() + half]
-    scale = np.sqrt(run.pair.relative_curvature_radius(np.clip(ξ, *run.pair.path_of_contact)))
-    ends = [_continued(x, ξ, peak * scale) / np.sqrt(run.pair.relative_curvature_radius(x)) for x in limits]
-    found = np.concatenate([inside, ends])
+    half, ends = 0.5 * np.max(np.diff(ξ)), cut.ξ[line[[0, -1]]]
+    limits = np.array([limit for limit in (low, high) if ends[0] - half <= limit <= ends[1] + half])
+    found = np.concatenate([inside, _peak_at(limits, run.pair, cut, line, fitted)])
     return float(found.max()) if len(found) else float("nan")
 
 
-def _continued(x: float, at: Floats, values: Floats) -> float:
-    """A curve at x, linear between its points and beyond its ends."""
-    k = int(np.clip(np.searchsorted(at, x), 1, len(at) - 1))
-    return float(values[k - 1] + (values[k] - values[k - 1]) * (x - at[k - 1]) / (at[k] - at[k - 1]))
+def _peak_at(x: Floats, pair: GearPair, cut: Slices, line: Ints, fitted: Ints) -> Floats:
+    """Peak pressure [MPa] where a contact line has the roll distances x (m,) [mm]: Hertz's for the line load there,
+    times what the fitted peaks are over theirs.
+
+    The loads are known on tip edges too, where no peak can be fitted: continuing the peaks themselves would multiply
+    their scatter. A line's first and last slice on a tip edge are loaded over a part of their width: they are left out.
+    """
+    load = np.union1d(line[1:-1], fitted)
+    load = load[np.argsort(cut.ξ[load])]
+    even = np.interp(x, cut.ξ[load], cut.hertz[load] * _root_of_radius(pair, cut.ξ[load]))
+    return even / _root_of_radius(pair, x) * np.interp(x, cut.ξ[fitted], cut.peak[fitted] / cut.hertz[fitted])
+
+
+def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
+    """√R [√mm] at roll distances; p0√R depends on the line load alone."""
+    return np.sqrt(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
 
 
 def line_mean(cut: Slices, tooth: int) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from synthetic_run import even_line_load, synthetic_run
@@ -9,7 +11,7 @@ from synthetic_run import even_line_load, synthetic_run
 from meshes.flank import contact_lines
 from solver.engagement import Engagement, crossing, engagement, engagements, sign_changes
 from solver.hertz import line_peak_pressure
-from solver.run_data import RunData
+from solver.run_data import RunData, SolvedPosition
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +74,22 @@ def test_maximum_does_not_jump_from_position_to_position(run: RunData) -> None:
     entering = (curve.angle < -0.15) & np.isfinite(curve.max_pressure)
     assert entering.sum() > 6
     assert np.abs(np.diff(np.log(curve.max_pressure[entering]))).max() < 0.03
+
+
+def test_maximum_scatters_no_more_than_the_fits(run: RunData) -> None:
+    """Problem: fitted peaks 4 % too high and too low by turns, as coarse meshes leave them. Exact: the maximum of a
+    line is within these 4 % of that of the even peaks, also where the line is continued to the tip-edge zone;
+    continuing the peaks themselves would multiply what they are off by."""
+
+    def scattered(solved: SolvedPosition) -> SolvedPosition:
+        turns = 1.0 + 0.04 * (-1.0) ** np.arange(len(solved.cut.peak))
+        return replace(solved, cut=replace(solved.cut, peak=solved.cut.peak * turns))
+
+    positions = tuple(tuple(scattered(solved) for solved in each) for each in run.positions)
+    even, uneven = (engagement(each, 0).max_pressure for each in (run, replace(run, positions=positions)))
+    known = np.isfinite(even)
+    assert known.sum() > 0.8 * len(known)
+    np.testing.assert_allclose(uneven[known], even[known], rtol=0.0401)
 
 
 def test_sign_changes() -> None:

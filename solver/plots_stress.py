@@ -34,12 +34,13 @@ def engagement_stress(run: RunData) -> Figure:
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.01, 1.0)
+    note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.4, 0.99)
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
     values = np.concatenate([c.max_pressure for c in curves])
-    main.set_ylim(0.55 * np.nanmin(values), 1.06 * np.nanmax(values))
+    top = np.nanmax([np.nanmax(values), np.nanmax(_lowest(curves).max_pressure) + bar])  # NaN: no bar
+    main.set_ylim(0.55 * np.nanmin(values), 1.06 * top)
     main.legend(loc="lower center", bbox_to_anchor=(0.5, 0.09), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)

@@ -58,20 +58,22 @@ def _steps_to_zero(force: Floats) -> float:
     return min(1.0, float(2.0 * force[0] / full)) if full > 0.0 else 1.0
 
 
-def engagement(run: RunData, index: int) -> Engagement:
-    """The engagement at friction coefficient number `index`."""
-    rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index])]
+def engagement(run: RunData, index: int, inner: tuple[float, float] | None = None) -> Engagement:
+    """The engagement at friction coefficient number `index`. inner: roll distances [mm] between which the largest
+    pressures are looked for; those of the run itself unless given, see `RunData.inner_path`."""
+    inner = inner or run.inner_path
+    rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index], inner)]
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
     return Engagement(run.frictions[index], angle, position, tooth, *values)
 
 
-def engagements(run: RunData) -> list[Engagement]:
-    """One per friction coefficient."""
-    return [engagement(run, index) for index in range(len(run.frictions))]
+def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:
+    """One per friction coefficient; inner: see `engagement`."""
+    return [engagement(run, index, inner) for index in range(len(run.frictions))]
 
 
-def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...]]:
+def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, float]) -> list[tuple[float, ...]]:
     total = sum(tooth.force for tooth in solved.teeth)
     return [
         (
@@ -80,7 +82,7 @@ def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...
             tooth.tooth,
             tooth.force * run.width,
             tooth.force / total,
-            line_peak(run, solved.cut, tooth.tooth),
+            line_peak(run.pair, solved.cut, tooth.tooth, inner),
             line_mean(solved.cut, tooth.tooth),
             tooth.contact_length * run.width,
         )
@@ -88,8 +90,9 @@ def _rows(run: RunData, k: int, solved: SolvedPosition) -> list[tuple[float, ...
     ]
 
 
-def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
-    """Largest fitted peak pressure [MPa] along a tooth's contact line between the tip-edge zones; NaN: not there.
+def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
+    """Largest fitted peak pressure [MPa] along a tooth's contact line between the tip-edge zones, whose ends are the
+    roll distances `inner` [mm]; NaN: not there.
 
     The line is cut where it enters these zones: which slices happen to lie inside would make the maximum jump from
     position to position, for the pressure is steepest there.
@@ -98,13 +101,13 @@ def line_peak(run: RunData, cut: Slices, tooth: int) -> float:
     line = line[np.argsort(cut.ξ[line])]
     fitted = line[np.isfinite(cut.peak[line]) & (cut.hertz[line] > 0.0)]
     ξ, peak = cut.ξ[fitted], cut.peak[fitted]
-    low, high = run.inner_path
+    low, high = inner
     inside = peak[(ξ >= low) & (ξ <= high)]
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
     half, ends = 0.5 * np.max(np.diff(ξ)), cut.ξ[line[[0, -1]]]
     limits = np.array([limit for limit in (low, high) if ends[0] - half <= limit <= ends[1] + half])
-    found = np.concatenate([inside, _peak_at(limits, run.pair, cut, line, fitted)])
+    found = np.concatenate([inside, _peak_at(limits, pair, cut, line, fitted)])
     return float(found.max()) if len(found) else float("nan")
 
 

@@ -9,7 +9,8 @@ square difference of the curves.
 - Pressures converge erratically while the contact is a few elements wide, but a fitted peak has a part that is known
   without a finer mesh: Hertz for the slice's own line load. The bar is the difference D of peaks and Hertz on the run's
   own mesh, plus D of Hertz's peaks between the meshes over 2^p − 1, which is the error of the loads. Where a flank is
-  not Hertz's (a relief sets in, a face ends) it is too wide.
+  not Hertz's (a relief sets in, a face ends) it is too wide. Both meshes are compared between the tip-edge zones of the
+  run's own mesh, as the figure is: the companion's larger cells see the edges from further away.
 
 A bar is about the mesh alone: both meshes stand at the same positions, so how finely these sample the pitch is not in
 it, nor is what the scene leaves out.
@@ -77,7 +78,8 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
-    own, hertz, other = (engagement(each, index) for each in (run, _with_hertz(run), _with_hertz(coarse)))
+    runs = run, _with_hertz(run), _with_hertz(coarse)
+    own, hertz, other = (engagement(each, index, run.inner_path) for each in runs)
     error, stiffness, loss = (
         [Curve(each.angles, curve(each, index)) for each in (run, coarse)]
         for curve in (_transmission_error, mesh_stiffness, _loss)

@@ -150,13 +150,13 @@ def loss_percent(solved: SolvedPosition) -> float:
 
 
 def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
-    length, peak = tooth.contact_length * run.width, line_peak(run, solved.cut, tooth.tooth)
+    length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
     return ToothRow(tooth.tooth, tooth.force * run.width, peak, length, tooth.edge_pressure)
 
 
-def friction_rows(run: RunData) -> list[FrictionRow]:
-    """One row per friction coefficient, in the scene's order."""
-    curves = engagements(run)
+def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
+    """One row per friction coefficient, in the scene's order; inner: see `engagement.engagement`."""
+    curves = engagements(run, inner)
     lowest = curves[int(np.argmin(run.frictions))]
     return [_friction_row(run, index, curve, lowest) for index, curve in enumerate(curves)]
 

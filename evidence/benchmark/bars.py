@@ -123,12 +123,13 @@ def mesh_cases(widths: Sequence[float]) -> tuple[tuple[str, ...], ...]:
 
 def measure_bars(problem: BarProblem) -> list[BarRow]:
     """One row a case, figure and friction coefficient; a figure that is exactly zero without friction is left out."""
-    exact, nearly = (_figures(_reference(problem, problem.halvings - last)) for last in (0, 1))
+    references = [_reference(problem, problem.halvings - last) for last in (0, 1)]
     rows = []
     for case in problem.cases:
         scene = problem.with_mesh(case)
         run, coarse = _solved(scene), _solved(scene, coarse=True)
-        values, bars = _figures(run), [astuple(errors) for errors in errors_between(run, coarse)]
+        bars = [astuple(errors) for errors in errors_between(run, coarse)]
+        values, exact, nearly = (_figures(each, run.inner_path) for each in (run, *references))
         rows += _rows(", ".join((problem.name, *case)), run.frictions, values, bars, exact, nearly)
     return [row for row in rows if not (row.figure == "loss_percent" and row.friction == 0.0)]
 
@@ -177,6 +178,7 @@ def _finer_body(own: SectorResolution) -> SectorResolution:
     return replace(own, **{name: 2 * getattr(own, name) for name in counts})
 
 
-def _figures(run: RunData) -> list[list[float]]:
-    """(friction coefficients, figures)."""
-    return [[float(getattr(row, name)) for name in FIGURES] for row in friction_rows(run)]
+def _figures(run: RunData, inner: tuple[float, float]) -> list[list[float]]:
+    """(friction coefficients, figures). inner: between which roll distances the largest pressure is looked for, those
+    of the mesh that is judged, as it is the largest between its tip-edge zones."""
+    return [[float(getattr(row, name)) for name in FIGURES] for row in friction_rows(run, inner)]

@@ -22,8 +22,8 @@ class Engagement:
     """One tooth's way through the mesh at one friction coefficient; entries (n,) ascend with `angle`.
 
     angle: the tooth's own pinion rotation [rad]. position, tooth: where in the pitch it was computed. force: normal
-    [N]. share: of the sum over all teeth [-]. max_pressure: see `line_peak`; mean_pressure: of the fitted peaks along
-    the contact line [MPa]; both NaN where a tooth bears on tip edges only. contact_length [mm].
+    [N]. share: of the sum over all teeth [-]. max_pressure, mean_pressure [MPa]: see `line_peak` and `line_mean`, NaN
+    where nothing of the line lies between the tip-edge zones. contact_length [mm].
     """
 
     friction: float
@@ -59,8 +59,8 @@ def _steps_to_zero(force: Floats) -> float:
 
 
 def engagement(run: RunData, index: int, inner: tuple[float, float] | None = None) -> Engagement:
-    """The engagement at friction coefficient number `index`. inner: roll distances [mm] between which the largest
-    pressures are looked for; those of the run itself unless given, see `RunData.inner_path`."""
+    """The engagement at friction coefficient number `index`. inner: roll distances [mm] between which pressures
+    are looked at; those of the run itself unless given, see `RunData.inner_path`."""
     inner = inner or run.inner_path
     rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index], inner)]
     columns = [np.array(column) for column in zip(*sorted(rows))]
@@ -83,7 +83,7 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
             tooth.force * run.width,
             tooth.force / total,
             line_peak(run.pair, solved.cut, tooth.tooth, inner),
-            line_mean(solved.cut, tooth.tooth),
+            line_mean(solved.cut, tooth.tooth, inner),
             tooth.contact_length * run.width,
         )
         for tooth in solved.teeth
@@ -129,9 +129,10 @@ def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
     return np.sqrt(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
 
 
-def line_mean(cut: Slices, tooth: int) -> float:
-    """Mean along the contact line of the fitted peak pressures [MPa], tip edges left out; NaN where nothing is left."""
-    here = (cut.tooth == tooth) & np.isfinite(cut.peak)
+def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
+    """Mean along the contact line of the fitted peak pressures [MPa] between the tip-edge zones, see `line_peak`; NaN
+    where nothing is left."""
+    here = (cut.tooth == tooth) & np.isfinite(cut.peak) & (cut.ξ >= inner[0]) & (cut.ξ <= inner[1])
     return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")
 
 

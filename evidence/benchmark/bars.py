@@ -179,6 +179,6 @@ def _finer_body(own: SectorResolution) -> SectorResolution:
 
 
 def _figures(run: RunData, inner: tuple[float, float]) -> list[list[float]]:
-    """(friction coefficients, figures). inner: between which roll distances the largest pressure is looked for, those
-    of the mesh that is judged, as it is the largest between its tip-edge zones."""
+    """(friction coefficients, figures). inner: between which roll distances pressures are looked at, the tip-edge zones
+    of the mesh that is judged, as its figures are of what lies between them."""
     return [[float(getattr(row, name)) for name in FIGURES] for row in friction_rows(run, inner)]

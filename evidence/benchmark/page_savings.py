@@ -63,7 +63,7 @@ def bars_section(rows: Sequence[bars.BarRow]) -> list[str]:
         "He's pair and a narrow helical pair at several meshes of both orders and shapes, against meshes several times "
         "finer: the error bar "
         f"holds the true error in **{100 * bars.hit_rate(rows):.0f} %** of {len(rows)} figures. Wanted: 90 %. "
-        "Largest pressures are those between the tip-edge zones of the mesh that is judged. "
+        "Pressures are those between the tip-edge zones of the mesh that is judged. "
         "*Decided*: where the reference is good enough to tell."
     )
     head = ("figure", "cases", "inside", "%", "inside, decided", "decided")

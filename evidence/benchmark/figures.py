@@ -49,7 +49,7 @@ def work_precision(rows: Sequence[Row], title: str) -> Figure:
         for panel, simplex in zip(axes, (False, True)):
             _panel(panel, [row for row in kept if (row.shape in SIMPLICES) == simplex])
         axes[0].set_ylabel("CPU time of the process [s]")
-        axes[0].legend(fontsize=8, loc="upper right")
+        axes[1].legend(*axes[0].get_legend_handles_labels(), fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     return figure
 
 
@@ -74,21 +74,20 @@ def _plain_ticks(axes: Axes) -> None:
 
 
 def gears(rows: Sequence[GearRow]) -> Figure:
-    """Seconds a position over the degrees of freedom."""
-    kept = [row for row in rows if not row.note]
+    """Seconds a position of every program, and how many times Evolvent's pitch."""
+    kept = sorted((row for row in rows if not row.note), key=lambda row: -row.seconds)
+    models = {"whole gears": "whole gears, a pitch", "three teeth": "three teeth"}
+    names = [f"{row.program}, {models[row.model]}\norder {row.order}, {row.dofs:,} dofs" for row in kept]
     with plots_style.styled():
         see = "Evolvent condenses the whole gears once for a pitch; the others solve three teeth anew each time."
-        figure = plots_style.sheet("A position of the gear pair, all but meshing", see, (8.4, 5.0))
+        figure = plots_style.sheet("A position of the gear pair, all but meshing", see, (9.0, 4.2))
         axes = figure.subplots()
-        for name, colour in COLOURS.items():
-            for model, style in (("whole gears", "s-"), ("three teeth", "o--")):
-                own = [row for row in kept if row.program == name and row.model == model]
-                if own:
-                    label = f"{name}, {'a pitch, whole gears' if model == 'whole gears' else 'three teeth'}"
-                    axes.loglog(column(own, "dofs"), column(own, "seconds"), style, color=colour, ms=5, label=label)
-        axes.set(xlabel="degrees of freedom", ylabel="CPU time a position [s]")
-        _plain_ticks(axes)
-        axes.legend()
+        bars = axes.barh(range(len(kept)), column(kept, "seconds"), 0.6, color=[COLOURS[row.program] for row in kept])
+        axes.bar_label(bars, [f"{row.seconds:.3g} s, {row.ratio:.3g} times" for row in kept], padding=4, fontsize=9)
+        axes.set_yticks(range(len(kept)), names)
+        axes.grid(axis="y", visible=False)
+        axes.margins(x=0.2)
+        axes.set_xlabel("CPU time a position [s]")
     return figure
 
 

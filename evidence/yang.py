@@ -48,7 +48,7 @@ def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near the pitch line, median", f"{np.median(peak[near]):.0f} MPa"
     top = int(np.argmax(np.where(inside, peak, 0.0)))
-    yield "largest pressure between the tip-edge zones", f"{peak[top]:.0f} MPa at ξ = {ξ[top]:.1f} mm"
+    yield "largest pressure of a slice between the tip-edge zones", f"{peak[top]:.0f} MPa at ξ = {ξ[top]:.1f} mm"
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Iterator[Line]:

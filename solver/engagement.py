@@ -105,7 +105,7 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     inside = peak[(ξ >= low) & (ξ <= high)]
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
-    half, ends = 0.5 * np.max(np.diff(ξ)), cut.ξ[line[[0, -1]]]
+    half, ends = 0.5 * np.max(np.diff(cut.ξ[line])), cut.ξ[line[[0, -1]]]
     limits = np.array([limit for limit in (low, high) if ends[0] - half <= limit <= ends[1] + half])
     found = np.concatenate([inside, _peak_at(limits, pair, cut, line, fitted)])
     return float(found.max()) if len(found) else float("nan")
@@ -131,8 +131,9 @@ def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
 
 def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
     """Mean along the contact line of the fitted peak pressures [MPa] between the tip-edge zones, see `line_peak`; NaN
-    where nothing is left."""
-    here = (cut.tooth == tooth) & np.isfinite(cut.peak) & (cut.ξ >= inner[0]) & (cut.ξ <= inner[1])
+    where no slice with a fitted peak is left."""
+    fitted = (cut.tooth == tooth) & np.isfinite(cut.peak) & (cut.hertz > 0.0)
+    here = fitted & (cut.ξ >= inner[0]) & (cut.ξ <= inner[1])
     return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")
 
 

@@ -10,7 +10,8 @@ square difference of the curves.
   without a finer mesh: Hertz for the slice's own line load. The bar is the difference D of peaks and Hertz on the run's
   own mesh, plus D of Hertz's peaks between the meshes over 2^p − 1, which is the error of the loads. Where a flank is
   not Hertz's (a relief sets in, a face ends) it is too wide. Both meshes are compared between the tip-edge zones of the
-  run's own mesh, as the figure is: the companion's larger cells see the edges from further away.
+  run's own mesh, as the figure is: the companion's larger cells see the edges from further away, but the loads beside
+  them are known.
 
 A bar is about the mesh alone: both meshes stand at the same positions, so how finely these sample the pitch is not in
 it, nor is what the scene leaves out.
@@ -27,7 +28,7 @@ from meshes.data import Floats
 from solver.archive import Archive
 from solver.companion import Companion
 from solver.engagement import engagement
-from solver.estimated_errors import EstimatedErrors, FigureErrors, keep_errors, kept_errors
+from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors
 from solver.results import loss_percent, mesh_stiffness
 from solver.run_data import RunData, SolvedPosition
 
@@ -39,10 +40,6 @@ LOSS_FACTOR = {1: 2.0, 2: 1.0}
 """The same of the loss, which follows the distribution of pressure and tooth forces: p = 0.6 and 1."""
 LOAD_FACTOR = {1: 2.0, 2: 1.0}
 """The same of the slices' loads, which pressures follow; with 1 at order 1 three bars of 24 were too small by 2 %."""
-METHOD = (
-    "difference to the same scene on meshes of twice the element size; of a pressure: difference to Hertz for the "
-    "slices' own line loads, plus the difference of these loads between the meshes"
-)
 
 
 @dataclass(frozen=True)
@@ -78,14 +75,14 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
-    runs = run, _with_hertz(run), _with_hertz(coarse)
-    own, hertz, other = (engagement(each, index, run.inner_path) for each in runs)
+    runs = run, _with_hertz(run), *(_with_hertz(each, at_edges=True) for each in (run, coarse))
+    curves = [engagement(each, index, run.inner_path) for each in runs]
     error, stiffness, loss = (
         [Curve(each.angles, curve(each, index)) for each in (run, coarse)]
         for curve in (_transmission_error, mesh_stiffness, _loss)
     )
-    peaks = [Curve(each.angle, each.max_pressure) for each in (own, hertz, other)]
-    means = [Curve(each.angle, each.mean_pressure) for each in (own, hertz, other)]
+    peaks = [Curve(each.angle, each.max_pressure) for each in curves]
+    means = [Curve(each.angle, each.mean_pressure) for each in curves]
     order = run.scene.mesh.order
     return FigureErrors(
         max_pressure_MPa=_pressure_error(np.nanmax, LOAD_FACTOR[order], *peaks),
@@ -96,9 +93,9 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     )
 
 
-def _pressure_error(figure: Reduction, factor: float, own: Curve, hertz: Curve, coarse_hertz: Curve) -> float:
-    """Of the profile at the loads found, plus that of the loads."""
-    return difference(figure, own, hertz) + factor * difference(figure, hertz, coarse_hertz)
+def _pressure_error(figure: Reduction, factor: float, own: Curve, hertz: Curve, fine: Curve, coarse: Curve) -> float:
+    """Of the profile at the loads found, plus that of the loads: Hertz's pressures for them, tip edges included."""
+    return difference(figure, own, hertz) + factor * difference(figure, fine, coarse)
 
 
 def difference(figure: Reduction, first: Curve, second: Curve) -> float:
@@ -118,12 +115,14 @@ def _relative(first: Curve, second: Curve) -> float:
     return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
 
 
-def _with_hertz(run: RunData) -> RunData:
-    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one."""
+def _with_hertz(run: RunData, at_edges: bool = False) -> RunData:
+    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
+    where a slice bears on a tip edge."""
 
     def exact(solved: SolvedPosition) -> SolvedPosition:
         cut = solved.cut
-        return replace(solved, cut=replace(cut, peak=np.where(cut.edge, np.nan, cut.hertz)))
+        peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
+        return replace(solved, cut=replace(cut, peak=peak))
 
     return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
 

@@ -9,6 +9,11 @@ import numpy as np
 
 from solver.archive import Archive, ArchiveError, read_arrays, write_arrays
 
+METHOD = (
+    "difference to the same scene on meshes of twice the element size; of a pressure, between the run's tip-edge zones: "
+    "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes"
+)
+
 
 @dataclass(frozen=True)
 class FigureErrors:
@@ -50,12 +55,13 @@ def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
 
 
 def kept_errors(archive: Archive) -> EstimatedErrors | None:
-    """What `keep_errors` kept of this scene; None where there is nothing, or nothing that can be read."""
+    """What `keep_errors` kept of this scene; None where there is nothing, nothing that can be read, or bars that were
+    estimated in another way."""
     try:
         arrays = read_arrays(archive.folder / "errors.npz")
     except ArchiveError:
         return None  # a bar is no reason to refuse a run's results
-    if str(arrays["fingerprint"]) != archive.fingerprint:
+    if (str(arrays["fingerprint"]), str(arrays["method"])) != (archive.fingerprint, METHOD):
         return None
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
 

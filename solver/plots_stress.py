@@ -39,8 +39,9 @@ def engagement_stress(run: RunData) -> Figure:
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
     values = np.concatenate([c.max_pressure for c in curves])
-    top = np.nanmax([np.nanmax(values), np.nanmax(_lowest(curves).max_pressure) + bar])  # NaN: no bar
-    main.set_ylim(0.55 * np.nanmin(values), 1.06 * top)
+    largest = np.nanmax(_lowest(curves).max_pressure) + np.array([-1.0, 1.0]) * bar  # NaN: no bar
+    bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
+    main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
     main.legend(loc="lower center", bbox_to_anchor=(0.5, 0.09), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
@@ -128,7 +129,8 @@ def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> 
 
 def present(curves: Sequence[Engagement]) -> list[int]:
     """Which of the three teeth have a contact stress in this pitch."""
-    return [t for t in NAMES if all(np.isfinite(c.max_pressure[c.tooth == t]).any() for c in curves)]
+    pressures = [(c.tooth, pressure) for c in curves for pressure in (c.max_pressure, c.mean_pressure)]
+    return [t for t in NAMES if all(np.isfinite(pressure[tooth == t]).any() for tooth, pressure in pressures)]
 
 
 def _lowest(curves: Sequence[Engagement]) -> Engagement:

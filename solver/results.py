@@ -102,6 +102,7 @@ class PositionRow:
 class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
     crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
+    max_pressure_MPa, mean_pressure_MPa: between the tip-edge zones, see `engagement.line_peak` and `line_mean`.
     mesh_stiffness_N_per_mm_um: mean of the tangential force at the base circle over face width and transmission error
     (a secant: modifications of the flanks soften it; NaN, null in JSON, where flanks are charted). balance_error: of
     the pitch's energy, over the input; what positions store in deflected teeth cancels out. estimated_error: None where

@@ -9,7 +9,8 @@ import pytest
 from synthetic_run import even_line_load, synthetic_run
 
 from meshes.flank import contact_lines
-from solver.engagement import Engagement, crossing, engagement, engagements, sign_changes
+from solver.engagement import Engagement, crossing, engagement, engagements, line_peak, sign_changes
+from solver.gear_results import Slices
 from solver.hertz import line_peak_pressure
 from solver.run_data import RunData, SolvedPosition
 
@@ -90,6 +91,22 @@ def test_maximum_scatters_no_more_than_the_fits(run: RunData) -> None:
     known = np.isfinite(even)
     assert known.sum() > 0.8 * len(known)
     np.testing.assert_allclose(uneven[known], even[known], rtol=0.0401)
+
+
+def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
+    """Problem: a line whose load rises from 300 to 500 N/mm towards the tip edge, with peaks 3 % over Hertz's; its last
+    slices bear on the edge, the very last over half of its width. Exact: 3 % over Hertz for the load where the zone
+    begins, between the slices; the last peak that could be fitted is 3 % lower."""
+    ξ = np.array([-5.5, -5.1, -4.7, -4.2, -3.6, -3.0])
+    load = 300.0 + 100.0 * (-3.0 - ξ)
+    load[0] *= 0.5
+    edge = ξ < -5.0
+    hertz = np.asarray(line_peak_pressure(load, run.pair.relative_curvature_radius(ξ), 115e3))
+    ones, peak = np.ones(6), np.where(edge, np.nan, 1.03 * hertz)
+    cut = Slices(np.zeros(6, dtype=int), ones, ξ, ones, load, peak, peak, ones, hertz, edge)
+    exact = 1.03 * line_peak_pressure(500.0, run.pair.relative_curvature_radius(-5.0), 115e3)
+    assert line_peak(run.pair, cut, 0, (-5.0, 6.0)) == pytest.approx(float(exact), rel=2e-3)
+    assert peak[2] < 0.97 * exact
 
 
 def test_sign_changes() -> None:

@@ -23,7 +23,7 @@ from solver.archive import Archive
 from solver.companion import Companion, coarser, companion_mesh, solved_run
 from solver.engagement import engagement
 from solver.error_bars import Curve, difference, errors_between, estimated_errors
-from solver.estimated_errors import EstimatedErrors, FigureErrors, keep_errors, kept_errors, plus_minus
+from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors, plus_minus
 from solver.newton import NotConverged
 from solver.run import run_scene
 from solver.run_data import RunData, SolvedPosition
@@ -130,6 +130,7 @@ def test_zones_of_the_companion_do_not_count() -> None:
     assert peaks[1] < 0.97 * peaks[0]
     for errors in errors_between(run, companion):
         assert errors.max_pressure_MPa < 0.02 * 1500.0
+        assert errors.mean_pressure_MPa < 0.02 * 1500.0
 
 
 def test_companion_without_contact() -> None:
@@ -169,15 +170,18 @@ def test_written_with_their_sign() -> None:
 
 
 def test_come_back_from_disk(tmp_path: Path) -> None:
-    """What is kept is read again number by number, NaN too, but not by another scene; no bars leave no file, and a
-    broken file is none."""
+    """What is kept is read again number by number, NaN too, but not by another scene, nor where it was estimated
+    in another way; no bars leave no file, and a broken file is none."""
     archive = Archive(tmp_path, spur_scene())
     archive.folder.mkdir()
     keep_errors(archive, EstimatedErrors(missing="It rained."))
     assert kept_errors(archive) is None
-    errors = EstimatedErrors((FigureErrors(1.0, 2.0, float("nan"), 4.0, 0.1 + 0.2),), "guessed", "")
+    errors = EstimatedErrors((FigureErrors(1.0, 2.0, float("nan"), 4.0, 0.1 + 0.2),), METHOD, "")
     keep_errors(archive, errors)
     assert repr(kept_errors(archive)) == repr(errors)
+    keep_errors(archive, replace(errors, method="guessed"))
+    assert kept_errors(archive) is None
+    keep_errors(archive, errors)
     assert kept_errors(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
     (archive.folder / "errors.npz").write_bytes(b"PK half")
     assert kept_errors(archive) is None

@@ -63,6 +63,10 @@ ANSWERS = {
 }
 
 
+CLOSER = {"deflected-flanks": 1.2e-2}
+"""Where a case of ours bears little on tip edges, and the skip's tolerance is that of a pair which bears much."""
+
+
 def solved(scene: Scene, out: Path) -> dict[str, Any]:
     """The summary of a run."""
     run_scene(scene, out, quiet=True)
@@ -77,7 +81,7 @@ def test_the_answer_stays(name: str, tmp_path: Path) -> None:
     case = ANSWERS[name]
     short, long = (solved(case.scene(off), tmp_path / str(off)) for off in (False, True))
     found = differences(short, long)
-    assert found.largest <= skip_named(case.skip).tolerance, found
+    assert found.largest <= min(skip_named(case.skip).tolerance, CLOSER.get(name, np.inf)), found
     assert case.skip in {skip["name"] for skip in short["skipped"]}
     assert case.skip not in {skip["name"] for skip in long["skipped"]}
     assert long["scene"]["skip"]["off"] == [case.skip]

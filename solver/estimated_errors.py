@@ -10,7 +10,7 @@ import numpy as np
 from solver.archive import Archive, ArchiveError, read_arrays, write_arrays
 
 METHOD = (
-    "difference to the same scene on meshes of twice the element size; of a pressure, between the run's tip-edge zones: "
+    "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
     "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes"
 )
 

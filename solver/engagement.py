@@ -16,6 +16,11 @@ from meshes.parameters import GearPair
 from solver.gear_results import Slices
 from solver.run_data import RunData, SolvedPosition
 
+AT_THE_END = 0.01
+"""Roll distance [mm] within which a slice is at the end of a tip-edge zone. An end is the place of a slice that bears
+on the edge; at the same position another mesh or friction coefficient has its own a micrometre beside it, and
+round-off must not decide whether that counts."""
+
 
 @dataclass(frozen=True)
 class Engagement:
@@ -102,13 +107,18 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     fitted = line[np.isfinite(cut.peak[line]) & (cut.hertz[line] > 0.0)]
     ξ, peak = cut.ξ[fitted], cut.peak[fitted]
     low, high = inner
-    inside = peak[(ξ >= low) & (ξ <= high)]
+    inside = peak[_between(ξ, inner)]
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
     half, ends = 0.5 * np.max(np.diff(cut.ξ[line])), cut.ξ[line[[0, -1]]]
     limits = np.array([limit for limit in (low, high) if ends[0] - half <= limit <= ends[1] + half])
     found = np.concatenate([inside, _peak_at(limits, pair, cut, line, fitted)])
     return float(found.max()) if len(found) else float("nan")
+
+
+def _between(ξ: Floats, inner: tuple[float, float]) -> np.ndarray:
+    """(n,) bool: whether slices lie between the tip-edge zones; at an end, one bears on the edge."""
+    return np.asarray((ξ > inner[0] + AT_THE_END) & (ξ < inner[1] - AT_THE_END))
 
 
 def _peak_at(x: Floats, pair: GearPair, cut: Slices, line: Ints, fitted: Ints) -> Floats:
@@ -133,7 +143,7 @@ def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
     """Mean along the contact line of the fitted peak pressures [MPa] between the tip-edge zones, see `line_peak`; NaN
     where no slice with a fitted peak is left."""
     fitted = (cut.tooth == tooth) & np.isfinite(cut.peak) & (cut.hertz > 0.0)
-    here = fitted & (cut.ξ >= inner[0]) & (cut.ξ <= inner[1])
+    here = fitted & _between(cut.ξ, inner)
     return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")
 
 

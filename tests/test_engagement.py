@@ -9,7 +9,7 @@ import pytest
 from synthetic_run import even_line_load, synthetic_run
 
 from meshes.flank import contact_lines
-from solver.engagement import Engagement, crossing, engagement, engagements, line_peak, sign_changes
+from solver.engagement import Engagement, crossing, engagement, engagements, line_mean, line_peak, sign_changes
 from solver.gear_results import Slices
 from solver.hertz import line_peak_pressure
 from solver.run_data import RunData, SolvedPosition
@@ -107,6 +107,16 @@ def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
     exact = 1.03 * line_peak_pressure(500.0, run.pair.relative_curvature_radius(-5.0), 115e3)
     assert line_peak(run.pair, cut, 0, (-5.0, 6.0)) == pytest.approx(float(exact), rel=2e-3)
     assert peak[2] < 0.97 * exact
+
+
+def test_round_off_does_not_decide_at_the_end() -> None:
+    """Problem: a slice that stands where the zone begins, as that of another mesh at the same position does, and the
+    same a nanometre to either side; its pressure is ten times the others'. Exact: the mean of the others."""
+    ones, peak = np.ones(3), np.array([10.0, 1.0, 1.0])
+    for shift in (-1e-6, 0.0, 1e-6):
+        ξ = np.array([-4.0 + shift, -3.0, -2.0])
+        cut = Slices(np.zeros(3, dtype=int), ones, ξ, ones, ones, peak, peak, ones, peak, np.zeros(3, dtype=bool))
+        assert line_mean(cut, 0, (-4.0, 6.0)) == 1.0
 
 
 def test_sign_changes() -> None:

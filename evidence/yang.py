@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.data import Floats
-from solver.engagement import Engagement, crossing, engagement
+from solver.engagement import Engagement, between, crossing, engagement
 from solver.plots_flank import at_point, paper_points, paper_position
 from solver.plots_stress import relative_change, trends
 from solver.results import friction_rows
@@ -38,8 +38,7 @@ def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
     """Fitted peaks over Hertz for the slice's own line load, in the layer at mid-face."""
     cuts = [each[index].cut for each in run.positions]
     z, ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ", "peak", "hertz"))
-    low, high = run.inner_path
-    inside = np.isfinite(peak) & (ξ > low) & (ξ < high)
+    inside = np.isfinite(peak) & between(ξ, run.inner_path)
     middle = inside & (np.abs(z) <= np.abs(z).min() + 1e-9)
     off = 100.0 * (peak[middle] / hertz[middle] - 1.0)
     yield "mid-face, over Hertz: median, nine in ten within, largest", (

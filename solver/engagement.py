@@ -104,10 +104,10 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     """
     line = np.flatnonzero(cut.tooth == tooth)
     line = line[np.argsort(cut.ξ[line])]
-    fitted = line[np.isfinite(cut.peak[line]) & (cut.hertz[line] > 0.0)]
+    fitted = line[has_peak(cut)[line]]
     ξ, peak = cut.ξ[fitted], cut.peak[fitted]
     low, high = inner
-    inside = peak[_between(ξ, inner)]
+    inside = peak[between(ξ, inner)]
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
         return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
     half, ends = 0.5 * np.max(np.diff(cut.ξ[line])), cut.ξ[line[[0, -1]]]
@@ -116,8 +116,14 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     return float(found.max()) if len(found) else float("nan")
 
 
-def _between(ξ: Floats, inner: tuple[float, float]) -> np.ndarray:
-    """(n,) bool: whether slices lie between the tip-edge zones; at an end, one bears on the edge."""
+def has_peak(cut: Slices) -> np.ndarray:
+    """(n,) bool: the slices that carry load and have a fitted peak."""
+    return np.asarray(np.isfinite(cut.peak) & (cut.hertz > 0.0))
+
+
+def between(ξ: Floats, inner: tuple[float, float]) -> np.ndarray:
+    """(n,) bool: whether slices at the roll distances ξ [mm] lie between the tip-edge zones, whose ends are `inner`; at
+    an end, one bears on the edge."""
     return np.asarray((ξ > inner[0] + AT_THE_END) & (ξ < inner[1] - AT_THE_END))
 
 
@@ -142,8 +148,7 @@ def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
 def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
     """Mean along the contact line of the fitted peak pressures [MPa] between the tip-edge zones, see `line_peak`; NaN
     where no slice with a fitted peak is left."""
-    fitted = (cut.tooth == tooth) & np.isfinite(cut.peak) & (cut.hertz > 0.0)
-    here = fitted & _between(cut.ξ, inner)
+    here = (cut.tooth == tooth) & has_peak(cut) & between(cut.ξ, inner)
     return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")
 
 

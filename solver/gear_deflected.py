@@ -18,7 +18,7 @@ from solver.gear_contact import GearContact, gear_contact
 from solver.gear_memory import Footprint, Memory, recalled
 from solver.gear_model import GearModel
 from solver.gear_overlap import overlap_outside, unwatched
-from solver.gear_position import rubbing
+from solver.gear_position import free_rotation, free_shift, rubbing
 from solver.newton import NotConverged
 from solver.search import SearchError
 from solver.tooth_contact import Displaced
@@ -45,14 +45,15 @@ def settled(
         found = replace(found, iterations=spent + found.iterations)
         if contact.reaches_rim(found.traction[:, 0] > 0.0):
             contact = replace(contact, half_width=1.5 * contact.half_width)
-        elif abs(_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
-            if _overlap_outside(model, contact, found) == 0.0:
+        elif abs(free_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
+            places = unwatched(contact, model.teeth)
+            if overlap_outside(contact, places, found.force, free_rotation(model, found)) == 0.0:
                 return contact, found
             contact = replace(contact, half_width=np.inf)
     raise NotConverged(
         f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that move by less "
         f"than {1e3 * SETTLED * model.pair.pinion.normal_module:.2f} µm within their window, found them moved by "
-        f"{1e3 * abs(_shift(model, found)):.2f} µm after {ROUNDS} searches; lower the torque"
+        f"{1e3 * abs(free_shift(model, found)):.2f} µm after {ROUNDS} searches; lower the torque"
     )
 
 
@@ -90,14 +91,3 @@ def _equilibrium(
         return smooth
     found = rubbing(model, contact, system, friction, smooth, recalled(contact, [before])[0], span)
     return replace(found, iterations=smooth.iterations + found.iterations)
-
-
-def _overlap_outside(model: GearModel, contact: GearContact, found: Equilibrium) -> float:
-    """How deep [mm] the flanks overlap where the window does not look."""
-    turned = (float(found.motion[0]), 0.0) if model.load.on == 0 else (0.0, float(found.motion[0]))
-    return overlap_outside(contact, unwatched(contact, model.teeth), found.force, turned)
-
-
-def _shift(model: GearModel, found: Equilibrium) -> float:
-    """How far [mm] the free rotation moves the flanks."""
-    return float(found.motion[0]) * model.bodies[model.load.on].gear.base_radius

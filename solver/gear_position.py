@@ -139,7 +139,7 @@ def shared_position(
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
         smooth = frictionless(normal_part(system), _foreseen(contact, before))
-        shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+        shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°: wanted teeth that give way by less than half a module, found "
@@ -149,7 +149,7 @@ def shared_position(
             half_width *= 1.5
         elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
             places = unwatched(contact, model.teeth)
-            if overlap_outside(contact, places, smooth.force, _rotation(model, smooth)) == 0.0:
+            if overlap_outside(contact, places, smooth.force, free_rotation(model, smooth)) == 0.0:
                 return SharedPosition(contact, system, smooth, places)
             half_width = np.inf
         stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
@@ -185,10 +185,10 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     smooth = _smooth(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
     if smooth is None:
         return None
-    shift = float(smooth.motion[0]) * model.bodies[model.load.on].gear.base_radius
+    shift = free_shift(model, smooth)
     good = abs(shift) <= STALE * model.pair.pinion.normal_module
     good = good and not contact.reaches_rim(smooth.traction[:, 0] > 0.0)
-    rotation = _rotation(model, smooth)
+    rotation = free_rotation(model, smooth)
     good = good and overlap_outside(contact, shared.unwatched, smooth.force, rotation) == 0.0
     return SharedPosition(contact, system, smooth, shared.unwatched) if good else None
 
@@ -203,10 +203,15 @@ def _smooth(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equ
     return None
 
 
-def _rotation(model: GearModel, found: Equilibrium) -> tuple[float, float]:
+def free_rotation(model: GearModel, found: Equilibrium) -> tuple[float, float]:
     """By how much the solution turns pinion and wheel [rad] from where they were searched."""
     free = float(found.motion[0])
     return (free, 0.0) if model.load.on == 0 else (0.0, free)
+
+
+def free_shift(model: GearModel, found: Equilibrium) -> float:
+    """How far [mm] that moves the flanks."""
+    return float(found.motion[0]) * model.bodies[model.load.on].gear.base_radius
 
 
 def _foreseen(contact: GearContact, before: Footprint | None) -> np.ndarray:

@@ -23,6 +23,7 @@ import numpy as np
 
 from meshes.data import Floats, Ints, MeshData
 from meshes.parameters import GearPair
+from solver.closed_pitch import one_pitch
 from solver.gear_memory import Memory
 from solver.gear_points import ContactPoints
 from solver.gear_position import PositionResult
@@ -104,19 +105,26 @@ class Archive:
 
     def write_position(self, index: int, position: SweptPosition) -> None:
         """Keeps a position and the state after it."""
-        arrays: dict[str, Any] = {"angle": position.angle, "warm_up": position.warm_up, "count": len(position.results)}
+        arrays: dict[str, Any] = {
+            "angle": position.angle, "warm_up": position.warm_up, "again": position.again, "closes": position.closes,
+            "count": len(position.results),
+        }  # fmt: skip
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
         write_arrays(self.folder / f"position_{index:04d}.npz", arrays)
         write_arrays(self.folder / "state.npz", self._state_arrays(index + 1, position.state))
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
-        """All complete positions, without their states. Raises ArchiveError."""
+        """The warm-up and the pitch, each position as it was solved last, without their states. Raises ArchiveError."""
+        return one_pitch(self.read_sweep(pair))
+
+    def read_sweep(self, pair: GearPair) -> list[SweptPosition]:
+        """All positions in the order in which they were solved, without their states. Raises ArchiveError."""
         count = int(self._state()["complete"])
         return [self._position(k, pair) for k in range(count)]
 
-    def read_state(self, pair: GearPair) -> tuple[int, SweepState] | None:
-        """(number of complete positions, state after them), or None where nothing is kept.
+    def read_state(self, pair: GearPair) -> SweepState | None:
+        """The state after all complete positions, or None where nothing is kept.
 
         Raises ArchiveError if the archive belongs to another scene.
         """
@@ -127,7 +135,7 @@ class Archive:
             _memory(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
         )
         extra = arrays["extra"]
-        return int(arrays["complete"]), SweepState((float(extra[0]), float(extra[1])), memories)
+        return SweepState((float(extra[0]), float(extra[1])), memories)
 
     def _state(self) -> dict[str, Any]:
         arrays = read_arrays(self.folder / "state.npz")
@@ -166,12 +174,13 @@ class Archive:
         arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
         try:
             results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+            warm_up, again, closes = (bool(arrays[name]) for name in ("warm_up", "again", "closes"))
         except KeyError as missing:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; run the "
                 "scene again, without --resume"
             ) from missing
-        return SweptPosition(float(arrays["angle"]), bool(arrays["warm_up"]), results, SweepState((0.0, 0.0), ()))
+        return SweptPosition(float(arrays["angle"]), warm_up, results, SweepState((0.0, 0.0), ()), again, closes)
 
 
 def fingerprint(scene: Scene) -> str:

@@ -18,11 +18,11 @@ from mpi4py import MPI
 from meshes.data import MeshData
 from meshes.section import SectorResolution
 from solver.archive import Archive, gear_shape
+from solver.closed_pitch import one_pitch, sweep_closed
 from solver.estimated_errors import kept_errors
 from solver.gear_model import prepare_model
 from solver.gear_sweep import Pitch, initial_state
 from solver.parallel import on_first, together
-from solver.rank_sweep import sweep_on_ranks
 from solver.run_data import RunData, run_data
 from solver.scene import Scene
 from solver.sectors import gear_mesh
@@ -95,10 +95,10 @@ def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunD
     """A scene on meshes of one's own, nothing written: the run on rank 0. Raises NotConverged, MeshError,
     NotPositiveDefinite, OutOfMemory."""
     model, frictions = prepare_model(scene, comm, mesh).model, scene.contact.friction
-    positions = list(sweep_on_ranks(model, pitch, frictions, initial_state(frictions), comm))
+    swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), comm))
 
     def joined() -> RunData:
         shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]
-        return run_data(scene, (shapes[0], shapes[1]), [position for position in positions if not position.warm_up])
+        return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept))
 
     return together(comm, lambda: joined() if comm.rank == 0 else None)

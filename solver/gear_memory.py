@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,7 +12,7 @@ from meshes.data import Floats, Ints
 from solver.equilibrium import Equilibrium
 from solver.gear_contact import GearContact
 from solver.gear_model import GearModel
-from solver.kinematics import Stand, nominal_slip
+from solver.kinematics import Stand, nominal_slip, turn
 
 SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 foretell equally well
 NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
@@ -31,6 +31,16 @@ class Memory:
     rows: tuple[Ints, Ints]
     forces: tuple[Floats, Floats]
     flux: Floats
+
+    def earlier(self, pitches: int) -> Memory:
+        """The same so many base pitches earlier, where other teeth of both gears stand as these do."""
+        pair, d, back = self.stand.pair, self.flux.shape[1], 2.0 * np.pi * pitches
+        angle = self.stand.angle - back / pair.pinion.z
+        pinion, wheel = turn(-back / pair.pinion.z, d), turn(back / pair.wheel.z, d)
+        step = np.array([pitches, 0])
+        rows = self.rows[0] + step, self.rows[1] - step  # the wheel's teeth are counted the other way
+        forces = self.forces[0] @ pinion, self.forces[1] @ wheel
+        return Memory(replace(self.stand, angle=angle), rows, forces, self.flux @ pinion)
 
 
 @dataclass(frozen=True)

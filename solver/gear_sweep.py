@@ -44,30 +44,39 @@ class SweepState:
     memories: tuple[Memory | None, ...]
     footprint: Footprint | None = None
 
+    def earlier(self, pitches: int) -> SweepState:
+        """The same so many base pitches earlier."""
+        memories = tuple(None if memory is None else memory.earlier(pitches) for memory in self.memories)
+        return replace(self, memories=memories)
+
 
 @dataclass(frozen=True)
 class SweptPosition:
     """One angle's results, one per friction coefficient, and the state to go on from. warm_up: only there to give
-    friction a past."""
+    friction a past. again: in the place of the one before at this angle; closes: with it the sweep is complete."""
 
     angle: float
     warm_up: bool
     results: tuple[PositionResult, ...]
     state: SweepState
+    again: bool = False
+    closes: bool = False
 
 
 @dataclass(frozen=True)
 class Pitch:
-    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts."""
+    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts. period: how many of them a
+    base pitch has, 0 where they are no equal steps of one."""
 
     angles: tuple[float, ...]
     warm_up: int
+    period: int = 0
 
 
 def uniform_pitch(z1: int, positions: int, warm_up: int, pitches: int = 1) -> Pitch:
     """`positions` equal steps over each base pitch 2π/z_1, and a few before the first."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up)
+    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up, positions)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:

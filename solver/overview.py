@@ -195,11 +195,16 @@ def _cost_rows(scene: Scene) -> list[Row]:
         Row("degrees of freedom of a sector", "", "", tuple(f"{size.dofs:,}" for size in sizes)),
         _one("largest memory of a run on one rank, estimated", "", "MB", 0, memory_megabytes(*sizes)),
         Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
-        Row("positions, with warm-up", "", "", (str(positions_to_solve(scene)),)),
+        Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
 
 
+def _positions_name(scene: Scene) -> str:
+    """With friction some are solved again, how many is seen then."""
+    return "positions, with warm-up, at least" if any(scene.contact.friction) else "positions"
+
+
 def positions_to_solve(scene: Scene) -> int:
-    """Positions of the sweep, with those that warm up."""
+    """Positions of the sweep, with those that warm up, each once."""
     return pitches(scene) * scene.sweep.positions + warm_up_positions(scene)

@@ -30,8 +30,10 @@ class Progress:
         self._bar.stop()
 
     def advance(self) -> None:
-        """One more position is done."""
+        """One more position is done, be it one more than was thought."""
         self._bar.advance(self._task)
+        task = self._bar.tasks[self._task]
+        self._bar.update(self._task, total=max(task.total or 0.0, task.completed))
 
     def reach(self, done: int) -> None:
         """So many are done."""

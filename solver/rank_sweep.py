@@ -7,7 +7,8 @@ divided among the ranks, which read what was prepared from the same memory.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -26,14 +27,17 @@ PREPARING = 2  # ranks: from further away a search takes longer
 
 def sweep_on_ranks(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0
-) -> Iterator[SweptPosition]:
-    """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks."""
+) -> Generator[SweptPosition, None, None]:
+    """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks, which must close it
+    together where they leave it early."""
     if comm.size == 1:
         yield from sweep_pitch(model, pitch, frictions, state, begin)
         return
     boards = tuple(Board(comm, root) for root in range(PREPARING))
-    yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
-    for board in boards:  # not where something failed: who is alone with it would wait for the others
+    # not closed where something failed: who is alone with it would wait for the others
+    with suppress(GeneratorExit):
+        yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
+    for board in boards:
         board.close()
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from meshes.data import MeshData
 from solver.archive import Archive, GearShape, gear_shape
-from solver.gear_sweep import SweepState
+from solver.gear_sweep import SweepState, SweptPosition
 from solver.parallel import together
 from solver.results import write_text
 from solver.scene import GEARS, Scene
@@ -26,20 +26,22 @@ Meshes = tuple[MeshData, MeshData]
 
 @dataclass(frozen=True)
 class Start:
-    """Where a run begins: after `complete` positions, in this state."""
+    """Where a run begins: after these positions, in this state."""
 
-    complete: int
+    swept: Sequence[SweptPosition]
     state: SweepState
 
-    def only(self, frictions: slice) -> Start:
-        """The same for some of the friction coefficients."""
-        return Start(self.complete, SweepState(self.state.extra, self.state.memories[frictions]))
+    @property
+    def is_end(self) -> bool:
+        """Whether nothing is left to be solved."""
+        return bool(self.swept) and self.swept[-1].closes
 
 
 def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
-    kept = archive.read_state(scene.gear_pair()) if resume else None
-    return None if kept is None else Start(*kept)
+    pair = scene.gear_pair()
+    kept = archive.read_state(pair) if resume else None
+    return None if kept is None else Start(archive.read_sweep(pair), kept)
 
 
 def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:

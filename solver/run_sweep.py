@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -12,12 +12,12 @@ from pathlib import Path
 from mpi4py import MPI
 
 from solver.archive import Archive
+from solver.closed_pitch import one_pitch, sweep_closed
 from solver.gear_model import Preparation, prepare_model
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, uniform_pitch
 from solver.parallel import on_first
 from solver.progress import Progress
-from solver.rank_sweep import sweep_on_ranks
 from solver.results import Timings
 from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
 from solver.run_start import Start, open_archive, same_meshes
@@ -80,12 +80,15 @@ class _Gears:
 def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: bool) -> Sweep:
     """All positions in the archive. Where they are there already the gears are not even condensed."""
     comm, log, archive = gears.comm, gears.log, Archive(out, scene)
-    count, begun = len(pitch_of(scene).angles), time.perf_counter()
-    if start is not None:
-        log.info("resumed after %d of %d positions", start.complete, count)
-        if start.complete == count:
-            return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
-    begin = start or Start(0, initial_state(scene.contact.friction))
+    groups, begun = friction_groups(scene), time.perf_counter()
+    if start is not None and start.is_end:
+        log.info("resumed after all of %d positions", len(start.swept))
+        return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
+    if start is not None and len(groups) > 1:
+        start = None  # groups are written together, once all are solved
+    done = start.swept if start is not None else ()
+    if done:
+        log.info("resumed after %d positions", len(done))
     made: list[Sweep] = []
 
     def solved(group: slice) -> Iterator[SweptPosition]:
@@ -95,17 +98,14 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: b
         if not made:
             on_first(comm, lambda: open_archive(scene, archive, (pinion, wheel), start))
         made.append(Sweep((pinion, wheel), timings))
-        frictions, state = scene.contact.friction[group], begin.only(group).state
-        for position in sweep_on_ranks(preparation.model, pitch_of(scene), frictions, state, comm, begin.complete):
+        frictions = scene.contact.friction[group]
+        state = start.state if start is not None else initial_state(frictions)
+        for position in sweep_closed(preparation.model, pitch_of(scene), frictions, state, comm, done):
             certify(position.results)
             yield position
 
-    sweeps = [solved(group) for group in friction_groups(scene)]
-    if len(sweeps) > 1:  # each with its own gears, one after the other
-        sweeps = [iter(list(each)) for each in sweeps]
-    with Progress(count, begin.complete, hidden=quiet or comm.rank > 0) as progress:
-        for k, parts in enumerate(zip(*sweeps), begin.complete):
-            position = _joined(parts)
+    with Progress(len(pitch_of(scene).angles), len(done), hidden=quiet or comm.rank > 0) as progress:
+        for k, position in enumerate(_together([solved(group) for group in groups]), len(done)):
             on_first(comm, partial(archive.write_position, k, position))
             log.info(_line(position))
             progress.advance()
@@ -119,11 +119,24 @@ def friction_groups(scene: Scene) -> list[slice]:
     return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
 
 
+def _together(sweeps: Sequence[Iterator[SweptPosition]]) -> Iterator[SweptPosition]:
+    """The positions of all groups of friction coefficients: of a single one as it comes, of several, which close their
+    pitches after different numbers of them, what each has found in the end."""
+    if len(sweeps) == 1:
+        yield from sweeps[0]
+        return
+    pitches = [one_pitch(list(sweep)) for sweep in sweeps]
+    *before, last = zip(*pitches, strict=True)
+    for parts in before:
+        yield replace(_joined(parts), closes=False)
+    yield replace(_joined(last), closes=True)
+
+
 def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
     """One position from its groups of friction coefficients."""
     results = tuple(result for part in parts for result in part.results)
     memories = tuple(memory for part in parts for memory in part.state.memories)
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories), again=False)
 
 
 def _total(made: list[Sweep], seconds: float) -> Sweep:
@@ -145,5 +158,5 @@ def _line(position: SweptPosition) -> str:
     iterations = max(r.iterations for r in position.results)
     worst = max(balance_error(r) for r in position.results)
     seconds = sum(r.seconds for r in position.results)
-    kind = "warm-up " if position.warm_up else "position"
+    kind = "warm-up " if position.warm_up else "again   " if position.again else "position"
     return f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"

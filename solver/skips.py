@@ -107,7 +107,8 @@ SKIPS: tuple[Skip, ...] = (
         lambda scene: f"The {scene.sweep.warm_up_positions} warm-up positions: without friction there is no history.",
         tolerance=ROUND_OFF,
     ),
-    Skip("one-pitch", _always, _pitch_sentence, tolerance=1e-4),  # friction's history at its start: warmed up or known
+    # with friction what closing a pitch leaves of where it began, of the peak-to-peak transmission error; else 1e-7
+    Skip("one-pitch", _always, _pitch_sentence, tolerance=5e-3),
     Skip("one-sector", _always, _sector_sentence, tolerance=ROUND_OFF),  # the ring's coupling is compressed to 1e-10
     Skip(
         "far-teeth",

@@ -71,17 +71,18 @@ def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_whole_run(whole: Path) -> None:
-    """All files are there, none is half-written, and the log tells the positions."""
+    """All files are there, none is half-written, and the log tells the positions: two of warm-up, the pitch, and the
+    first of it again, which closes it."""
     names = {path.name for path in (whole / "results").iterdir()}
-    assert names == {"gears.npz", "state.npz", "errors.npz", *(f"position_{k:04d}.npz" for k in range(6))}
+    assert names == {"gears.npz", "state.npz", "errors.npz", *(f"position_{k:04d}.npz" for k in range(7))}
     assert not list(whole.rglob("*.tmp"))
-    assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 6
+    assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 7
 
 
-@pytest.mark.parametrize("how", ["kill-mesh", "kill-before-1", "kill-half-4", "kill-before-8", "kill-before-13"])
+@pytest.mark.parametrize("how", ["kill-mesh", "kill-before-1", "kill-half-4", "kill-before-8", "kill-before-15"])
 def test_killed_and_resumed(how: str, whole: Path, run_script: Run, tmp_path: Path) -> None:
-    """kill -9 while meshing, between a position and its state, amid writing: resumed it is the undisturbed run. One is
-    resumed on two ranks."""
+    """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
+    resumed it is the undisturbed run. One is resumed on two ranks."""
     out = tmp_path / "out"
     assert run_script("tests/broken_run.py", how, *arguments(out)).returncode == -9
     assert not (out / "summary.json").exists()

@@ -22,10 +22,10 @@ from mpi4py import MPI
 from evidence.benchmark.gears import scene
 from solver import compat
 from solver.body import Body, Fixed, assemble
+from solver.closed_pitch import one_pitch, sweep_closed
 from solver.condense import Factor
 from solver.gear_model import prepare_model
 from solver.gear_sweep import SweptPosition, initial_state
-from solver.rank_sweep import sweep_on_ranks
 from solver.run_output import peak_memory_MB
 from solver.run_sweep import pitch_of
 from solver.scene import Scene
@@ -35,7 +35,8 @@ from solver.sectors import gear_mesh
 @dataclass(frozen=True)
 class PitchFacts:
     """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
-    wall. positions: wall seconds of each, warm-up included; warm_up: how many of them are. iterations: Newton's, of all
+    wall. positions: wall seconds of each that was solved, `counted` of them the pitch, the others before it and, with
+    friction, again. iterations: Newton's, of all
     friction coefficients together. transmission_error: [mm] at the first one, of the positions that count.
     memory_MB and cpu [s]: of all ranks together."""
 
@@ -46,16 +47,11 @@ class PitchFacts:
     assemble: float
     condense: float
     positions: tuple[float, ...]
-    warm_up: int
+    counted: int
     iterations: tuple[int, ...]
     transmission_error: tuple[float, ...]
     memory_MB: float
     cpu: float
-
-    @property
-    def counted(self) -> int:
-        """Positions of the pitch itself."""
-        return len(self.positions) - self.warm_up
 
     @property
     def without_meshing(self) -> float:
@@ -71,7 +67,7 @@ def measured(own: Scene) -> PitchFacts:
     seconds: list[float] = []
     swept: list[SweptPosition] = []
     begin = time.perf_counter()
-    for found in sweep_on_ranks(preparation.model, pitch, own.contact.friction, state, comm):
+    for found in sweep_closed(preparation.model, pitch, own.contact.friction, state, comm):
         seconds.append(time.perf_counter() - begin)
         swept.append(found)
         begin = time.perf_counter()
@@ -85,9 +81,9 @@ def measured(own: Scene) -> PitchFacts:
         assemble=preparation.seconds * assemble_share,
         condense=preparation.seconds * (1.0 - assemble_share),
         positions=tuple(seconds),
-        warm_up=pitch.warm_up,
+        counted=pitch.period,
         iterations=tuple(sum(r.iterations for r in p.results) for p in swept),
-        transmission_error=tuple(p.results[0].transmission_error for p in swept if not p.warm_up),
+        transmission_error=tuple(p.results[0].transmission_error for p in one_pitch(swept) if not p.warm_up),
         memory_MB=comm.allreduce(peak_memory_MB()),
         cpu=comm.allreduce(_cpu()),
     )

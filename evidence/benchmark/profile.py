@@ -19,8 +19,9 @@ from evidence.benchmark.gears import FRICTION, scene
 from evidence.benchmark.programs import ROOT
 from evidence.benchmark.runs import Command, run
 from solver import compat
+from solver.closed_pitch import sweep_closed
 from solver.gear_model import prepare_model
-from solver.gear_sweep import initial_state, sweep_pitch
+from solver.gear_sweep import initial_state
 from solver.run_sweep import pitch_of
 
 ELEMENTS, POSITIONS = 1.7, 20
@@ -69,8 +70,8 @@ def measured(elements: float, positions: int, frictions: str) -> list[ProfileRow
     profiler = cProfile.Profile()
     profiler.enable()
     model = prepare_model(own, MPI.COMM_SELF).model
-    for _ in sweep_pitch(model, pitch_of(own), own.contact.friction, initial_state(own.contact.friction)):
-        pass
+    μ = own.contact.friction
+    list(sweep_closed(model, pitch_of(own), μ, initial_state(μ), MPI.COMM_SELF))
     profiler.disable()
     dofs = sum(len(body.mesh.points) * body.d for body in model.bodies)
     return _parts(pstats.Stats(profiler), dofs, positions)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 from mpi4py import MPI
 
 from meshes.data import MeshError
+from solver.closed_pitch import one_pitch, sweep_closed
 from solver.condense import NotPositiveDefinite
-from solver.gear_model import prepare_model
+from solver.gear_model import GearModel, prepare_model
 from solver.gear_results import pitch_imbalance
-from solver.gear_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
+from solver.gear_sweep import Pitch, SweptPosition, initial_state
 from solver.newton import NotConverged
 from solver.run_output import BalanceError, PitchImbalance, certify, certify_pitch
 from solver.scene import Scene
 from solver.search import SearchError
-from solver.skips import with_deflected_flanks
 
 POSITIONS = 6
 REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)
@@ -56,7 +56,7 @@ def some_positions(scene: Scene, seed: int) -> Pitch:
     """A whole pitch in a few equal steps, from a random position on."""
     step = 2.0 * np.pi / scene.pinion.teeth / POSITIONS
     begin = POSITIONS * float(np.random.default_rng([seed, 1]).random())
-    return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)), 0)
+    return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)), 0, POSITIONS)
 
 
 def outcome_of(scene: Scene, seed: int) -> Outcome:
@@ -73,15 +73,15 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
 
 def _solved(scene: Scene, seed: int) -> Outcome:
     """Again on deflected flanks where the pitch alone is out of balance."""
-    found, pitch = _swept(scene, seed)
-    return _swept(with_deflected_flanks(scene), seed)[0] if pitch else found
-
-
-def _swept(scene: Scene, seed: int) -> tuple[Outcome, bool]:
-    """And whether only the pitch was refused."""
     model = prepare_model(scene, MPI.COMM_SELF).model
-    pitch = some_positions(scene, seed)
-    swept = list(sweep_pitch(model, pitch, scene.contact.friction, initial_state(scene.contact.friction)))
+    found, pitch = _swept(model, scene, seed)
+    return _swept(replace(model, deflected=True), scene, seed)[0] if pitch else found
+
+
+def _swept(model: GearModel, scene: Scene, seed: int) -> tuple[Outcome, bool]:
+    """And whether only the pitch was refused."""
+    pitch, frictions = some_positions(scene, seed), scene.contact.friction
+    swept = one_pitch(list(sweep_closed(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF)))
     results = [result for position in swept for result in position.results]
     rubbed = [r for r in results if r.friction > 0.0] or results
     refusal = _out_of_balance(swept)

@@ -1,0 +1,128 @@
+"""A pitch with friction comes out the same wherever its sweep began, and only as far as it needs is solved again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from gear_cases import helical_scene, model_of
+from mpi4py import MPI
+
+from solver import closed_pitch, gear_memory
+from solver.closed_pitch import FORGOTTEN, one_pitch, sweep_closed
+from solver.gear_memory import Past, recalled
+from solver.gear_model import GearModel
+from solver.gear_position import shared_position
+from solver.gear_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
+from solver.newton import NotConverged
+
+POSITIONS = 6
+STRONG = 0.5
+
+
+@pytest.fixture(scope="module")
+def helical() -> GearModel:
+    """Its first position differs by 0.06 of the peak-to-peak transmission error from that a pitch later, the next by
+    0.02, the third by 0.003."""
+    return model_of(helical_scene())
+
+
+def solved(model: GearModel, warm_up: int, friction: float) -> list[SweptPosition]:
+    """In the order in which they were solved."""
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, warm_up)
+    return list(sweep_closed(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF))
+
+
+def errors(swept: list[SweptPosition]) -> np.ndarray:
+    """Transmission errors of those that count [mm]."""
+    return np.array([position.results[0].transmission_error for position in swept if not position.warm_up])
+
+
+def test_where_a_sweep_begins_is_forgotten(helical: GearModel) -> None:
+    """Problem: a pitch with friction begun at its own first position, without any past, or four positions before.
+    Exact: the same pitch, as nothing in it is the first. Within twice what may be left of the beginning; as first
+    solved, its first is five times further from it."""
+    cold, warm = (solved(helical, warm_up, STRONG) for warm_up in (0, 4))
+    wanted = one_pitch(warm)
+    allowed = 2.0 * FORGOTTEN * np.ptp(errors(wanted))
+    assert np.abs(errors(one_pitch(cold)) - errors(wanted)).max() < allowed
+    assert np.abs(errors(cold[:POSITIONS]) - errors(wanted)).max() > 5.0 * allowed
+
+
+def test_it_goes_on_as_the_next_pitch_would(helical: GearModel) -> None:
+    """Problem: positions solved again, against those of one sweep over two pitches. Exact: the same, all teeth being
+    alike."""
+    cold = solved(helical, 0, STRONG)
+    again = [position for position in cold if position.again]
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0, 2)
+    long = sweep_pitch(helical, pitch, [STRONG], initial_state([STRONG]))
+    later = [position for position, _ in zip(long, range(POSITIONS + len(again)))][POSITIONS:]
+    assert errors(again) == pytest.approx(errors(later), rel=1e-8)
+    assert [p.results[0].torques[1] for p in again] == pytest.approx([p.results[0].torques[1] for p in later], rel=1e-7)
+
+
+def test_order(helical: GearModel) -> None:
+    """The warm-up, the pitch, some of it again, the last of which closes it; what is left is each once, in order."""
+    swept = solved(helical, 2, STRONG)
+    own = 2 + POSITIONS
+    assert [position.warm_up for position in swept[:own]] == [True] * 2 + [False] * POSITIONS
+    assert [position.again for position in swept] == [False] * own + [True] * (len(swept) - own)
+    assert [position.closes for position in swept] == [False] * (len(swept) - 1) + [True]
+    found = one_pitch(swept)
+    assert len(found) == own and all(a.angle < b.angle for a, b in pairwise(found))
+    assert found[2 : 2 + len(swept) - own] == swept[own:]
+
+
+def test_nothing_is_solved_again_without_friction(helical: GearModel) -> None:
+    """There is no past."""
+    assert [position.closes for position in solved(helical, 0, 0.0)] == [False] * (POSITIONS - 1) + [True]
+
+
+@pytest.mark.parametrize("done", [3, POSITIONS, POSITIONS + 1])
+def test_gone_on_with(done: int, helical: GearModel) -> None:
+    """Left after some positions, of the pitch or of those solved again: what follows is as if it had not been left."""
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    whole = solved(helical, 0, STRONG)
+    state = replace(whole[done - 1].state, footprint=None)
+    rest = list(sweep_closed(helical, pitch, [STRONG], state, MPI.COMM_SELF, whole[:done]))
+    assert [position.angle for position in rest] == [position.angle for position in whole[done:]]
+    assert errors(rest) == pytest.approx(errors(whole[done:]), rel=1e-8)
+    assert rest[-1].closes
+
+
+def test_what_is_never_forgotten_is_an_error(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where even rounding counts as a past no pitch closes: NotConverged, which says by how much."""
+    monkeypatch.setattr(closed_pitch, "FORGOTTEN", 1e-20)
+    monkeypatch.setattr(closed_pitch, "SAME", 1e-20)
+    with pytest.raises(NotConverged, match="friction after 3 more pitches: wanted transmission errors that change by"):
+        solved(helical, 0, STRONG)
+
+
+def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:
+    """(n, d) jumps that a memory tells one position, and the same a pitch earlier, where its teeth have other
+    numbers."""
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 0, 2)
+    swept = [position for position, _ in zip(sweep_pitch(model, pitch, [0.3], initial_state([0.3])), range(7))]
+    memory = swept[-1].state.memories[0]
+    assert memory is not None
+    step, turn = 2.0 * np.pi / model.pair.pinion.z / POSITIONS, 2.0 * np.pi / model.pair.pinion.z
+    angle = memory.stand.angle + step
+    found: list[Past] = []
+    for at, known in ((angle, memory), (angle - turn, memory.earlier(1))):
+        contact = shared_position(model, at, memory.stand.extra, [0.3], None).contact
+        found += recalled(contact, [known])
+    return found[0].jump, found[1].jump
+
+
+def test_a_memory_a_pitch_earlier(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: what flanks remember, told to a position and, moved by a pitch, to the position a pitch earlier. Exact:
+    the same jumps. Where the forces do not turn with their teeth it is seen to fail."""
+    later, sooner = earlier_jumps(helical)
+    size = np.abs(later).max()
+    assert size > 1e-4
+    assert np.abs(later - sooner).max() < 1e-6 * size
+    monkeypatch.setattr(gear_memory, "turn", lambda angle, d: np.eye(d))
+    later, sooner = earlier_jumps(helical)
+    assert np.abs(later - sooner).max() > 1e-2 * size

@@ -102,18 +102,32 @@ def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float
     The line is cut where it enters these zones: which slices happen to lie inside would make the maximum jump from
     position to position, for the pressure is steepest there.
     """
+    found = _peaks(pair, cut, tooth, inner)[1]
+    return float(found.max()) if len(found) else float("nan")
+
+
+def largest_peak(run: RunData, index: int) -> tuple[float, float]:
+    """Roll distance ξ [mm] and size [MPa] of the largest `line_peak` of all positions and teeth; NaN: not there."""
+    lines = [(each[index].cut, tooth.tooth) for each in run.positions for tooth in each[index].teeth]
+    found = [_peaks(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
+    ξ, peak = (np.concatenate(each) for each in zip(*found))
+    top = int(np.argmax(peak)) if len(peak) else None
+    return (float("nan"), float("nan")) if top is None else (float(ξ[top]), float(peak[top]))
+
+
+def _peaks(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Roll distances (m,) [mm] and peak pressures (m,) [MPa] among which `line_peak` looks."""
     line = np.flatnonzero(cut.tooth == tooth)
     line = line[np.argsort(cut.ξ[line])]
     fitted = line[has_peak(cut)[line]]
     ξ, peak = cut.ξ[fitted], cut.peak[fitted]
-    low, high = inner
-    inside = peak[between(ξ, inner)]
+    inside = between(ξ, inner)
     if len(ξ) < 2 or np.ptp(ξ) == 0.0:
-        return float(inside.max(initial=-np.inf)) if len(inside) else float("nan")
+        return ξ[inside], peak[inside]
     half, ends = 0.5 * np.max(np.diff(cut.ξ[line])), cut.ξ[line[[0, -1]]]
-    limits = np.array([limit for limit in (low, high) if ends[0] - half <= limit <= ends[1] + half])
-    found = np.concatenate([inside, _peak_at(limits, pair, cut, line, fitted)])
-    return float(found.max()) if len(found) else float("nan")
+    limits = np.array([limit for limit in inner if ends[0] - half <= limit <= ends[1] + half])
+    more = _peak_at(limits, pair, cut, line, fitted)
+    return np.concatenate([ξ[inside], limits]), np.concatenate([peak[inside], more])
 
 
 def has_peak(cut: Slices) -> np.ndarray:

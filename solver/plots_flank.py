@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
+from solver.engagement import largest_peak
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import Slices
 from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, note, sheet, signed
@@ -134,12 +135,11 @@ def _diameters(axes: Axes, run: RunData) -> None:
 
 
 def _see_map(run: RunData, index: int) -> str:
-    cuts = [each[index].cut for each in run.positions]
-    peak, ξ = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("peak", "ξ"))
-    top = int(np.nanargmax(peak))
-    side = "below the pitch line, towards the root" if ξ[top] < 0 else "above the pitch line, towards the tip"
-    see = f"The largest pressure, {peak[top]:.0f} MPa, comes at ξ = {signed(ξ[top], 2)} mm, {side}"
-    return see + "; dashed: contact lines of rigid flanks; beyond the dotted lines: tip-edge zones."
+    ξ, top = largest_peak(run, index)
+    side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
+    where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(top) else "nowhere"
+    see = f"Between the tip-edge zones (dotted) the largest pressure, {top:.0f} MPa, comes {where}"
+    return see + "; dashed: contact lines of rigid flanks."
 
 
 def line_pressure_over_z(run: RunData) -> Figure:

@@ -268,7 +268,7 @@ class Sweep(Section):
         "positions a base pitch", "a whole number from 2 to 1000", "20 is usual", default=20, ge=2, le=1000
     )
     warm_up_positions: int = key(
-        "positions solved before the pitch, for a first history of friction, which its end then makes exact; none without",
+        "positions solved before the pitch, for a first history of friction, which the pitch's end then corrects",
         "a whole number from 0 to 1000",
         default=3,
         ge=0,

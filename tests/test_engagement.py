@@ -9,7 +9,16 @@ import pytest
 from synthetic_run import even_line_load, synthetic_run
 
 from meshes.flank import contact_lines
-from solver.engagement import Engagement, crossing, engagement, engagements, line_mean, line_peak, sign_changes
+from solver.engagement import (
+    Engagement,
+    crossing,
+    engagement,
+    engagements,
+    largest_peak,
+    line_mean,
+    line_peak,
+    sign_changes,
+)
 from solver.gear_results import Slices
 from solver.hertz import line_peak_pressure
 from solver.run_data import RunData, SolvedPosition
@@ -66,6 +75,14 @@ def test_maximum_pressure_is_hertz_at_the_smallest_radius(run: RunData) -> None:
         exact = float(line_peak_pressure(q, radius, modulus))
         tolerance = 0.03 if min(line.roll_distance) < low else 0.06  # half a slice short of a line's own end
         assert curve.max_pressure[k] == pytest.approx(exact, rel=tolerance)
+
+
+def test_largest_peak(run: RunData) -> None:
+    """Problem: Hertz pressure with even load. Exact: the engagement's largest pressure, where the flanks are most
+    curved: where a line enters the tip-edge zone towards the pinion's root."""
+    ξ, peak = largest_peak(run, 0)
+    assert peak == np.nanmax(engagement(run, 0).max_pressure)
+    assert ξ == pytest.approx(run.inner_path[0], abs=0.02)
 
 
 def test_maximum_does_not_jump_from_position_to_position(run: RunData) -> None:

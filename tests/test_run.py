@@ -97,8 +97,8 @@ def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> li
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path) -> None:
     """He's pair with three friction coefficients on 1, 2 and 4 ranks: the same within 1e-8. Each gear is condensed
-    once, its coarse companion too; every position of both is searched once, the odd ones of five by rank 0, the others by
-    rank 1, and two more, a rank each, where the first of them closes the pitch."""
+    once, its coarse companion too; every position of both is searched once, the odd ones of five by rank 0, the others
+    by rank 1, and two more, a rank each, where the first of them closes the pitch."""
     out = tmp_path / "out"
     done = run_script("tests/broken_run.py", "count", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
     assert done.returncode == 0, done.stderr

@@ -21,7 +21,7 @@ from solver.gear_sweep import Pitch, SweepState, SweptPosition
 from solver.newton import NotConverged
 from solver.rank_sweep import sweep_on_ranks
 
-FORGOTTEN = 5e-3
+FORGOTTEN = 1e-2
 """Of the peak-to-peak transmission error: a position that differs less from the one a pitch before closes the pitch."""
 SAME = 1e-5  # of the transmission error itself: less than that is what searches and Newton's method leave
 ROUNDS = 3  # at most

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.data import Floats
-from solver.engagement import Engagement, between, crossing, engagement
+from solver.engagement import Engagement, between, crossing, engagement, largest_peak
 from solver.plots_flank import at_point, paper_points, paper_position
 from solver.plots_stress import relative_change, trends
 from solver.results import friction_rows
@@ -46,8 +46,8 @@ def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
     )
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near the pitch line, median", f"{np.median(peak[near]):.0f} MPa"
-    top = int(np.argmax(np.where(inside, peak, 0.0)))
-    yield "largest pressure of a slice between the tip-edge zones", f"{peak[top]:.0f} MPa at ξ = {ξ[top]:.1f} mm"
+    place, top = largest_peak(run, index)
+    yield "largest pressure between the tip-edge zones", f"{top:.0f} MPa at ξ = {place:.2f} mm"
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Iterator[Line]:

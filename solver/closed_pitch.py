@@ -24,7 +24,8 @@ from solver.rank_sweep import sweep_on_ranks
 FORGOTTEN = 1e-2
 """Of the peak-to-peak transmission error: a position that differs less from the one a pitch before closes the pitch."""
 SAME = 1e-5  # of the transmission error itself: less than that is what searches and Newton's method leave
-ROUNDS = 3  # at most
+ROUNDS = 10
+"""At most. Teeth of plastic forget by a factor of six a pitch where ten stick: four rounds."""
 
 
 def sweep_closed(
@@ -37,20 +38,30 @@ def sweep_closed(
     Raises NotConverged on all ranks, also where positions still change in the third round.
     """
     whole, rubs = len(pitch.angles), any(model.has_friction_terms(μ) for μ in frictions)
-    own, errors = whole - pitch.warm_up, [_errors(position) for position in before]
+    own, errors = whole - pitch.warm_up, [errors_of(position) for position in before]
     while len(errors) < whole + ROUNDS * own:
         begin = _number(len(errors), pitch)
         if len(errors) >= whole and begin == pitch.warm_up:
             state = state.earlier(own // pitch.period)
         with closing(sweep_on_ranks(model, pitch, frictions, state, comm, begin)) as swept:
             for position in swept:
-                errors.append(_errors(position))
+                errors.append(errors_of(position))
                 again, state = len(errors) > whole, position.state
-                closes = _change(errors, pitch.period) <= 1.0 if again else len(errors) == whole and not rubs
+                closes = is_closed(errors, pitch) if again else len(errors) == whole and not rubs
                 yield replace(position, again=again, closes=closes)
                 if closes:
                     return
-    raise NotConverged(
+    raise never_closed(errors, pitch)
+
+
+def is_closed(errors: Sequence[Floats], pitch: Pitch) -> bool:
+    """Whether the last of these transmission errors (frictions,) is what it was a pitch before, as far as matters."""
+    return _change(errors, pitch.period) <= 1.0
+
+
+def never_closed(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
+    """What to raise after the last round."""
+    return NotConverged(
         f"friction after {ROUNDS} more pitches: wanted transmission errors that change by {FORGOTTEN} of their "
         f"peak-to-peak value from one pitch to the next, found {_change(errors, pitch.period):.2g} times that; refine "
         "the sweep (sweep.positions)"
@@ -69,8 +80,8 @@ def _number(done: int, pitch: Pitch) -> int:
     return done if done < len(pitch.angles) else pitch.warm_up + (done - len(pitch.angles)) % own
 
 
-def _errors(position: SweptPosition) -> Floats:
-    """Transmission errors (frictions,) [mm]."""
+def errors_of(position: SweptPosition) -> Floats:
+    """Its transmission errors (frictions,) [mm]."""
     return np.array([result.transmission_error for result in position.results])
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from mpi4py import MPI
 
+from meshes.data import Floats
+from solver.closed_pitch import ROUNDS, errors_of, is_closed, never_closed
 from solver.gear_model import GearModel
 from solver.gear_points import ContactPoints, contact_points
 from solver.gear_position import PositionResult, SharedPosition
@@ -23,6 +25,18 @@ class Rubbed:
 
     results: list[PositionResult]
     smooth: list[ContactPoints]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """How far a sweep has come, from rank to rank. again: in a further round. errors: transmission errors (1,) so far
+    [mm]. found: the positions of this turn."""
+
+    state: SweepState
+    again: bool = False
+    errors: tuple[Floats, ...] = ()
+    closed: bool = False
+    found: Mapping[int, SweptPosition] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -46,27 +60,37 @@ class RubbingSweep:
         return together(self.comm, partial(self._slid, model, swept, counted, deflected))
 
     def _swept(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[SweptPosition]:
-        """Those that count. With friction the ranks take turns: each goes on from the one before."""
+        """Those that count. With friction the ranks take turns: each goes on from the one before, the first one from
+        the last, until nothing is left of where the sweep began (solver/closed_pitch.py)."""
         state = initial_state([self.friction])
+        common = dict(zip(self.own, shared))
         if not model.has_friction_terms(self.friction):
-            return together(self.comm, partial(self._in_turn, model, shared, state))[0]
-        found: list[SweptPosition] = []
-        for rank in range(self.comm.size):
-            own = shared if rank == self.comm.rank else ()
-            mine, state = together(self.comm, partial(self._in_turn, model, own, state))
-            state = self.comm.bcast(state, rank)
-            found += mine
-        return found
+            found = together(self.comm, partial(self._in_turn, model, common, Turn(state))).found
+            return [found[k] for k in self.own if k >= self.pitch.warm_up]
+        turn, mine = Turn(state), dict[int, SweptPosition]()
+        for again in range(1 + ROUNDS):
+            for rank in range(self.comm.size):
+                own = {k: s for k, s in common.items() if not again or k >= self.pitch.warm_up}
+                own = own if rank == self.comm.rank else {}
+                turn = together(self.comm, partial(self._in_turn, model, own, replace(turn, again=again > 0)))
+                mine |= turn.found
+                turn = self.comm.bcast(replace(turn, found={}), rank)
+                if turn.closed:
+                    return [mine[k] for k in self.own if k >= self.pitch.warm_up]
+            turn = replace(turn, state=turn.state.earlier(1))
+        raise never_closed(turn.errors, self.pitch)
 
-    def _in_turn(
-        self, model: GearModel, shared: Sequence[SharedPosition], state: SweepState
-    ) -> tuple[list[SweptPosition], SweepState]:
-        found = []
-        for k, common in zip(self.own, shared):
-            swept = next(sweep_pitch(model, self.pitch, [self.friction], state, k, common))
+    def _in_turn(self, model: GearModel, own: Mapping[int, SharedPosition], turn: Turn) -> Turn:
+        """The turn of a rank with these positions, until the pitch closes."""
+        for k, common in own.items():
+            swept = next(sweep_pitch(model, self.pitch, [self.friction], turn.state, k, common))
+            errors = (*turn.errors, errors_of(swept))
+            closed = turn.again and is_closed(errors, self.pitch)
             state = replace(swept.state, footprint=None)
-            found += [] if swept.warm_up else [swept]
-        return found, state
+            turn = Turn(state, turn.again, errors, closed, {**turn.found, k: swept})
+            if closed:
+                break
+        return turn
 
     def _deflection(self, model: GearModel, swept: SweptPosition, common: SharedPosition) -> Deflection:
         memory, stand = swept.state.memories[0], swept.results[0].stand

@@ -13,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import io
+import json
 import os
 import zipfile
 from dataclasses import dataclass, fields
@@ -29,7 +30,7 @@ from solver.gear_points import ContactPoints
 from solver.gear_position import PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
-from solver.scene import GEARS, Scene
+from solver.scene import GEARS, Scene, derived_values
 from solver.schema_output import Output, Skipping
 from solver.skips import OF_OUTPUT
 
@@ -184,13 +185,14 @@ class Archive:
 
 
 def fingerprint(scene: Scene) -> str:
-    """A hash of all that results depend on: of the scene without its title and what says what else is written, and of
-    what its flank charts say, wherever these lie."""
+    """A hash of all that results depend on: of the scene's values without its title and what says what else is written,
+    and of what its flank charts say, wherever these lie."""
     ways = Skipping(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
     essence = scene.model_copy(update={"title": "", "output": Output(), "skip": ways, **bare})
     charts = [chart.text() if (chart := scene.flank_chart(name)) else "" for name in GEARS]
-    return hashlib.sha256("".join([essence.resolved_toml(), *charts]).encode()).hexdigest()
+    values = json.dumps([essence.model_dump(mode="json"), derived_values(essence), *charts])
+    return hashlib.sha256(values.encode()).hexdigest()
 
 
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:

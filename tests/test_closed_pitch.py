@@ -11,7 +11,7 @@ from gear_cases import helical_scene, model_of
 from mpi4py import MPI
 
 from solver import closed_pitch, gear_memory
-from solver.closed_pitch import FORGOTTEN, one_pitch, sweep_closed
+from solver.closed_pitch import FORGOTTEN, is_closed, one_pitch, sweep_closed
 from solver.gear_memory import Past, recalled
 from solver.gear_model import GearModel
 from solver.gear_position import shared_position
@@ -96,11 +96,22 @@ def test_gone_on_with(done: int, helical: GearModel, cold: list[SweptPosition]) 
 
 
 def test_what_is_never_forgotten_is_an_error(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where even rounding counts as a past no pitch closes: NotConverged, which says by how much."""
+    """Where even rounding counts as a past no pitch closes: NotConverged, by how much."""
     monkeypatch.setattr(closed_pitch, "FORGOTTEN", 1e-20)
     monkeypatch.setattr(closed_pitch, "SAME", 1e-20)
-    with pytest.raises(NotConverged, match="friction after 3 more pitches: wanted transmission errors that change by"):
+    monkeypatch.setattr(closed_pitch, "ROUNDS", 3)
+    with pytest.raises(NotConverged, match="friction after 3 more pitches: wanted transmission errors that are"):
         solved(helical, 0, STRONG)
+
+
+def test_what_is_left_of_a_slow_past() -> None:
+    """Problem: transmission errors that approach their end by a factor of 0.7 a pitch. Exact: what a position a pitch
+    before is off, its change over 1 − 0.7, has to be small enough, not the change."""
+    pitch, shape = uniform_pitch(20, 4, 0), np.array([5.0, 6.0, 7.0, 6.0])
+    off = [0.7 ** (k / 4.0) for k in range(100)]
+    errors = [np.array([shape[k % 4] + off[k]]) for k in range(100)]
+    first = next(k for k in range(5, 100) if is_closed(errors[:k], pitch))
+    assert off[first - 5] < FORGOTTEN * 2.0 * 1.02 < off[first - 6] * 1.03
 
 
 def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:

@@ -33,14 +33,22 @@ class Memory:
     flux: Floats
 
     def earlier(self, pitches: int) -> Memory:
-        """The same so many base pitches earlier, where other teeth of both gears stand as these do."""
+        """The same so many base pitches earlier, where other teeth of both gears stand as these do. Of teeth without
+        load nothing is kept: some stand where the contact does not look at that time."""
         pair, d, back = self.stand.pair, self.flux.shape[1], 2.0 * np.pi * pitches
-        angle = self.stand.angle - back / pair.pinion.z
-        pinion, wheel = turn(-back / pair.pinion.z, d), turn(back / pair.wheel.z, d)
-        step = np.array([pitches, 0])
-        rows = self.rows[0] + step, self.rows[1] - step  # the wheel's teeth are counted the other way
-        forces = self.forces[0] @ pinion, self.forces[1] @ wheel
-        return Memory(replace(self.stand, angle=angle), rows, forces, self.flux @ pinion)
+        turns, step = (-back / pair.pinion.z, back / pair.wheel.z), np.array([pitches, 0])
+        pinion, wheel = (_of_loaded_teeth(*own) for own in zip(self.rows, self.forces))
+        return Memory(
+            replace(self.stand, angle=self.stand.angle + turns[0]),
+            (self.rows[0][pinion] + step, self.rows[1][wheel] - step),  # the wheel's teeth are counted the other way
+            (self.forces[0][pinion] @ turn(turns[0], d), self.forces[1][wheel] @ turn(turns[1], d)),
+            self.flux[pinion] @ turn(turns[0], d),
+        )
+
+
+def _of_loaded_teeth(rows: Ints, forces: Floats) -> np.ndarray:
+    """(m,) bool: which rows belong to a tooth that carries load."""
+    return np.isin(rows[:, 0], rows[np.any(forces != 0.0, axis=1), 0])
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ import pytest
 from gear_cases import helical_scene, model_of
 from mpi4py import MPI
 
+from evidence.stress.outcomes import some_positions
+from evidence.stress.random_scenes import random_scene
 from solver import closed_pitch, gear_memory
 from solver.closed_pitch import FORGOTTEN, is_closed, one_pitch, sweep_closed
 from solver.gear_memory import Past, recalled
@@ -112,6 +114,21 @@ def test_what_is_left_of_a_slow_past() -> None:
     errors = [np.array([shape[k % 4] + off[k]]) for k in range(100)]
     first = next(k for k in range(5, 100) if is_closed(errors[:k], pitch))
     assert off[first - 5] < FORGOTTEN * 2.0 * 1.02 < off[first - 6] * 1.03
+
+
+def test_teeth_that_leave_the_window_are_no_past() -> None:
+    """Problem: a spur pair at whose pitch's end a tooth faces another, without load, that would be one too many at its
+    beginning. Exact: the memory a pitch earlier knows teeth only that are looked at then; every gear's chain has
+    them, and the pitch closes."""
+    scene = random_scene(403)
+    model, pitch = model_of(scene), some_positions(scene, 403)
+    frictions = scene.contact.friction
+    swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF))
+    assert swept[-1].closes
+    memory = swept[pitch.period - 1].state.memories[0]
+    assert memory is not None
+    assert memory.rows[0][:, 0].max() + 1 not in model.bodies[0].chain.teeth
+    assert set(memory.earlier(1).rows[0][:, 0]) <= set(model.bodies[0].chain.teeth)
 
 
 def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:

@@ -16,6 +16,7 @@ from solver.kinematics import Stand, nominal_slip, turn
 
 SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 foretell equally well
 NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
+NO_LOAD = 1e-9  # of the largest force: what Newton's method may leave on a tooth that stands free
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ class Memory:
 
 def _of_loaded_teeth(rows: Ints, forces: Floats) -> np.ndarray:
     """(m,) bool: which rows belong to a tooth that carries load."""
-    return np.isin(rows[:, 0], rows[np.any(forces != 0.0, axis=1), 0])
+    size = np.abs(forces).max(axis=1)
+    return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(), 0])
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ class SweepState:
 @dataclass(frozen=True)
 class SweptPosition:
     """One angle's results, one per friction coefficient, and the state to go on from. warm_up: only there to give
-    friction a past. again: in the place of the one before at this angle; closes: with it the sweep is complete."""
+    friction a past. again: the angle was solved before; closes: with it the sweep is complete."""
 
     angle: float
     warm_up: bool
@@ -65,18 +65,23 @@ class SweptPosition:
 
 @dataclass(frozen=True)
 class Pitch:
-    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts. period: how many of them a
-    base pitch has, 0 where they are no equal steps of one."""
+    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts. pitches: how many base
+    pitches those that count are, where they are equal steps of some."""
 
     angles: tuple[float, ...]
     warm_up: int
-    period: int = 0
+    pitches: int = 1
+
+    @property
+    def counted(self) -> int:
+        """How many count."""
+        return len(self.angles) - self.warm_up
 
 
 def uniform_pitch(z1: int, positions: int, warm_up: int, pitches: int = 1) -> Pitch:
     """`positions` equal steps over each base pitch 2π/z_1, and a few before the first."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up, positions)
+    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up, pitches)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:

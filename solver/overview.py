@@ -202,7 +202,8 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 def _positions_name(scene: Scene) -> str:
     """With friction some are solved again, how many is seen then."""
-    return "positions, with warm-up, at least" if any(scene.contact.friction) else "positions"
+    name = "positions, with warm-up" if warm_up_positions(scene) else "positions"
+    return f"{name}, at least" if any(scene.contact.friction) else name
 
 
 def positions_to_solve(scene: Scene) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,9 +11,10 @@ from typing import Any
 
 from mpi4py import MPI
 
-from meshes.data import MeshData
+from meshes.data import Floats, MeshData
 from solver.archive import Archive, GearShape, gear_shape
-from solver.gear_sweep import SweepState, SweptPosition
+from solver.closed_pitch import errors_of
+from solver.gear_sweep import SweepState
 from solver.parallel import together
 from solver.results import write_text
 from solver.scene import GEARS, Scene
@@ -26,22 +27,22 @@ Meshes = tuple[MeshData, MeshData]
 
 @dataclass(frozen=True)
 class Start:
-    """Where a run begins: after these positions, in this state."""
+    """Where a run begins: after positions with these transmission errors (frictions,), in this state. is_end: nothing
+    is left to be solved."""
 
-    swept: Sequence[SweptPosition]
+    errors: tuple[Floats, ...]
+    is_end: bool
     state: SweepState
-
-    @property
-    def is_end(self) -> bool:
-        """Whether nothing is left to be solved."""
-        return bool(self.swept) and self.swept[-1].closes
 
 
 def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
     pair = scene.gear_pair()
-    kept = archive.read_state(pair) if resume else None
-    return None if kept is None else Start(archive.read_sweep(pair), kept)
+    state = archive.read_state(pair) if resume else None
+    if state is None:
+        return None
+    swept = archive.read_sweep(pair)
+    return Start(tuple(map(errors_of, swept)), bool(swept) and swept[-1].closes, state)
 
 
 def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:

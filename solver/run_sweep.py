@@ -82,11 +82,11 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: b
     comm, log, archive = gears.comm, gears.log, Archive(out, scene)
     groups, begun = friction_groups(scene), time.perf_counter()
     if start is not None and start.is_end:
-        log.info("resumed after all of %d positions", len(start.swept))
+        log.info("resumed after all of %d positions", len(start.errors))
         return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
     if start is not None and len(groups) > 1:
         start = None  # groups are written together, once all are solved
-    done = start.swept if start is not None else ()
+    done = start.errors if start is not None else ()
     if done:
         log.info("resumed after %d positions", len(done))
     made: list[Sweep] = []

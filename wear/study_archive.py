@@ -6,7 +6,7 @@ on by itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -88,10 +88,11 @@ def chart_of(gears: GearWear, gear: int, depth: Floats) -> FlankChart:
     return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)
 
 
-def write_pitch(archive: Archive, meshes: Meshes, results: Iterable[PositionResult]) -> None:
+def write_pitch(archive: Archive, meshes: Meshes, results: Sequence[PositionResult]) -> None:
     """A pitch at one friction coefficient as a sweep leaves it, in place of an earlier one. Raises OSError."""
     archive.clear()
     archive.write_gears(gear_shapes(meshes))
     for k, result in enumerate(results):
         state = SweepState(result.stand.extra, (None,))
-        archive.write_position(k, SweptPosition(result.stand.angle, False, (result,), state))
+        position = SweptPosition(result.stand.angle, False, (result,), state, closes=k == len(results) - 1)
+        archive.write_position(k, position)

@@ -81,7 +81,7 @@ def measured(own: Scene) -> PitchFacts:
         assemble=preparation.seconds * assemble_share,
         condense=preparation.seconds * (1.0 - assemble_share),
         positions=tuple(seconds),
-        counted=pitch.period,
+        counted=pitch.counted,
         iterations=tuple(sum(r.iterations for r in p.results) for p in swept),
         transmission_error=tuple(p.results[0].transmission_error for p in one_pitch(swept) if not p.warm_up),
         memory_MB=comm.allreduce(peak_memory_MB()),

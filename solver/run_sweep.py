@@ -125,18 +125,16 @@ def _together(sweeps: Sequence[Iterator[SweptPosition]]) -> Iterator[SweptPositi
     if len(sweeps) == 1:
         yield from sweeps[0]
         return
-    pitches = [one_pitch(list(sweep)) for sweep in sweeps]
-    *before, last = zip(*pitches, strict=True)
-    for parts in before:
-        yield replace(_joined(parts), closes=False)
-    yield replace(_joined(last), closes=True)
+    found = [_joined(parts) for parts in zip(*(one_pitch(list(sweep)) for sweep in sweeps), strict=True)]
+    for position in found:
+        yield replace(position, again=False, closes=position is found[-1])
 
 
 def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
     """One position from its groups of friction coefficients."""
     results = tuple(result for part in parts for result in part.results)
     memories = tuple(memory for part in parts for memory in part.state.memories)
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories), again=False)
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
 
 
 def _total(made: list[Sweep], seconds: float) -> Sweep:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 from mpi4py import MPI
@@ -34,32 +35,34 @@ def sweep_closed(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm,
     before: Sequence[Floats] = (),
 ) -> Iterator[SweptPosition]:  # fmt: skip
-    """The positions of a `uniform_pitch`, then those solved `again`, until every coefficient has closed it; without
-    friction that is the last of the pitch. before: transmission errors (frictions,) [mm] of the positions that are
-    there already, `state` being that after them.
+    """The positions of a `uniform_pitch`, then those solved `again` with the coefficients that have not closed it yet;
+    without friction that is the last of the pitch. before: `errors_of` the positions that are there already, `state`
+    being that after them.
 
     Raises NotConverged on all ranks, also where positions still change in the last round.
     """
     errors, whole = list(before), len(pitch.angles)
-    rubs = any(model.has_friction_terms(μ) for μ in frictions)
-    while len(errors) < whole + ROUNDS * pitch.counted:
+    rubs = np.array([model.has_friction_terms(μ) for μ in frictions])
+    solved, ahead = _solved_last(errors, rubs), _open(errors, pitch, rubs)
+    while ahead.any() and len(errors) < whole + ROUNDS * pitch.counted:
+        state, solved = state.of(ahead[solved]), ahead
         begin = _number(len(errors), pitch.warm_up, pitch.counted)
         if len(errors) >= whole and begin == pitch.warm_up:
             state = state.earlier(pitch.pitches)
-        with closing(sweep_on_ranks(model, pitch, frictions, state, comm, begin)) as swept:
+        with closing(sweep_on_ranks(model, pitch, list(compress(frictions, solved)), state, comm, begin)) as swept:
             for position in swept:
-                errors.append(errors_of(position))
-                state = position.state
-                closes = len(errors) == whole if not rubs else is_closed(errors, pitch)
-                yield replace(position, again=len(errors) > whole, closes=closes)
-                if closes:
-                    return
-    raise never_closed(errors, pitch)
+                errors.append(errors_of(position, frictions))
+                state, ahead = position.state, _open(errors, pitch, rubs)
+                yield replace(position, again=len(errors) > whole, closes=not ahead.any())
+                if (ahead != solved).any():
+                    break
+    if ahead.any():
+        raise never_closed(errors, pitch)
 
 
 def is_closed(errors: Sequence[Floats], pitch: Pitch) -> bool:
-    """Whether positions with these transmission errors (frictions,) have closed the pitch for every coefficient."""
-    return bool(np.isfinite(_closed_by(np.array(errors), pitch.warm_up, pitch.counted)).all())
+    """Whether the last of positions with these transmission errors (frictions,) closes the pitch for all of them."""
+    return bool((_left(np.array(errors), pitch.counted) <= 1.0).all())
 
 
 def never_closed(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
@@ -67,41 +70,47 @@ def never_closed(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
     left = _left(np.array(errors), pitch.counted)
     return NotConverged(
         f"friction after {ROUNDS} more pitches: wanted transmission errors that are off by less than {FORGOTTEN} of "
-        f"their peak-to-peak value, found {left.max():.2g} times that; lower the torque or friction"
+        f"their peak-to-peak value, found {np.nanmax(left):.2g} times that; lower the torque or friction"
     )
 
 
 def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
-    """What `sweep_closed` has found, in order: the warm-up, and of each position of the pitch what was found last, by
-    each coefficient until it had closed the pitch: what others need beyond that must not show in its results."""
+    """What `sweep_closed` has found, in order: the warm-up, and of each position of the pitch what each coefficient has
+    found last."""
     warm_up = sum(position.warm_up for position in swept)
     counted = sum(not position.again for position in swept) - warm_up
-    last = _closed_by(np.array([errors_of(position) for position in swept]), warm_up, counted)
     found = list(swept[: warm_up + counted])
     for done, position in enumerate(swept[warm_up + counted :], warm_up + counted):
         k = _number(done, warm_up, counted)
-        pairs = zip(found[k].results, position.results, last, strict=True)
-        found[k] = replace(position, results=tuple(new if done <= end else old for old, new, end in pairs))
+        renewed = {result.friction: result for result in position.results}
+        results = tuple(renewed.get(result.friction, result) for result in found[k].results)
+        found[k] = replace(position, results=results)
     return found
 
 
-def errors_of(position: SweptPosition) -> Floats:
-    """Its transmission errors (frictions,) [mm]."""
-    return np.array([result.transmission_error for result in position.results])
+def errors_of(position: SweptPosition, frictions: Sequence[float]) -> Floats:
+    """Its transmission errors (frictions,) [mm], NaN for coefficients that it was not solved with."""
+    found = {result.friction: result.transmission_error for result in position.results}
+    return np.array([found.get(μ, np.nan) for μ in frictions])
+
+
+def _solved_last(errors: Sequence[Floats], rubs: np.ndarray) -> np.ndarray:
+    """(frictions,) bool: those that the last position was solved with."""
+    return ~np.isnan(errors[-1]) if errors else np.ones_like(rubs)
+
+
+def _open(errors: Sequence[Floats], pitch: Pitch, rubs: np.ndarray) -> np.ndarray:
+    """(frictions,) bool: those to go on with after these transmission errors, rubs being those that have a past."""
+    if len(errors) < len(pitch.angles):
+        return np.ones_like(rubs)
+    if len(errors) == len(pitch.angles):
+        return rubs
+    return _solved_last(errors, rubs) & ~(_left(np.array(errors), pitch.counted) <= 1.0)
 
 
 def _number(done: int, warm_up: int, counted: int) -> int:
     """Which of the pitch's angles is next after so many."""
     return done if done < warm_up + counted else warm_up + (done - warm_up) % counted
-
-
-def _closed_by(errors: Floats, warm_up: int, counted: int) -> Floats:
-    """Which of the positions with transmission errors (k, frictions) closes the pitch for each coefficient; infinite:
-    none yet."""
-    last = np.full(errors.shape[1], np.inf)
-    for done in range(warm_up + counted, len(errors)):
-        last[(_left(errors[: done + 1], counted) <= 1.0) & np.isinf(last)] = done
-    return last
 
 
 def _left(errors: Floats, counted: int) -> Floats:

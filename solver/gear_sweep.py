@@ -10,7 +10,7 @@ import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import cycle
+from itertools import compress, cycle
 
 import numpy as np
 
@@ -43,6 +43,10 @@ class SweepState:
     extra: tuple[float, float]
     memories: tuple[Memory | None, ...]
     footprint: Footprint | None = None
+
+    def of(self, coefficients: np.ndarray) -> SweepState:
+        """The same for some of its friction coefficients, (frictions,) bool."""
+        return replace(self, memories=tuple(compress(self.memories, coefficients)))
 
     def earlier(self, pitches: int) -> SweepState:
         """The same so many base pitches earlier."""

@@ -27,7 +27,7 @@ Meshes = tuple[MeshData, MeshData]
 
 @dataclass(frozen=True)
 class Start:
-    """Where a run begins: after positions with these transmission errors (frictions,), in this state. is_end: nothing
+    """Where a run begins: after positions with these transmission errors (`errors_of`), in this state. is_end: nothing
     is left to be solved."""
 
     errors: tuple[Floats, ...]
@@ -42,7 +42,8 @@ def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     if state is None:
         return None
     swept = archive.read_sweep(pair)
-    return Start(tuple(map(errors_of, swept)), bool(swept) and swept[-1].closes, state)
+    errors = tuple(errors_of(position, scene.contact.friction) for position in swept)
+    return Start(errors, bool(swept) and swept[-1].closes, state)
 
 
 def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:

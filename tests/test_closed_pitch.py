@@ -92,7 +92,7 @@ def test_gone_on_with(done: int, helical: GearModel, cold: list[SweptPosition]) 
     """Left after some positions, of the pitch or of those solved again: what follows is as if it had not been left."""
     pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
     state = replace(cold[done - 1].state, footprint=None)
-    before = [errors_of(position) for position in cold[:done]]
+    before = [errors_of(position, [STRONG]) for position in cold[:done]]
     rest = list(sweep_closed(helical, pitch, [STRONG], state, MPI.COMM_SELF, before))
     assert [position.angle for position in rest] == [position.angle for position in cold[done:]]
     assert errors(rest) == pytest.approx(errors(cold[done:]), rel=1e-8)
@@ -117,16 +117,46 @@ def test_several_pitches(helical: GearModel, cold: list[SweptPosition]) -> None:
     assert np.abs(found.reshape(2, POSITIONS) - wanted).max() < FORGOTTEN * np.ptp(wanted)
 
 
-def test_coefficients_do_not_see_each_other(helical: GearModel) -> None:
-    """Problem: a weak friction coefficient alone, and beside a strong one, for which more positions are solved again.
-    Exact: the same results."""
-    pitch, found = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0), []
-    for frictions in ([0.05], [0.05, STRONG]):
-        swept = list(sweep_closed(helical, pitch, frictions, initial_state(frictions), MPI.COMM_SELF))
-        found.append((len(swept), errors(one_pitch(swept))))
-    (few, alone), (more, beside) = found
-    assert few < more
+MIXED = [0.0, 0.05, STRONG]
+
+
+@pytest.fixture(scope="module")
+def mixed(helical: GearModel) -> list[SweptPosition]:
+    """Without friction, with weak friction, and with strong friction, for which most positions are solved again."""
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    return list(sweep_closed(helical, pitch, MIXED, initial_state(MIXED), MPI.COMM_SELF))
+
+
+def test_only_what_is_open_is_solved_again(mixed: list[SweptPosition]) -> None:
+    """Positions again: without friction none, each other coefficient until it has closed the pitch."""
+    again = [[result.friction for result in position.results] for position in mixed[POSITIONS:]]
+    weak = sum(0.05 in frictions for frictions in again)
+    assert again == [[0.05, STRONG]] * weak + [[STRONG]] * (len(again) - weak)
+    assert 0 < weak < len(again)
+    assert all(len(position.results) == len(position.state.memories) for position in mixed)
+    assert [[result.friction for result in position.results] for position in one_pitch(mixed)] == [MIXED] * POSITIONS
+
+
+@pytest.mark.parametrize(("friction", "i"), [(0.05, 1), (STRONG, 2)])
+def test_coefficients_do_not_see_each_other(
+    friction: float, i: int, helical: GearModel, mixed: list[SweptPosition]
+) -> None:
+    """Problem: a friction coefficient alone, and beside others. Exact: the same results."""
+    alone = errors(one_pitch(solved(helical, 0, friction)))
+    beside = [position.results[i].transmission_error for position in one_pitch(mixed)]
     assert beside == pytest.approx(alone, rel=1e-8)
+
+
+def test_gone_on_with_what_is_open(helical: GearModel, mixed: list[SweptPosition]) -> None:
+    """Left after any of the positions that are solved again: what follows is as if it had not been left."""
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    for done in range(POSITIONS, len(mixed)):
+        before = [errors_of(position, MIXED) for position in mixed[:done]]
+        state = replace(mixed[done - 1].state, footprint=None)
+        rest = list(sweep_closed(helical, pitch, MIXED, state, MPI.COMM_SELF, before))
+        found = [errors_of(position, MIXED) for position in rest]
+        wanted = [errors_of(position, MIXED) for position in mixed[done:]]
+        assert np.array(found) == pytest.approx(np.array(wanted), rel=1e-8, nan_ok=True)
 
 
 @pytest.mark.parametrize(("begin", "ratio"), [(1.0, 0.7), (0.08, 0.9), (0.5, 0.2)])

@@ -110,13 +110,15 @@ def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_scrip
 
 
 def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> None:
-    """A coarse helical pair, one gear and one friction coefficient a rank: as on one rank within 1e-8."""
+    """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
+    one or two a rank: as on one rank within 1e-8."""
     scene = tmp_path / "helical.toml"
     scene.write_text(HELICAL, encoding="utf-8")
     found = []
     for ranks in (1, 2):
         out = tmp_path / str(ranks)
-        done = run_script("tests/broken_run.py", "ok", str(scene), "--out", str(out), *QUIET, ranks=ranks)
+        mixed = "--set", "contact.friction=[0.0, 0.05, 0.5]"
+        done = run_script("tests/broken_run.py", "ok", str(scene), "--out", str(out), *QUIET, *mixed, ranks=ranks)
         assert done.returncode == 0, done.stderr
         found.append(positions(out))
     assert_same(*found)

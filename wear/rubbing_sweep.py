@@ -84,7 +84,7 @@ class RubbingSweep:
         """The turn of a rank with these positions, until the pitch closes."""
         for k, common in own.items():
             swept = next(sweep_pitch(model, self.pitch, [self.friction], turn.state, k, common))
-            errors = (*turn.errors, errors_of(swept))
+            errors = (*turn.errors, errors_of(swept, [self.friction]))
             closed = turn.again and is_closed(errors, self.pitch)
             state = replace(swept.state, footprint=None)
             turn = Turn(state, turn.again, errors, closed, {**turn.found, k: swept})

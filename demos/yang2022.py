@@ -21,7 +21,7 @@ from solver.scene import load_scene
 
 SMALL = (
     'mesh.level="quick"', "mesh.elements_per_contact_width=1.0", "contact.friction=[0.07, 0.30]", "sweep.positions=4",
-    "sweep.warm_up_positions=1", "output.animation=false",
+    "output.animation=false",
 )  # fmt: skip
 
 

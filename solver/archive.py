@@ -107,8 +107,7 @@ class Archive:
     def write_position(self, index: int, position: SweptPosition) -> None:
         """Keeps a position and the state after it."""
         arrays: dict[str, Any] = {
-            "angle": position.angle, "warm_up": position.warm_up, "again": position.again, "closes": position.closes,
-            "count": len(position.results),
+            "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
         }  # fmt: skip
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
@@ -116,7 +115,7 @@ class Archive:
         write_arrays(self.folder / "state.npz", self._state_arrays(index + 1, position.state))
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
-        """The warm-up and the pitch, each position as it was solved last, without their states. Raises ArchiveError."""
+        """The pitch, each position as it was solved last, without their states. Raises ArchiveError."""
         return one_pitch(self.read_sweep(pair))
 
     def read_sweep(self, pair: GearPair) -> list[SweptPosition]:
@@ -175,13 +174,13 @@ class Archive:
         arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
         try:
             results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
-            warm_up, again, closes = (bool(arrays[name]) for name in ("warm_up", "again", "closes"))
+            again, closes = bool(arrays["again"]), bool(arrays["closes"])
         except KeyError as missing:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; run the "
                 "scene again, without --resume"
             ) from missing
-        return SweptPosition(float(arrays["angle"]), warm_up, results, SweepState((0.0, 0.0), ()), again, closes)
+        return SweptPosition(float(arrays["angle"]), results, SweepState((0.0, 0.0), ()), again, closes)
 
 
 def fingerprint(scene: Scene) -> str:

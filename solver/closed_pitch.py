@@ -1,9 +1,9 @@
 """A pitch swept again until nothing is left of where its sweep began.
 
 Friction remembers, and a sweep that begins anywhere has a wrong past. What is left of that dies away with the way that
-the gears roll, by a third from one of Yang's 20 positions to the next at μ = 0.3: three positions of warm-up leave 0.3
-of the peak-to-peak transmission error to the first that counts. But all teeth are alike: the end of a pitch is the past
-of its beginning. So its positions are solved again from there, in turn, as far as they still change.
+the gears roll, by a third from one of Yang's 20 positions to the next at μ = 0.3, whose first is off by 0.6 of the
+peak-to-peak transmission error. But all teeth are alike: the end of a pitch is the past of its beginning. So its
+positions are solved again from there, in turn, as far as they still change.
 """
 
 from __future__ import annotations
@@ -44,10 +44,9 @@ def sweep_closed(
     errors, whole = list(before), len(pitch.angles)
     rubs = np.array([model.has_friction_terms(μ) for μ in frictions])
     solved, ahead = _solved_last(errors, rubs), _open(errors, pitch, rubs)
-    while ahead.any() and len(errors) < whole + ROUNDS * pitch.counted:
-        state, solved = state.of(ahead[solved]), ahead
-        begin = _number(len(errors), pitch.warm_up, pitch.counted)
-        if len(errors) >= whole and begin == pitch.warm_up:
+    while ahead.any() and len(errors) < (1 + ROUNDS) * whole:
+        state, solved, begin = state.of(ahead[solved]), ahead, len(errors) % whole
+        if errors and begin == 0:
             state = state.earlier(pitch.pitches)
         with closing(sweep_on_ranks(model, pitch, list(compress(frictions, solved)), state, comm, begin)) as swept:
             for position in swept:
@@ -62,12 +61,12 @@ def sweep_closed(
 
 def is_closed(errors: Sequence[Floats], pitch: Pitch) -> bool:
     """Whether the last of positions with these transmission errors (frictions,) closes the pitch for all of them."""
-    return bool((_left(np.array(errors), pitch.counted) <= 1.0).all())
+    return bool((_left(np.array(errors), len(pitch.angles)) <= 1.0).all())
 
 
 def never_closed(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
     """What to raise after the last round."""
-    left = _left(np.array(errors), pitch.counted)
+    left = _left(np.array(errors), len(pitch.angles))
     return NotConverged(
         f"friction after {ROUNDS} more pitches: wanted transmission errors that are off by less than {FORGOTTEN} of "
         f"their peak-to-peak value, found {np.nanmax(left):.2g} times that; lower the torque or friction"
@@ -75,16 +74,14 @@ def never_closed(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
 
 
 def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
-    """What `sweep_closed` has found, in order: the warm-up, and of each position of the pitch what each coefficient has
-    found last."""
-    warm_up = sum(position.warm_up for position in swept)
-    counted = sum(not position.again for position in swept) - warm_up
-    found = list(swept[: warm_up + counted])
-    for done, position in enumerate(swept[warm_up + counted :], warm_up + counted):
-        k = _number(done, warm_up, counted)
+    """What `sweep_closed` has found, in order: of each position of the pitch what each coefficient has found last."""
+    whole = sum(not position.again for position in swept)
+    found = list(swept[:whole])
+    for done, position in enumerate(swept[whole:]):
+        first = found[done % whole]
         renewed = {result.friction: result for result in position.results}
-        results = tuple(renewed.get(result.friction, result) for result in found[k].results)
-        found[k] = replace(position, results=results)
+        results = tuple(renewed.get(result.friction, result) for result in first.results)
+        found[done % whole] = replace(position, results=results)
     return found
 
 
@@ -105,31 +102,26 @@ def _open(errors: Sequence[Floats], pitch: Pitch, rubs: np.ndarray) -> np.ndarra
         return np.ones_like(rubs)
     if len(errors) == len(pitch.angles):
         return rubs
-    return _solved_last(errors, rubs) & ~(_left(np.array(errors), pitch.counted) <= 1.0)
+    return _solved_last(errors, rubs) & ~(_left(np.array(errors), len(pitch.angles)) <= 1.0)
 
 
-def _number(done: int, warm_up: int, counted: int) -> int:
-    """Which of the pitch's angles is next after so many."""
-    return done if done < warm_up + counted else warm_up + (done - warm_up) % counted
-
-
-def _left(errors: Floats, counted: int) -> Floats:
+def _left(errors: Floats, whole: int) -> Floats:
     """By how much the transmission errors (frictions,) of a pitch before the last of (k, frictions) were off, over what
     they may be. Changes from pitch to pitch fall in a geometric series: all that are to come are the last one over
     1 − their ratio."""
-    change = np.abs(errors[-1] - errors[-1 - counted])
-    allowed = np.maximum(FORGOTTEN * np.ptp(errors[-counted:], axis=0), SAME * np.abs(errors[-1]))
-    return np.asarray(change / (1.0 - _ratio(errors, counted)) / allowed)
+    change = np.abs(errors[-1] - errors[-1 - whole])
+    allowed = np.maximum(FORGOTTEN * np.ptp(errors[-whole:], axis=0), SAME * np.abs(errors[-1]))
+    return np.asarray(change / (1.0 - _ratio(errors, whole)) / allowed)
 
 
-def _ratio(errors: Floats, counted: int) -> Floats:
+def _ratio(errors: Floats, whole: int) -> Floats:
     """Of the last changes (frictions,) from pitch to pitch to those a pitch before: where there are none yet, what the
     fall from the last position but one to the last comes to in a pitch."""
-    changes = np.abs(errors[counted:] - errors[:-counted])
-    if len(changes) > counted:
-        before, power = changes[-1 - counted], 1
+    changes = np.abs(errors[whole:] - errors[:-whole])
+    if len(changes) > whole:
+        before, power = changes[-1 - whole], 1
     elif len(changes) > 1:
-        before, power = changes[-2], counted
+        before, power = changes[-2], whole
     else:
         return np.full(errors.shape[1], SLOWEST)
     return np.asarray(np.minimum(changes[-1] / np.maximum(before, 1e-300), SLOWEST ** (1.0 / power)) ** power)

@@ -56,11 +56,10 @@ class SweepState:
 
 @dataclass(frozen=True)
 class SweptPosition:
-    """One angle's results, one per friction coefficient, and the state to go on from. warm_up: only there to give
-    friction a past. again: the angle was solved before; closes: with it the sweep is complete."""
+    """One angle's results, one per friction coefficient, and the state to go on from. again: the angle was solved
+    before; closes: with it the sweep is complete."""
 
     angle: float
-    warm_up: bool
     results: tuple[PositionResult, ...]
     state: SweepState
     again: bool = False
@@ -69,23 +68,17 @@ class SweptPosition:
 
 @dataclass(frozen=True)
 class Pitch:
-    """Which pinion rotations [rad] to solve: `warm_up` of them before the first that counts. pitches: how many base
-    pitches those that count are, where they are equal steps of some."""
+    """Which pinion rotations [rad] to solve. pitches: how many base pitches they are, where they are equal steps of
+    some."""
 
     angles: tuple[float, ...]
-    warm_up: int
     pitches: int = 1
 
-    @property
-    def counted(self) -> int:
-        """How many count."""
-        return len(self.angles) - self.warm_up
 
-
-def uniform_pitch(z1: int, positions: int, warm_up: int, pitches: int = 1) -> Pitch:
-    """`positions` equal steps over each base pitch 2π/z_1, and a few before the first."""
+def uniform_pitch(z1: int, positions: int, pitches: int = 1) -> Pitch:
+    """`positions` equal steps over each base pitch 2π/z_1."""
     step = 2.0 * np.pi / z1 / positions
-    return Pitch(tuple(float(step * k) for k in range(-warm_up, pitches * positions)), warm_up, pitches)
+    return Pitch(tuple(float(step * k) for k in range(pitches * positions)), pitches)
 
 
 def initial_state(frictions: Sequence[float]) -> SweepState:
@@ -107,7 +100,7 @@ def sweep_pitch(
     for k in range(begin, len(pitch.angles)):
         position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
         state, common = position.state, None
-        yield replace(position, warm_up=k < pitch.warm_up)
+        yield position
 
 
 def _advance(
@@ -152,7 +145,7 @@ def _position(
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
-    return SweptPosition(angle, False, tuple(results), after)
+    return SweptPosition(angle, tuple(results), after)
 
 
 def _remembered(

@@ -13,7 +13,7 @@ from solver.resolution import elements_per_contact_width, memory_megabytes, sect
 from solver.scene import GEARS, Scene
 from solver.scene_gears import working_angle_of
 from solver.schema_wear import Wear
-from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth, warm_up_positions
+from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth
 
 HANDS = {1: "right", -1: "left"}
 
@@ -202,10 +202,9 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 def _positions_name(scene: Scene) -> str:
     """With friction some are solved again, how many is seen then."""
-    name = "positions, with warm-up" if warm_up_positions(scene) else "positions"
-    return f"{name}, at least" if any(scene.contact.friction) else name
+    return "positions, at least" if any(scene.contact.friction) else "positions"
 
 
 def positions_to_solve(scene: Scene) -> int:
-    """Positions of the sweep, with those that warm up, each once."""
-    return pitches(scene) * scene.sweep.positions + warm_up_positions(scene)
+    """Positions of the sweep, each once."""
+    return pitches(scene) * scene.sweep.positions

@@ -51,7 +51,7 @@ class SolvedPosition:
 class RunData:
     """A scene and its results over one base pitch.
 
-    shapes: surfaces of (pinion, wheel). positions: (positions of the pitch, friction coefficients), without warm-up.
+    shapes: surfaces of (pinion, wheel). positions: (positions of the pitch, friction coefficients).
     errors: the figures' error bars.
     """
 
@@ -116,8 +116,7 @@ def is_plane(shape: GearShape) -> bool:
 
 def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[SweptPosition]) -> RunData:
     """Puts a run together. Raises ArchiveError where no position of the pitch is there yet."""
-    counted = [position for position in swept if not position.warm_up]
-    if not counted:
+    if not swept:
         raise ArchiveError("wanted at least one position of the pitch, found none; let the run go on with --resume")
     flank, materials = flank_nodes(scene.gear_pair().pinion, shapes[0]), scene.materials()
 
@@ -125,7 +124,7 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
         cut = slices(result, flank.z, materials)
         return SolvedPosition(result, cut, tuple(tooth_summaries(result, cut)))
 
-    return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in counted))
+    return RunData(scene, shapes, tuple(tuple(solved(r) for r in position.results) for position in swept))
 
 
 def read_run(folder: Path) -> RunData:

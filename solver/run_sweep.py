@@ -22,7 +22,7 @@ from solver.results import Timings
 from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
 from solver.run_start import Start, open_archive, same_meshes
 from solver.scene import Scene
-from solver.skips import pitches, skips, switched_off, warm_up_positions, with_deflected_flanks
+from solver.skips import pitches, skips, switched_off, with_deflected_flanks
 
 
 def sweep_scene(
@@ -50,7 +50,7 @@ def sweep_scene(
 def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
     positions = Archive(out, scene).read_positions(scene.gear_pair())
     try:
-        certify_pitch(position.results for position in positions if not position.warm_up)
+        certify_pitch(position.results for position in positions)
     except PitchImbalance as error:
         return error
     return None
@@ -147,7 +147,7 @@ def _total(made: list[Sweep], seconds: float) -> Sweep:
 
 def pitch_of(scene: Scene) -> Pitch:
     """The pinion rotations that a scene asks for."""
-    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene), pitches(scene))
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches(scene))
 
 
 def _line(position: SweptPosition) -> str:
@@ -156,5 +156,5 @@ def _line(position: SweptPosition) -> str:
     iterations = max(r.iterations for r in position.results)
     worst = max(balance_error(r) for r in position.results)
     seconds = sum(r.seconds for r in position.results)
-    kind = "warm-up " if position.warm_up else "again   " if position.again else "position"
+    kind = "again   " if position.again else "position"
     return f"{kind} {first.stand.angle:9.5f} rad: at most {iterations} iterations, balance {worst:.1e}, {seconds:.2f} s"

@@ -23,7 +23,7 @@ from solver.run_output import Sweep, certify, certify_pitch, facts_of, peak_memo
 from solver.run_start import Meshes, keep_scene, same_meshes
 from solver.scene import Scene
 from solver.schema_wear import Wear
-from solver.skips import wanted_output, warm_up_positions
+from solver.skips import wanted_output
 from wear.blocks import BlockSettings
 from wear.gears import Following, GearWear, PitchState
 from wear.law import Archard
@@ -52,7 +52,7 @@ def wear_scene(
     preparation = prepare_model(scene, comm)
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
-    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene))
+    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm, following_of(scene, comm))
     meshes = pinion.mesh, wheel.mesh
     with Progress(round(wear.cycles), round(kept.cycles if kept else 0.0), "cycles", quiet or comm.rank > 0) as bar:

@@ -267,10 +267,3 @@ class Sweep(Section):
     positions: int = key(
         "positions a base pitch", "a whole number from 2 to 1000", "20 is usual", default=20, ge=2, le=1000
     )
-    warm_up_positions: int = key(
-        "positions solved before the pitch, for a first history of friction, which the pitch's end then corrects",
-        "a whole number from 0 to 1000",
-        default=3,
-        ge=0,
-        le=1000,
-    )

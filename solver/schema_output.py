@@ -20,7 +20,7 @@ class Output(Section):
     )
 
 
-SkipName = Literal["plane", "friction-terms", "warm-up", "one-pitch", "one-sector", "far-teeth", "window",
+SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
                    "deflected-flanks", "coarse-body", "reuse", "error-bars", "fields", "pictures"]  # fmt: skip
 """What a run leaves out where a scene does not need it: `solver.skips`."""
 SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)

@@ -61,10 +61,6 @@ def _has_frictionless(scene: Scene) -> bool:
     return 0.0 in scene.contact.friction
 
 
-def _is_frictionless(scene: Scene) -> bool:
-    return not any(scene.contact.friction) and scene.sweep.warm_up_positions > 0
-
-
 def _pitch_sentence(scene: Scene) -> str:
     pair = scene.gear_pair()
     pitch, whole = 360 / pair.pinion.z, math.degrees(pair.engagement_angle)
@@ -100,12 +96,6 @@ SKIPS: tuple[Skip, ...] = (
         _has_frictionless,
         lambda _: "Friction terms where μ = 0: normal components only, and nothing is remembered.",
         tolerance=ROUND_OFF,  # the same equations, the tangential ones decoupled
-    ),
-    Skip(
-        "warm-up",
-        _is_frictionless,
-        lambda scene: f"The {scene.sweep.warm_up_positions} warm-up positions: without friction there is no history.",
-        tolerance=ROUND_OFF,
     ),
     # with friction what closing a pitch leaves of where it began: of the peak-to-peak transmission error, of the error
     # itself that is less (Yang's pair 1e-4); without friction 1e-7
@@ -227,11 +217,6 @@ def contact_teeth(scene: Scene) -> list[int]:
     count = min(scene.pinion.teeth, scene.wheel.teeth)
     first = (near[0] + near[-1]) // 2 - count // 2
     return list(range(first, first + count))
-
-
-def warm_up_positions(scene: Scene) -> int:
-    """Positions solved before the pitch; only friction has a history that must be warmed up."""
-    return 0 if skips(scene, "warm-up") else scene.sweep.warm_up_positions
 
 
 def wanted_output(scene: Scene) -> Output:

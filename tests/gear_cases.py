@@ -38,7 +38,6 @@ torque_Nm = 120
 friction = [0.0, 0.3]
 [sweep]
 positions = 2
-warm_up_positions = 1
 """
 
 
@@ -86,7 +85,7 @@ class Curves:
 
 def swept(model: GearModel, degrees: Floats, frictions: list[float]) -> list[Curves]:
     """Solves these pinion rotations [°] one after the other; one Curves per friction coefficient."""
-    pitch = Pitch(tuple(np.radians(degrees)), 0)
+    pitch = Pitch(tuple(np.radians(degrees)))
     positions: list[SweptPosition] = list(sweep_pitch(model, pitch, frictions, initial_state(frictions)))
     return [Curves(degrees, [p.results[i] for p in positions]) for i in range(len(frictions))]
 

@@ -63,16 +63,15 @@ def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface
 
 
 def synthetic_sweep(scene: Scene, flank: Surface) -> list[SweptPosition]:
-    """One warm-up position, then the pitch."""
+    """The pitch."""
     step = 2.0 * np.pi / scene.pinion.teeth / scene.sweep.positions
     return [
         SweptPosition(
             k * step,
-            k < 0,
             tuple(synthetic_position(scene, flank, k * step, μ) for μ in scene.contact.friction),
             NO_STATE,
         )
-        for k in range(-1, scene.sweep.positions)
+        for k in range(scene.sweep.positions)
     ]
 
 

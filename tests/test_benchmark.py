@@ -172,7 +172,7 @@ def test_an_advantage_counts_only_at_no_larger_error(tmp_path: Path) -> None:
 
 
 def test_a_pitch_is_told_from_one_position() -> None:
-    """Seconds of start 1, meshing 50, assembling 2, condensing 3 and positions 4 (warm-up), 5, 6: one position takes
+    """Seconds of start 1, meshing 50, assembling 2, condensing 3 and positions 4, 5, 6 (again): one position takes
     1 + 2 + 3 + 4, the pitch 1 + 2 + 3 + 15; the mean of 7 and 9 mm is 8."""
     facts = PitchFacts(10, 1, 1.0, 50.0, 2.0, 3.0, (4.0, 5.0, 6.0), 2, (3, 3, 3), (7.0, 9.0), 100.0, 20.0)
     assert one_position(facts) == 10.0

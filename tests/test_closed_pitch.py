@@ -34,63 +34,65 @@ def helical() -> GearModel:
 @pytest.fixture(scope="module")
 def cold(helical: GearModel) -> list[SweptPosition]:
     """A sweep that begins at the pitch's own first position, without any past."""
-    return solved(helical, 0, STRONG)
+    return solved(helical, STRONG)
 
 
-def solved(model: GearModel, warm_up: int, friction: float) -> list[SweptPosition]:
+@pytest.fixture(scope="module")
+def later(helical: GearModel) -> list[SweptPosition]:
+    """The second of two pitches of one sweep, a whole pitch away from where that begins."""
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 2)
+    return list(sweep_pitch(helical, pitch, [STRONG], initial_state([STRONG])))[POSITIONS:]
+
+
+def solved(model: GearModel, friction: float) -> list[SweptPosition]:
     """In the order in which they were solved."""
-    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, warm_up)
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS)
     return list(sweep_closed(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF))
 
 
 def errors(swept: list[SweptPosition]) -> np.ndarray:
-    """Transmission errors of those that count [mm]."""
-    return np.array([position.results[0].transmission_error for position in swept if not position.warm_up])
+    """Their transmission errors [mm]."""
+    return np.array([position.results[0].transmission_error for position in swept])
 
 
-def test_where_a_sweep_begins_is_forgotten(helical: GearModel, cold: list[SweptPosition]) -> None:
-    """Problem: a pitch with friction begun at its own first position, without any past, or four positions before.
-    Exact: the same pitch, as nothing in it is the first. Within what may be left of the beginning; as first
-    solved, its first is five times further from it."""
-    wanted = one_pitch(solved(helical, 4, STRONG))
-    allowed = FORGOTTEN * np.ptp(errors(wanted))
-    assert np.abs(errors(one_pitch(cold)) - errors(wanted)).max() < allowed
-    assert np.abs(errors(cold[:POSITIONS]) - errors(wanted)).max() > 5.0 * allowed
+def test_where_a_sweep_begins_is_forgotten(cold: list[SweptPosition], later: list[SweptPosition]) -> None:
+    """Problem: a pitch with friction begun at its own first position, without any past, or a pitch before. Exact: the
+    same, as nothing in it is the first. Within what may be left of the beginning; as first solved, its first is five
+    times further from it."""
+    allowed = FORGOTTEN * np.ptp(errors(later))
+    assert np.abs(errors(one_pitch(cold)) - errors(later)).max() < allowed
+    assert np.abs(errors(cold[:POSITIONS]) - errors(later)).max() > 5.0 * allowed
 
 
-def test_it_goes_on_as_the_next_pitch_would(helical: GearModel, cold: list[SweptPosition]) -> None:
+def test_it_goes_on_as_the_next_pitch_would(cold: list[SweptPosition], later: list[SweptPosition]) -> None:
     """Problem: positions solved again, against those of one sweep over two pitches. Exact: the same, all teeth being
     alike."""
     again = [position for position in cold if position.again]
-    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0, 2)
-    long = sweep_pitch(helical, pitch, [STRONG], initial_state([STRONG]))
-    later = [position for position, _ in zip(long, range(POSITIONS + len(again)))][POSITIONS:]
+    later = later[: len(again)]
     assert errors(again) == pytest.approx(errors(later), rel=1e-8)
     assert [p.results[0].torques[1] for p in again] == pytest.approx([p.results[0].torques[1] for p in later], rel=1e-7)
 
 
-def test_order(helical: GearModel) -> None:
-    """The warm-up, the pitch, some of it again, the last of which closes it; what is left is each once, in order."""
-    swept = solved(helical, 2, STRONG)
-    own = 2 + POSITIONS
-    assert [position.warm_up for position in swept[:own]] == [True] * 2 + [False] * POSITIONS
-    assert [position.again for position in swept] == [False] * own + [True] * (len(swept) - own)
-    assert [position.closes for position in swept] == [False] * (len(swept) - 1) + [True]
-    found = one_pitch(swept)
-    assert len(found) == own and all(a.angle < b.angle for a, b in pairwise(found))
-    renewed = [position.results[0] for position in found[2:]][: len(swept) - own]
-    assert all(a is b.results[0] for a, b in zip(renewed, swept[own:], strict=True))
+def test_order(cold: list[SweptPosition]) -> None:
+    """The pitch, some of it again, the last of which closes it; what is left is each once, in order."""
+    again = len(cold) - POSITIONS
+    assert [position.again for position in cold] == [False] * POSITIONS + [True] * again
+    assert [position.closes for position in cold] == [False] * (len(cold) - 1) + [True]
+    found = one_pitch(cold)
+    assert len(found) == POSITIONS and all(a.angle < b.angle for a, b in pairwise(found))
+    renewed = [position.results[0] for position in found[:again]]
+    assert all(a is b.results[0] for a, b in zip(renewed, cold[POSITIONS:], strict=True))
 
 
 def test_nothing_is_solved_again_without_friction(helical: GearModel) -> None:
     """There is no past."""
-    assert [position.closes for position in solved(helical, 0, 0.0)] == [False] * (POSITIONS - 1) + [True]
+    assert [position.closes for position in solved(helical, 0.0)] == [False] * (POSITIONS - 1) + [True]
 
 
 @pytest.mark.parametrize("done", [3, POSITIONS, POSITIONS + 1])
 def test_gone_on_with(done: int, helical: GearModel, cold: list[SweptPosition]) -> None:
     """Left after some positions, of the pitch or of those solved again: what follows is as if it had not been left."""
-    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
     state = replace(cold[done - 1].state, footprint=None)
     before = [errors_of(position, [STRONG]) for position in cold[:done]]
     rest = list(sweep_closed(helical, pitch, [STRONG], state, MPI.COMM_SELF, before))
@@ -105,13 +107,13 @@ def test_what_is_never_forgotten_is_an_error(helical: GearModel, monkeypatch: py
     monkeypatch.setattr(closed_pitch, "SAME", 1e-20)
     monkeypatch.setattr(closed_pitch, "ROUNDS", 3)
     with pytest.raises(NotConverged, match="friction after 3 more pitches: wanted transmission errors that are"):
-        solved(helical, 0, STRONG)
+        solved(helical, STRONG)
 
 
 def test_several_pitches(helical: GearModel, cold: list[SweptPosition]) -> None:
     """Problem: two pitches swept in place of one. Exact: each is the one pitch; the first is solved again until it is,
     not only until the second has come out alike."""
-    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0, 2)
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 2)
     found = errors(one_pitch(list(sweep_closed(helical, pitch, [STRONG], initial_state([STRONG]), MPI.COMM_SELF))))
     wanted = errors(one_pitch(cold))
     assert np.abs(found.reshape(2, POSITIONS) - wanted).max() < FORGOTTEN * np.ptp(wanted)
@@ -123,7 +125,7 @@ MIXED = [0.0, 0.05, STRONG]
 @pytest.fixture(scope="module")
 def mixed(helical: GearModel) -> list[SweptPosition]:
     """Without friction, with weak friction, and with strong friction, for which most positions are solved again."""
-    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
     return list(sweep_closed(helical, pitch, MIXED, initial_state(MIXED), MPI.COMM_SELF))
 
 
@@ -142,14 +144,14 @@ def test_coefficients_do_not_see_each_other(
     friction: float, i: int, helical: GearModel, mixed: list[SweptPosition]
 ) -> None:
     """Problem: a friction coefficient alone, and beside others. Exact: the same results."""
-    alone = errors(one_pitch(solved(helical, 0, friction)))
+    alone = errors(one_pitch(solved(helical, friction)))
     beside = [position.results[i].transmission_error for position in one_pitch(mixed)]
     assert beside == pytest.approx(alone, rel=1e-8)
 
 
 def test_gone_on_with_what_is_open(helical: GearModel, mixed: list[SweptPosition]) -> None:
     """Left after any of the positions that are solved again: what follows is as if it had not been left."""
-    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 0)
+    pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
     for done in range(POSITIONS, len(mixed)):
         before = [errors_of(position, MIXED) for position in mixed[:done]]
         state = replace(mixed[done - 1].state, footprint=None)
@@ -164,7 +166,7 @@ def test_what_is_left_of_a_past(begin: float, ratio: float) -> None:
     """Problem: transmission errors of which a share is left after each pitch. Exact: what a position a pitch before is
     off, its change over 1 − that share, has to be small enough, not the change; the fall from one position to the next
     tells the share before there are two changes."""
-    pitch, shape = uniform_pitch(20, 4, 0), np.array([5.0, 6.0, 7.0, 6.0])
+    pitch, shape = uniform_pitch(20, 4), np.array([5.0, 6.0, 7.0, 6.0])
     off = [begin * ratio ** (k / 4.0) for k in range(200)]
     swept = [np.array([shape[k % 4] + off[k]]) for k in range(200)]
     first = next(k for k in range(6, 200) if is_closed(swept[:k], pitch))
@@ -182,7 +184,7 @@ def test_teeth_that_leave_the_window_are_no_past() -> None:
     frictions = scene.contact.friction
     swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF))
     assert swept[-1].closes
-    memory = swept[pitch.counted - 1].state.memories[0]
+    memory = swept[len(pitch.angles) - 1].state.memories[0]
     assert memory is not None
     assert memory.rows[0][:, 0].max() + 1 not in model.bodies[0].chain.teeth
     assert set(memory.earlier(1).rows[0][:, 0]) <= set(model.bodies[0].chain.teeth)
@@ -191,7 +193,7 @@ def test_teeth_that_leave_the_window_are_no_past() -> None:
 def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:
     """(n, d) jumps that a memory tells one position, and the same a pitch earlier, where its teeth have other
     numbers."""
-    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 0, 2)
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 2)
     swept = [position for position, _ in zip(sweep_pitch(model, pitch, [0.3], initial_state([0.3])), range(7))]
     memory = swept[-1].state.memories[0]
     assert memory is not None

@@ -39,7 +39,7 @@ SCENES = {
 
 def wearing(model: GearModel, positions: int) -> GearWear:
     """Without friction, both flanks wear alike."""
-    return GearWear(model, uniform_pitch(model.pair.pinion.z, positions, 0), 0.0, Archard(1e-10, 1e-10), MPI.COMM_SELF)
+    return GearWear(model, uniform_pitch(model.pair.pinion.z, positions), 0.0, Archard(1e-10, 1e-10), MPI.COMM_SELF)
 
 
 def stand_of(model: GearModel, found: SharedPosition) -> Stand:

@@ -31,7 +31,7 @@ from solver.run_sweep import pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
 
-SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4", "sweep.warm_up_positions=1",
+SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",
          "output.error_bars=true")  # fmt: skip
 """He's pair, a second or so."""
 OUTPUT = ("output.pictures=false", "output.animation=false", "output.fields=false")

@@ -55,7 +55,7 @@ def test_missing_material_moves_the_transmission_error(tmp_path: Path) -> None:
     found = []
     for settings in ((), (f'pinion.flank_csv="{path}"',)):
         model = model_of(spur_scene("mesh.level=quick", *settings))
-        pitch = uniform_pitch(50, 3, 0)
+        pitch = uniform_pitch(50, 3)
         results = [p.results[0] for p in sweep_pitch(model, pitch, [0.0], initial_state([0.0]))]
         found.append(np.array([result.transmission_error for result in results]))
     assert found[1] - found[0] == pytest.approx(1e-2, rel=1e-3)

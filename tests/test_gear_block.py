@@ -22,7 +22,7 @@ LENGTH = 4e5  # cycles, in which many points would pull
 def fresh() -> tuple[GearWear, PitchState]:
     """He's pair, new."""
     model = model_of(spur_scene("mesh.level=quick"))
-    gears = GearWear(model, uniform_pitch(model.pair.pinion.z, 6, 0), 0.0, Archard(1.4e-10, 0.7e-10), MPI.COMM_SELF)
+    gears = GearWear(model, uniform_pitch(model.pair.pinion.z, 6), 0.0, Archard(1.4e-10, 0.7e-10), MPI.COMM_SELF)
     return gears, gears.evaluate(gears.begin)
 
 

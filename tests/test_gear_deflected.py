@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from conftest import Run
 from gear_cases import model_of, spur_scene
+from mpi4py import MPI
 
 from evidence.benchmark.skips import differences
 from evidence.stress.random_scenes import random_scene
 from solver import gear_deflected
+from solver.closed_pitch import one_pitch, sweep_closed
 from solver.gear_contact import gear_contact
 from solver.gear_deflected import settled
 from solver.gear_memory import recalled, remembered
@@ -41,9 +43,9 @@ def bent() -> GearModel:
 
 def lost(model: GearModel, friction: float) -> float:
     """Of the input over a pitch of six positions."""
-    pitch = uniform_pitch(model.pair.pinion.z, 6, 1)
-    swept = [p for p in sweep_pitch(model, pitch, [friction], initial_state([friction])) if not p.warm_up]
-    return pitch_imbalance([position.results[0] for position in swept])
+    pitch = uniform_pitch(model.pair.pinion.z, 6)
+    swept = sweep_closed(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF)
+    return pitch_imbalance([position.results[0] for position in one_pitch(list(swept))])
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])
@@ -136,7 +138,7 @@ def test_coefficients_do_not_mix(bent: GearModel) -> None:
 
 
 def _swept(model: GearModel, frictions: list[float]) -> list[SweptPosition]:
-    pitch = Pitch((0.1, 0.15), 0)
+    pitch = Pitch((0.1, 0.15))
     return list(sweep_pitch(model, pitch, frictions, initial_state(frictions)))
 
 
@@ -150,7 +152,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def solved(run_script: Run, scene: Path, out: Path, *how: str, ranks: int = 1, resume: bool = False) -> dict[str, Any]:
     """The summary of a run; the first of `how` is what to break."""
-    settings = "sweep.positions=4", "sweep.warm_up_positions=1", "contact.friction=[0.0, 0.1]"
+    settings = "sweep.positions=4", "contact.friction=[0.0, 0.1]"
     more = [*(f"--set={setting}" for setting in settings), *how[1:], *(["--resume"] if resume else [])]
     done = run_script("tests/broken_run.py", how[0], str(scene), "--out", str(out), "--quiet", *more, ranks=ranks)
     assert done.returncode == 0, done.stderr
@@ -180,14 +182,14 @@ def test_a_pitch_out_of_balance_is_solved_again(
     assert log.index("skipped, deflected-flanks") < log.index("solved again, on deflected flanks")
 
 
-@pytest.mark.parametrize(("number", "complete"), [(11, 4), (15, 6), (21, 1)])
+@pytest.mark.parametrize(("number", "complete"), [(9, 3), (17, 7), (23, 1)])
 def test_killed_and_resumed(
     number: int, complete: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
 ) -> None:
     """kill -9 while the last position of the pitch before deflection, the one that closes it, or the second after
     deflection, is written: resumed it is the same."""
     out = tmp_path / "out"
-    settings = "--set=sweep.positions=4", "--set=sweep.warm_up_positions=1", "--set=contact.friction=[0.0, 0.1]"
+    settings = "--set=sweep.positions=4", "--set=contact.friction=[0.0, 0.1]"
     command = "tests/broken_run.py", f"strict-{number}", str(scene), "--out", str(out), "--quiet", *settings
     assert run_script(*command).returncode == -9
     found = solved(run_script, scene, out, "strict", resume=True)

@@ -123,7 +123,7 @@ def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
 
 
 def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
-    """Exact: what `read_run` reads equals what was archived, number by number, and warm-up positions are left out."""
+    """Exact: what `read_run` reads equals what was archived, number by number."""
     store(run, tmp_path)
     again = read_run(tmp_path)
     assert repr(position_rows(again)) == repr(position_rows(run))  # repr is exact, and NaN equals NaN in it
@@ -131,12 +131,11 @@ def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
 
 
 def store(run: RunData, folder: Path) -> None:
-    """Archives a run as a real one would be, with a warm-up position in front."""
+    """Archives a run as a real one would be."""
     archive = Archive(folder, run.scene)
     archive.write_gears(run.shapes)
     (folder / "scene.toml").write_text(run.scene.resolved_toml(), encoding="utf-8")
     results = [tuple(solved.result for solved in each) for each in run.positions]
     state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))
-    archive.write_position(0, SweptPosition(-0.1, True, results[0], state))
-    for k, each in enumerate(results, start=1):
-        archive.write_position(k, SweptPosition(each[0].stand.angle, False, each, state))
+    for k, each in enumerate(results):
+        archive.write_position(k, SweptPosition(each[0].stand.angle, each, state))

@@ -49,8 +49,7 @@ ANSWERS = {
     "plane": Case("plane", (*SPUR, SMOOTH, *WIDE, "mesh.elements_per_contact_width=1.7")),
     "friction-terms": Case("friction-terms", SPUR),
     "friction-terms, none needed": Case("friction-terms", (*SPUR, SMOOTH)),
-    "warm-up": Case("warm-up", (*SPUR, SMOOTH)),
-    "one-pitch": Case("one-pitch", (*SPUR, "sweep.positions=4", "sweep.warm_up_positions=2")),
+    "one-pitch": Case("one-pitch", (*SPUR, "sweep.positions=4")),
     "one-pitch, long remembered": Case("one-pitch", ("contact.friction=[0.0, 0.5]", "sweep.positions=6")),
     "one-sector": Case("one-sector", SPUR),
     "far-teeth": Case("far-teeth", SPUR),
@@ -117,7 +116,6 @@ def memories(scene: Scene) -> int:
 
 COUNTED: dict[SkipName, tuple[tuple[str, ...], Callable[[Scene], int], int, int]] = {
     "plane": (SPUR, lambda scene: sector_meshes(scene)[0].dimension, 2, 3),
-    "warm-up": ((SMOOTH,), lambda scene: len(pitch_of(scene).angles), 2, 3),
     "one-pitch": ((SMOOTH,), lambda scene: len(pitch_of(scene).angles), 2, 4),
     "far-teeth": ((SMOOTH,), lambda scene: len(contact_teeth(scene)), 4, 20),
 }

@@ -40,7 +40,7 @@ def condenser(scene: Scene) -> Callable[[Callable[[int], MeshData]], GearModel]:
 def gears_of(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
     model = prepare_model(scene, MPI.COMM_SELF).model
-    pitch, following = uniform_pitch(model.pair.pinion.z, positions, 0), Following(refresh, condenser(scene))
+    pitch, following = uniform_pitch(model.pair.pinion.z, positions), Following(refresh, condenser(scene))
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 
 

@@ -23,7 +23,7 @@ QUIET = (
     "--quiet", "--set", "output.pictures=false", "--set", "output.animation=false", "--set", "output.fields=false",
     "--set", "output.error_bars=false",
 )  # fmt: skip
-SHORT = ("--level", "quick", "--set", "sweep.positions=5", "--set", "sweep.warm_up_positions=1")
+SHORT = ("--level", "quick", "--set", "sweep.positions=5")
 WEAR = (
     "--set", "wear.cycles=4e5", "--set", "wear.pinion_mm2_per_N=1e-10", "--set", "wear.wheel_mm2_per_N=3e-10",
     "--set", "wear.report_at_cycles=1e5", "--set", "wear.first_block_cycles=2e4",
@@ -140,7 +140,7 @@ def test_helical_pair(blocks_: str, run_script: Run, tmp_path: Path) -> None:
     scene = tmp_path / "helical.toml"
     scene.write_text(HELICAL, encoding="utf-8")
     settings = (*WEAR, "--set", "contact.friction=0.1", "--set", "sweep.positions=4", "--set", f"wear.blocks={blocks_}")
-    settings += ("--set", "wear.cycles=1.2e5", "--set", "sweep.warm_up_positions=1")
+    settings += ("--set", "wear.cycles=1.2e5")
     out = tmp_path / "out"
     drawn = blocks_ == "implicit"
     computed(run_script, out, *settings, "--set", f"output.pictures={str(drawn).lower()}", scene=str(scene))

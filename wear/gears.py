@@ -76,7 +76,7 @@ class GearWear:
         following: Following | None = None,
     ) -> None:  # fmt: skip
         """Raises ValueError unless the positions are equal steps of one pitch: they are one tooth's passage."""
-        angles = np.array(pitch.angles[pitch.warm_up :])
+        angles = np.array(pitch.angles)
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
         if len(angles) < 2 or not np.allclose(np.diff(angles), step, rtol=1e-6):
             raise ValueError(
@@ -157,8 +157,7 @@ class GearWear:
         pressures follow the depth as they do without friction. Raises NotConverged."""
         if now.refreshed != self.refreshed:
             raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
-        counted = [shared for k, shared in zip(self._own, now.shared) if k >= self.pitch.warm_up]
-        responses = together(self._comm, lambda: [Response.of(*each) for each in zip(counted, now.points)])
+        responses = together(self._comm, lambda: [Response.of(*each) for each in zip(now.shared, now.points)])
         found, openings = now.passage, self._opened([r.points for r in responses])
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
         gained, more = block.solved(responses, self._comm)
@@ -167,7 +166,7 @@ class GearWear:
         if not float(self.areas @ put) <= PUT_ON * float(self.areas @ gone):
             raise NotConverged(f"a block of {length:.6g} cycles would put {put.max():.2g} mm of material on")
         self._certify(gone, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
-        foreseen = dict(zip((k for k in self._own if k >= self.pitch.warm_up), block.pressed(responses, more)))
+        foreseen = dict(zip(self._own, block.pressed(responses, more)))
         return gone, self._evaluated(depth + gone, now, foreseen)
 
     def accepted(self, depth: Floats, now: PitchState) -> PitchState:

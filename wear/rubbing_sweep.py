@@ -20,8 +20,8 @@ from wear.elastic_sliding import Deflection, Grids, PitchDeflection
 
 @dataclass(frozen=True)
 class Rubbed:
-    """A rank's positions that count: results, and contact points of the states without friction; their sliding with
-    what deflection adds."""
+    """A rank's positions: results, and contact points of the states without friction; their sliding with what
+    deflection adds."""
 
     results: list[PositionResult]
     smooth: list[ContactPoints]
@@ -54,29 +54,27 @@ class RubbingSweep:
     def rubbed(self, model: GearModel, shared: Sequence[SharedPosition]) -> Rubbed:
         """From all positions that this rank has searched. Raises NotConverged."""
         swept = self._swept(model, shared)
-        counted = [s for k, s in zip(self.own, shared) if k >= self.pitch.warm_up]
-        deflections = together(self.comm, lambda: [self._deflection(model, *pair) for pair in zip(swept, counted)])
+        deflections = together(self.comm, lambda: [self._deflection(model, *pair) for pair in zip(swept, shared)])
         deflected = self._exchanged(model, swept, deflections)
-        return together(self.comm, partial(self._slid, model, swept, counted, deflected))
+        return together(self.comm, partial(self._slid, model, swept, shared, deflected))
 
     def _swept(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[SweptPosition]:
-        """Those that count. With friction the ranks take turns: each goes on from the one before, the first one from
-        the last, until nothing is left of where the sweep began (solver/closed_pitch.py)."""
+        """With friction the ranks take turns: each goes on from the one before, the first one from the last, until
+        nothing is left of where the sweep began (solver/closed_pitch.py)."""
         state = initial_state([self.friction])
         common = dict(zip(self.own, shared))
         if not model.has_friction_terms(self.friction):
             found = together(self.comm, partial(self._in_turn, model, common, Turn(state))).found
-            return [found[k] for k in self.own if k >= self.pitch.warm_up]
+            return [found[k] for k in self.own]
         turn, mine = Turn(state), dict[int, SweptPosition]()
         for again in range(1 + ROUNDS):
             for rank in range(self.comm.size):
-                own = {k: s for k, s in common.items() if not again or k >= self.pitch.warm_up}
-                own = own if rank == self.comm.rank else {}
+                own = common if rank == self.comm.rank else {}
                 turn = together(self.comm, partial(self._in_turn, model, own, replace(turn, again=again > 0)))
                 mine |= turn.found
                 turn = self.comm.bcast(replace(turn, found={}), rank)
                 if turn.closed:
-                    return [mine[k] for k in self.own if k >= self.pitch.warm_up]
+                    return [mine[k] for k in self.own]
             turn = replace(turn, state=turn.state.earlier(1))
         raise never_closed(turn.errors, self.pitch)
 
@@ -104,8 +102,8 @@ class RubbingSweep:
         self, model: GearModel, swept: Sequence[SweptPosition], deflections: Sequence[Deflection]
     ) -> PitchDeflection:
         """This rank's positions, and their neighbours on other ranks."""
-        own = dict(zip(self._numbers, deflections))
-        ends = {k: own[k] for k in self._numbers[:1] + self._numbers[-1:]}
+        own = dict(zip(self.own, deflections))
+        ends = {k: own[k] for k in (*self.own[:1], *self.own[-1:])}
         known = {k: each for part in self.comm.allgather(ends) for k, each in part.items()} | own
         stands = self.comm.allgather([position.results[0].stand for position in swept])
         worn = model.bodies[0].worn, model.bodies[1].worn
@@ -126,10 +124,5 @@ class RubbingSweep:
         return contact_points(shared.contact, shared.smooth.traction, 0.0, stand.extra)
 
     def _with_more(self, points: Sequence[ContactPoints], pitch: PitchDeflection) -> list[ContactPoints]:
-        pairs = zip(points, pitch.added(self._numbers, points))
+        pairs = zip(points, pitch.added(self.own, points))
         return [replace(own, sliding=own.sliding + more) for own, more in pairs]
-
-    @property
-    def _numbers(self) -> list[int]:
-        """Of this rank's positions that count, within the pitch."""
-        return [k - self.pitch.warm_up for k in self.own if k >= self.pitch.warm_up]

@@ -94,5 +94,5 @@ def write_pitch(archive: Archive, meshes: Meshes, results: Sequence[PositionResu
     archive.write_gears(gear_shapes(meshes))
     for k, result in enumerate(results):
         state = SweepState(result.stand.extra, (None,))
-        position = SweptPosition(result.stand.angle, False, (result,), state, closes=k == len(results) - 1)
+        position = SweptPosition(result.stand.angle, (result,), state, closes=k == len(results) - 1)
         archive.write_position(k, position)

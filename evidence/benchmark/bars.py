@@ -48,7 +48,6 @@ level = "quick"
 friction = [0.0, 0.2]
 [sweep]
 positions = 6
-warm_up_positions = 2
 """
 
 

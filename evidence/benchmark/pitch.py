@@ -35,8 +35,8 @@ from solver.sectors import gear_mesh
 @dataclass(frozen=True)
 class PitchFacts:
     """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
-    wall. positions: wall seconds of each that was solved, `counted` of them the pitch, the others before it and, with
-    friction, again. iterations: Newton's, of all friction coefficients together. transmission_error: [mm] at the first
+    wall. positions: wall seconds of each that was solved, `counted` of them the pitch, the others, with friction,
+    again. iterations: Newton's, of all friction coefficients together. transmission_error: [mm] at the first
     one, of the positions that count. memory_MB and cpu [s]: of all ranks together."""
 
     dofs: int
@@ -80,9 +80,9 @@ def measured(own: Scene) -> PitchFacts:
         assemble=preparation.seconds * assemble_share,
         condense=preparation.seconds * (1.0 - assemble_share),
         positions=tuple(seconds),
-        counted=pitch.counted,
+        counted=len(pitch.angles),
         iterations=tuple(sum(r.iterations for r in p.results) for p in swept),
-        transmission_error=tuple(p.results[0].transmission_error for p in one_pitch(swept) if not p.warm_up),
+        transmission_error=tuple(p.results[0].transmission_error for p in one_pitch(swept)),
         memory_MB=comm.allreduce(peak_memory_MB()),
         cpu=comm.allreduce(_cpu()),
     )

@@ -42,7 +42,6 @@ class Case:
 CASES = (
     Case("plane", SPUR, (*QUICK, SMOOTH, FOUR)),
     Case("friction-terms", HELICAL, (*QUICK, SMOOTH, FOUR)),
-    Case("warm-up", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("one-pitch", HELICAL, (*QUICK, "contact.friction=[0.0, 0.3]", "sweep.positions=10")),
     Case("one-sector", SPUR, (*QUICK, SMOOTH, FOUR)),
     Case("far-teeth", HELICAL, (*QUICK, ROUGH, FOUR)),

@@ -127,7 +127,7 @@ def _solve(mesh: SpurMesh) -> Solved:
     begin = time.process_time()
     model = _model(mesh)
     ready = time.process_time()
-    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 0)
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS)
     swept = [p.results[0].transmission_error for p in sweep_pitch(model, pitch, [0.0], initial_state([0.0]))]
     end = time.process_time()
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0

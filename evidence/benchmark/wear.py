@@ -122,7 +122,7 @@ def precision_rows(case: WearCase = PRECISION, tolerances: Sequence[float] = TOL
 
 def _sweep_seconds(model: GearModel, case: WearCase) -> float:
     begin = time.process_time()
-    list(sweep_pitch(model, uniform_pitch(model.pair.pinion.z, case.positions, 0), [0.0], initial_state([0.0])))
+    list(sweep_pitch(model, uniform_pitch(model.pair.pinion.z, case.positions), [0.0], initial_state([0.0])))
     return time.process_time() - begin
 
 
@@ -134,7 +134,7 @@ def _study_seconds(model: GearModel, case: WearCase) -> float:
 
 
 def _gears(model: GearModel, case: WearCase) -> GearWear:
-    return GearWear(model, uniform_pitch(model.pair.pinion.z, case.positions, 0), 0.0, Archard(K, K))
+    return GearWear(model, uniform_pitch(model.pair.pinion.z, case.positions), 0.0, Archard(K, K))
 
 
 def _study(gears: GearWear, case: WearCase, tolerance: float, implicit: bool) -> tuple[Floats, int, int, float]:

@@ -43,7 +43,7 @@ def spur_scene() -> Scene:
 
 def shares(model: GearModel) -> Shares:
     """A pitch of positions, the teeth put one behind the other."""
-    pair, pitch = model.pair, uniform_pitch(model.pair.pinion.z, POSITIONS, 0)
+    pair, pitch = model.pair, uniform_pitch(model.pair.pinion.z, POSITIONS)
     wanted, rows, totals = model.load.torque / pair.pinion.base_radius, [], []
     for position in sweep_pitch(model, pitch, [0.0], initial_state([0.0])):
         c = position.results[0].contact

@@ -65,7 +65,7 @@ def model_of(scene: Scene) -> GearModel:
 
 def ratios(model: GearModel, positions: int) -> Ratios:
     """Solves one pitch."""
-    pitch = uniform_pitch(model.pair.pinion.z, positions, 0)
+    pitch = uniform_pitch(model.pair.pinion.z, positions)
     results = [p.results[0] for p in sweep_pitch(model, pitch, [0.0], initial_state([0.0]))]
     edge = np.array([bool(result.contact.edge.any()) for result in results])
     return Ratios(np.degrees(pitch.angles), np.array([_off(result) for result in results]), edge)

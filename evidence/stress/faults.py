@@ -19,7 +19,7 @@ from solver.archive import read_arrays
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = (
-    "contact.friction=[0.1, 0.3]", "sweep.positions=8", "sweep.warm_up_positions=2", "output.pictures=false",
+    "contact.friction=[0.1, 0.3]", "sweep.positions=8", "output.pictures=false",
     "output.animation=false", "output.fields=false",
 )  # fmt: skip
 KILLS = 20

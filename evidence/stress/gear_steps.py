@@ -35,6 +35,6 @@ def spur_pair_at_steps() -> Sheet:
 
 
 def _cell(model: GearModel, friction: float, step: float) -> Cell:
-    pitch = Pitch(tuple(np.radians(LAST - step * np.arange(COUNT)[::-1])), 0)
+    pitch = Pitch(tuple(np.radians(LAST - step * np.arange(COUNT)[::-1])))
     swept = [p.results[0] for p in sweep_pitch(model, pitch, [friction], initial_state([friction]))]
     return Cell(float(np.mean([r.iterations for r in swept])), max(balance_error(r) for r in swept))

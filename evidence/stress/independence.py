@@ -55,7 +55,7 @@ def gear_figures(safety: float, friction: float = 0.1, level: str = LEVELS[0]) -
         model = _model(safety, level)
     except NotPositiveDefinite:
         return Figures(np.nan, np.nan, np.nan, np.nan)
-    swept = sweep_pitch(model, Pitch(tuple(ROTATIONS), 0), [friction], initial_state([friction]))
+    swept = sweep_pitch(model, Pitch(tuple(ROTATIONS)), [friction], initial_state([friction]))
     results = [position.results[0] for position in swept]
     cuts = [slices(result, model.bodies[0].z, scene.materials()) for result in results]
     return Figures(

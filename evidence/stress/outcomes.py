@@ -56,7 +56,7 @@ def some_positions(scene: Scene, seed: int) -> Pitch:
     """A whole pitch in a few equal steps, from a random position on."""
     step = 2.0 * np.pi / scene.pinion.teeth / POSITIONS
     begin = POSITIONS * float(np.random.default_rng([seed, 1]).random())
-    return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)), 0)
+    return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)))
 
 
 def outcome_of(scene: Scene, seed: int) -> Outcome:

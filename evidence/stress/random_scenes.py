@@ -87,7 +87,7 @@ def _values(draw: Draw, plane: bool, helical: bool, order: int) -> Table:
         "mesh": _mesh(draw, plane, order),
         "contact": {"friction": _frictions(draw)},
         "load": {"torque_Nm": 1e-12, "on": draw.one_of("pinion", "wheel")},
-        "sweep": {"positions": draw.one_of(6, 12, 20, 40), "warm_up_positions": 1},
+        "sweep": {"positions": draw.one_of(6, 12, 20, 40)},
         "output": QUIET,
         "title": "random scene",
     }

@@ -28,7 +28,6 @@ from solver.run_output import BalanceError
 from solver.run_wear import certify_positions, law_of, settings_of
 from solver.scene import Scene
 from solver.search import SearchError
-from solver.skips import warm_up_positions
 from wear.blocks import WearState, WearStopped
 from wear.gears import GearWear, PitchState
 from wear.law import VolumeLost
@@ -201,7 +200,7 @@ def gear_states(scene: Scene) -> Iterator[Accepted]:
     wear = scene.wear
     assert wear is not None
     model = prepare_model(scene, MPI.COMM_SELF).model
-    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions, warm_up_positions(scene))
+    pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(model, pitch, scene.contact.friction[0], law_of(wear))
     before: WearState[PitchState] | None = None
     for stage in islice(stages(gears, wear.reports, settings_of(wear)), BLOCKS + 1):

@@ -1,7 +1,7 @@
 """What a run leaves on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
 
     OUT/results/gears.npz            the two sector meshes' surfaces
-    OUT/results/position_0003.npz    one swept position: the converged results of all friction coefficients
+    OUT/results/position_0003.npz    one swept position: converged results of the friction coefficients solved there
     OUT/results/state.npz            the state to go on from, and how many positions are complete
 
 A file is written under another name and then renamed, so a run killed at any moment leaves complete files only; the
@@ -151,8 +151,9 @@ class Archive:
         """Raises ArchiveError where what was kept is another scene's."""
         if str(arrays["fingerprint"]) != self.fingerprint:
             raise ArchiveError(
-                f"{self.folder}: wanted the results of this scene, found those of another one (or of another level); "
-                "name another folder with --out, run the same scene, or leave --resume out to start again"
+                f"{self.folder}: wanted the results of this scene, found those of another one, of another level or of "
+                "another version of Evolvent; name another folder with --out, run the same scene, or leave --resume "
+                "out to start again"
             )
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:

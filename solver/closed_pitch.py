@@ -20,7 +20,7 @@ from meshes.data import Floats
 from solver.gear_model import GearModel
 from solver.gear_sweep import Pitch, SweepState, SweptPosition
 from solver.newton import NotConverged
-from solver.rank_sweep import sweep_on_ranks
+from solver.rank_sweep import at_once, sweep_on_ranks
 
 FORGOTTEN = 1e-2
 """Of the peak-to-peak transmission error: a position that was off by less closes the pitch."""
@@ -43,17 +43,18 @@ def sweep_closed(
     """
     errors, whole = list(before), len(pitch.angles)
     rubs = np.array([model.has_friction_terms(μ) for μ in frictions])
-    solved, ahead = _solved_last(errors, rubs), _open(errors, pitch, rubs)
+    known, ahead = _solved_last(errors, rubs), _open(errors, pitch, rubs)  # what state is of, what is still to close
     while ahead.any() and len(errors) < (1 + ROUNDS) * whole:
-        state, solved, begin = state.of(ahead[solved]), ahead, len(errors) % whole
+        state, solved, begin = state.of(ahead[known]), ahead, len(errors) % whole
         if errors and begin == 0:
             state = state.earlier(pitch.pitches)
         with closing(sweep_on_ranks(model, pitch, list(compress(frictions, solved)), state, comm, begin)) as swept:
-            for position in swept:
+            for count, position in enumerate(swept, 1):
+                position, known = position.of(ahead[solved]), ahead
                 errors.append(errors_of(position, frictions))
                 state, ahead = position.state, _open(errors, pitch, rubs)
                 yield replace(position, again=len(errors) > whole, closes=not ahead.any())
-                if (ahead != solved).any():
+                if not ahead.any() or ((ahead != solved).any() and count % at_once(comm) == 0):
                     break
     if ahead.any():
         raise never_closed(errors, pitch)

@@ -35,7 +35,8 @@ LOG = logging.getLogger("evolvent")
 class SweepState:
     """Where a sweep stands: everything that the next position needs.
 
-    extra: rotations [rad] to start the next search from. memories: one per friction coefficient (None: no past).
+    extra: rotations [rad] to start the next search from. memories: of each friction coefficient that was solved with
+    (None: no past).
     footprint: where the flanks were pressed. Without extra and footprint the next position is the same, but takes more
     searches and iterations.
     """
@@ -56,14 +57,18 @@ class SweepState:
 
 @dataclass(frozen=True)
 class SweptPosition:
-    """One angle's results, one per friction coefficient, and the state to go on from. again: the angle was solved
-    before; closes: with it the sweep is complete."""
+    """One angle's results, one per friction coefficient that was solved with, and the state to go on from. again: the
+    angle was solved before; closes: with it the sweep is complete."""
 
     angle: float
     results: tuple[PositionResult, ...]
     state: SweepState
     again: bool = False
     closes: bool = False
+
+    def of(self, coefficients: np.ndarray) -> SweptPosition:
+        """The same for some of its friction coefficients, (frictions,) bool."""
+        return replace(self, results=tuple(compress(self.results, coefficients)), state=self.state.of(coefficients))
 
 
 @dataclass(frozen=True)

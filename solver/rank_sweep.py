@@ -41,6 +41,11 @@ def sweep_on_ranks(
         board.close()
 
 
+def at_once(comm: MPI.Comm) -> int:
+    """How many positions are solved before the first of them is handed out."""
+    return min(comm.size, PREPARING)
+
+
 def division(count: int, ranks: int) -> list[slice]:
     """Which of `count` friction coefficients each rank solves: neighbours together, as one helps to solve the next, and
     of the small ones more, as these take fewer iterations."""

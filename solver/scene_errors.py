@@ -115,7 +115,7 @@ def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> P
     section = section_of(_declaration(parents, model)) if parents else model
     assert section is not None
     here, prefix = list(section.model_fields), f"{dotted(parents)}." if parents else ""
-    similar = [prefix + match for match in difflib.get_close_matches(name, here, n=1, cutoff=0.6)]
+    similar = [prefix + match for match in difflib.get_close_matches(name, here, n=1, cutoff=0.7)]
     everywhere = {key.rsplit(".", 1)[-1]: key for key in [*keys_of(model), *model.model_fields]}
     similar += [everywhere[match] for match in difflib.get_close_matches(name, everywhere, n=1, cutoff=0.7)]
     remedy = f"did you mean {similar[0]}? Else delete it" if similar else "delete it, or see docs/scene.md"

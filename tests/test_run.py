@@ -12,6 +12,7 @@ from gear_cases import HELICAL
 from mpi4py import MPI
 
 from solver import parallel
+from solver.archive import read_arrays
 from solver.run_output import BALANCE_LIMIT
 
 SPUR = "demos/he2022.toml"
@@ -110,16 +111,19 @@ def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_scrip
 
 def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
-    one or two a rank: as on one rank within 1e-8."""
+    one or two a rank: as on one rank within 1e-8. Two ranks have the last position at hand when one of two coefficients
+    closes at the one before."""
     scene = tmp_path / "helical.toml"
     scene.write_text(HELICAL, encoding="utf-8")
     found = []
     for ranks in (1, 2):
         out = tmp_path / str(ranks)
-        mixed = "--set", "contact.friction=[0.0, 0.05, 0.5]"
+        mixed = "--set", "contact.friction=[0.0, 0.2, 0.5]", "--set", "sweep.positions=10"
         done = run_script("tests/broken_run.py", "ok", str(scene), "--out", str(out), *QUIET, *mixed, ranks=ranks)
         assert done.returncode == 0, done.stderr
         found.append(positions(out))
+        solved = [int(read_arrays(path)["count"]) for path in sorted((out / "results").glob("position_*.npz"))]
+        assert solved == [3] * 10 + [2, 2, 2, 1]
     assert_same(*found)
 
 

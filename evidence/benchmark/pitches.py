@@ -63,7 +63,7 @@ def rows(sizes: PitchSizes, folder: Path) -> Iterator[PitchRow]:
 
 
 def mean_error(facts: PitchFacts) -> float:
-    """Mean transmission error of the positions that count [mm]."""
+    """Mean transmission error of the pitch [mm]."""
     return float(np.mean(facts.transmission_error))
 
 

@@ -31,7 +31,7 @@ PASSING = ("seconds", "residual", "iterations")
 
 @dataclass(frozen=True)
 class Struck:
-    """How often a run was killed, and how many positions (of at least eleven) were complete each time."""
+    """How often a run was killed, and how many positions (of at least nine) were complete each time."""
 
     complete: tuple[int, ...]
 
@@ -155,6 +155,6 @@ def fault_claims(kills: int = KILLS) -> list[Claim]:
         error = differs(out, whole)
     what = (
         f"largest relative difference of any number, spur pair killed {struck.kills} times at random and resumed "
-        f"(after {', '.join(map(str, struck.complete))} of 11 positions or more)"
+        f"(after {', '.join(map(str, struck.complete))} of 9 positions or more)"
     )
     return [Claim.bound(what, error, AGREEMENT, Reference.REGRESSION, "the undisturbed run")]

@@ -43,7 +43,8 @@ def sweep_closed(
     """
     errors, whole = list(before), len(pitch.angles)
     rubs = np.array([model.has_friction_terms(μ) for μ in frictions])
-    known, ahead = _solved_last(errors, rubs), _open(errors, pitch, rubs)  # what state is of, what is still to close
+    known = ~np.isnan(errors[-1]) if errors else np.ones_like(rubs)  # whose past the state is
+    ahead = _open(errors, pitch, rubs)
     while ahead.any() and len(errors) < (1 + ROUNDS) * whole:
         state, solved, begin = state.of(ahead[known]), ahead, len(errors) % whole
         if errors and begin == 0:
@@ -92,18 +93,13 @@ def errors_of(position: SweptPosition, frictions: Sequence[float]) -> Floats:
     return np.array([found.get(μ, np.nan) for μ in frictions])
 
 
-def _solved_last(errors: Sequence[Floats], rubs: np.ndarray) -> np.ndarray:
-    """(frictions,) bool: those that the last position was solved with."""
-    return ~np.isnan(errors[-1]) if errors else np.ones_like(rubs)
-
-
 def _open(errors: Sequence[Floats], pitch: Pitch, rubs: np.ndarray) -> np.ndarray:
     """(frictions,) bool: those to go on with after these transmission errors, rubs being those that have a past."""
     if len(errors) < len(pitch.angles):
         return np.ones_like(rubs)
     if len(errors) == len(pitch.angles):
         return rubs
-    return _solved_last(errors, rubs) & ~(_left(np.array(errors), len(pitch.angles)) <= 1.0)
+    return _left(np.array(errors), len(pitch.angles)) > 1.0  # what has closed before is NaN there
 
 
 def _left(errors: Floats, whole: int) -> Floats:

@@ -71,6 +71,13 @@ class SweptPosition:
         return replace(self, results=tuple(compress(self.results, coefficients)), state=self.state.of(coefficients))
 
 
+def joined(parts: Sequence[SweptPosition]) -> SweptPosition:
+    """A position of which each part has some friction coefficients."""
+    results = tuple(result for part in parts for result in part.results)
+    memories = tuple(memory for part in parts for memory in part.state.memories)
+    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
+
+
 @dataclass(frozen=True)
 class Pitch:
     """Which pinion rotations [rad] to solve. pitches: how many base pitches they are, where they are equal steps of

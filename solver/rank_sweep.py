@@ -18,7 +18,7 @@ from mpi4py import MPI
 from solver.cores import Cores
 from solver.gear_model import GearModel
 from solver.gear_position import SharedPosition, shared_position
-from solver.gear_sweep import Pitch, SweepState, SweptPosition, sweep_pitch
+from solver.gear_sweep import Pitch, SweepState, SweptPosition, joined, sweep_pitch
 from solver.newton import NotConverged
 from solver.parallel import Board, together
 
@@ -73,7 +73,7 @@ class _Crew:
             del own  # a compliance that was handed over is not needed twice
             mine = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
             parts = [part for part in self.comm.allgather(mine) if part]
-            for position in map(_joined, zip(*parts, strict=True)):
+            for position in map(joined, zip(*parts, strict=True)):
                 state = position.state
                 yield position
             begin = numbers.stop
@@ -113,10 +113,3 @@ class _Crew:
         compliance = self.boards[root].show(matrix)
         system = replace(found.system, compliance=compliance)
         return replace(found, contact=replace(found.contact, bodies=self.model.bodies), system=system)
-
-
-def _joined(parts: Sequence[SweptPosition]) -> SweptPosition:
-    """A position of which each part has some friction coefficients."""
-    memories = tuple(memory for part in parts for memory in part.state.memories)
-    results = tuple(result for part in parts for result in part.results)
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))

@@ -15,7 +15,7 @@ from solver.archive import Archive
 from solver.closed_pitch import one_pitch, sweep_closed
 from solver.gear_model import Preparation, prepare_model
 from solver.gear_results import balance_error
-from solver.gear_sweep import Pitch, SweptPosition, initial_state, uniform_pitch
+from solver.gear_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from solver.parallel import on_first
 from solver.progress import Progress
 from solver.results import Timings
@@ -125,16 +125,9 @@ def _together(sweeps: Sequence[Iterator[SweptPosition]]) -> Iterator[SweptPositi
     if len(sweeps) == 1:
         yield from sweeps[0]
         return
-    found = [_joined(parts) for parts in zip(*(one_pitch(list(sweep)) for sweep in sweeps), strict=True)]
+    found = [joined(parts) for parts in zip(*(one_pitch(list(sweep)) for sweep in sweeps), strict=True)]
     for position in found:
         yield replace(position, again=False, closes=position is found[-1])
-
-
-def _joined(parts: tuple[SweptPosition, ...]) -> SweptPosition:
-    """One position from its groups of friction coefficients."""
-    results = tuple(result for part in parts for result in part.results)
-    memories = tuple(memory for part in parts for memory in part.state.memories)
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
 
 
 def _total(made: list[Sweep], seconds: float) -> Sweep:

@@ -36,8 +36,8 @@ from solver.sectors import gear_mesh
 class PitchFacts:
     """What a pitch took, on the slowest rank. start [s]: CPU, of Python and its imports; mesh, assemble, condense [s]:
     wall. positions: wall seconds of each that was solved, `counted` of them the pitch, the others, with friction,
-    again. iterations: Newton's, of all friction coefficients together. transmission_error: [mm] at the first
-    one, at each of the pitch. memory_MB and cpu [s]: of all ranks together."""
+    again. iterations: Newton's, of all friction coefficients together. transmission_error: [mm] at the first one, at
+    each position of the pitch. memory_MB and cpu [s]: of all ranks together."""
 
     dofs: int
     ranks: int

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
-from solver.engagement import engagements
+from solver.engagement import engagements, largest_peak
 from solver.estimated_errors import plus_minus
 from solver.estimates import hertz_estimate
 from solver.hertz import LoadFactors
@@ -232,7 +232,7 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
             "#c98a1b",
         ),
         ("computed near the\npitch line, median", float(np.median(peak[near])), PINION),
-        ("computed, largest", float(np.nanmax(peak)), PINION),
+        ("computed, largest", largest_peak(run, index)[1], PINION),
     ]
     places = np.arange(len(rows))[::-1]
     axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)

@@ -208,8 +208,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for name, own in rows.items():
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
-    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**50 %** of 2", "75.0", "14", "killed",
-                   "**3.00**", "8.00", "whole met, bare missed"):
+    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures", "75.0", "14",
+                   "killed", "**3.00**", "8.00", "whole met, bare missed"):
         assert wanted in text
     assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
     assert "Cylinder on block" not in text

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 from PIL import Image
 from synthetic_run import synthetic_run
 from test_results import store
@@ -15,6 +16,7 @@ from solver.display import off_screen
 from solver.plots import draw_all, figures, plot_directory
 from solver.plots_flank import at_point, envelope, paper_points, paper_position
 from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, signed, styled
+from solver.results import friction_rows
 from solver.run_data import RunData
 
 
@@ -38,6 +40,15 @@ def test_every_figure_has_title_line_units_and_fits(run: RunData) -> None:
             labels = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel())]
             assert any(labels), name
             assert all("[" in text or text in bare for text in labels if text), (name, labels)
+
+
+def test_pictures_name_the_same_largest_pressure(run: RunData) -> None:
+    """What summary.json has as the largest pressure without friction stands in each picture that names one."""
+    wanted = f"{friction_rows(run)[0].max_pressure_MPa:.0f}"
+    with styled():
+        for name, draw in figures(run):
+            if name in ("02_flank_pressure", "03_stress_over_engagement", "10_hertz"):
+                assert wanted in " ".join(text.get_text() for text in draw(run).findobj(Text)), name
 
 
 def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:

@@ -237,7 +237,8 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
     places = np.arange(len(rows))[::-1]
     axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)
     for place, (_, value, _) in zip(places, rows):
-        axes.text(value, place, f" {value:.0f}", va="center", fontsize=9, bbox=WHITE)
+        beside = {"xytext": (5, 0), "textcoords": "offset points"}
+        axes.annotate(f"{value:.0f}", (value, place), va="center", fontsize=9, bbox=WHITE, **beside)
     axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
     axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.18 * max(row[1] for row in rows)))
     axes.grid(axis="y", visible=False)

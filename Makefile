@@ -1,7 +1,7 @@
 # make demo   sets up what is missing, computes the helical pair of demos/yang2022.toml into out/yang2022
 # make test   sets up what is missing, runs the tests
 # make verification  solves the verification problems again, writes docs/verification.md and its figures
-# make bench  run time against error (an hour, on a quiet machine); make bench-peers  the same beside other programs
+# make bench  run time against error (three hours, on a quiet machine); make bench-peers  with other programs beside
 # make stress  settings, random scenes and faults at the edge of what can be asked, into docs/stress.md; an hour
 # make setup  only that;  make lint, make docker, make clean as they say
 .PHONY: demo test verification bench bench-peers stress setup lint docker clean

@@ -33,7 +33,8 @@ Errors are relative to the overkill solution of the same problem."""
 
 PITCHES = """Wall seconds of the whole process without meshing: for a run of one position, for the pitch, and for one
 position with an empty cache of compiled forms (*cold*). Error: of the pitch's mean transmission error, against the
-overkill pitch."""
+overkill pitch. *Elements* are those across the contact width; the body keeps what its level has, and with order 1 the
+error of that remains."""
 
 
 def write_page(out: Path) -> Path:

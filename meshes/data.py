@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.errors import InputError
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -19,7 +21,7 @@ FACET_SHAPE = {
 }
 
 
-class MeshError(ValueError):
+class MeshError(InputError):
     """A mesh that cannot be used as it is; the message says what was wanted, what was found and what to do."""
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from meshes.errors import InputError
+
 if TYPE_CHECKING:
     from meshes.gear import GearParameters
     from meshes.parameters import GearPair
@@ -15,7 +17,7 @@ SMALLEST_RIM = 1.0
 """In normal modules: a thinner ring between bore and root is an error of input, not a gear body."""
 
 
-class GeometryError(ValueError):
+class GeometryError(InputError):
     """A gear or a pair that can't exist: which key, what was found, what is allowed, what to do."""
 
     def __init__(self, key: str, found: object, allowed: str, remedy: str) -> None:

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from meshes.data import Floats, Ints, MeshData
+from meshes.errors import InputError
 from meshes.parameters import GearPair
 from solver.closed_pitch import one_pitch
 from solver.gear_memory import Memory
@@ -41,7 +42,7 @@ EARLIER = (
 """What an earlier run has left in its folder."""
 
 
-class ArchiveError(RuntimeError):
+class ArchiveError(InputError):
     """The archive cannot be read or does not belong to this scene; the message says what to do."""
 
 

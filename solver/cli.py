@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from mpi4py import MPI
 
-from meshes.data import MeshError
+from meshes.errors import EvolventError
 from solver.scene_errors import SceneError
 
 if TYPE_CHECKING:
@@ -37,16 +37,6 @@ class Exit(IntEnum):
     BAD_INPUT = 2
     NOT_CONVERGED = 3
 
-
-MEANINGS = (
-    ("solver.newton", "NotConverged", Exit.NOT_CONVERGED),
-    ("solver.run_output", "BalanceError", Exit.NOT_CONVERGED),
-    ("solver.archive", "ArchiveError", Exit.BAD_INPUT),
-    ("solver.tables", "TableError", Exit.BAD_INPUT),
-    ("wear.blocks", "WearStopped", Exit.NOT_CONVERGED),
-    ("wear.law", "VolumeLost", Exit.NOT_CONVERGED),
-)
-"""Exceptions of modules that may not have been imported; then nothing can have raised them."""
 
 app = typer.Typer(
     name="evolvent",
@@ -232,8 +222,8 @@ def reported(parallel: bool = False) -> Iterator[None]:
         _abort_others(parallel, message := "interrupted; `evolvent run ... --resume` continues", Exit.FAILED)
         raise _leave(message, Exit.FAILED) from error
     except Exception as error:
-        status = _status(error)
-        plain = status != Exit.FAILED or isinstance(error, (OSError, MemoryError))
+        status = Exit(error.exit_status) if isinstance(error, EvolventError) else Exit.FAILED
+        plain = isinstance(error, (EvolventError, OSError, MemoryError))
         message = str(error) if plain else f"{_details(error)}\n{type(error).__name__}: {error}"
         _abort_others(parallel, message, status)
         raise _leave(message, status) from error
@@ -262,16 +252,6 @@ def _require(holds: bool, message: str) -> None:
     """A usage error unless `holds`; `message` says key, found, allowed and remedy."""
     if not holds:
         raise typer.BadParameter(message)
-
-
-def _status(error: Exception) -> Exit:
-    """What an exception means for whoever called the program."""
-    if isinstance(error, MeshError):
-        return Exit.BAD_INPUT
-    for module, name, status in MEANINGS:
-        if isinstance(error, getattr(sys.modules.get(module), name, ())):
-            return status
-    return Exit.FAILED
 
 
 def _details(error: Exception) -> str:

@@ -17,6 +17,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from meshes.errors import EvolventError, InputError
+
 Floats = NDArray[np.float64]
 
 # INFOG(1) where MUMPS asks for a larger ICNTL(14)
@@ -24,7 +26,7 @@ _WORKSPACE_TOO_SMALL = (-8, -9, -11, -14, -15, -17, -20)
 _NOT_POSITIVE_DEFINITE = (-10, -40)
 
 
-class NotPositiveDefinite(ValueError):
+class NotPositiveDefinite(InputError):
     """A stiffness that had to be symmetric positive definite is not; the message says what to look at."""
 
 
@@ -37,7 +39,7 @@ def not_positive_definite(rows: int, negative: int) -> NotPositiveDefinite:
     )
 
 
-class OutOfMemory(MemoryError):
+class OutOfMemory(EvolventError, MemoryError):
     """MUMPS could not get the memory it needs; the message holds INFOG(1), INFOG(2) and the size of the problem."""
 
 

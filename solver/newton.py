@@ -11,6 +11,7 @@ from petsc4py import PETSc
 from scipy.optimize import brentq
 
 from meshes.data import Floats
+from meshes.errors import ResultError
 
 NOT_A_NUMBER = (PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN, PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN)
 TURNED = 0.9
@@ -19,7 +20,7 @@ CLOSE = {"xtol": 1e-6, "rtol": 1e-2}
 """How well the length of a cut step is found: more gains nothing, the next step has another direction."""
 
 
-class NotConverged(RuntimeError):
+class NotConverged(ResultError):
     """No solution was found; the message says at which stage and how far it was."""
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshes.errors import ResultError
 from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
@@ -36,7 +37,7 @@ REMEDY = (
 )
 
 
-class BalanceError(RuntimeError):
+class BalanceError(ResultError):
     """A converged position or pitch that fails its balance certificate."""
 
 

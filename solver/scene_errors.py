@@ -12,6 +12,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from meshes.errors import InputError
+
 NOTHING = "nothing"
 
 
@@ -28,13 +30,11 @@ class Problem:
         return f"{self.key}: found {self.found}; allowed: {self.allowed}; remedy: {self.remedy}"
 
 
-class SceneError(ValueError):
+class SceneError(InputError):
     """A scene that cannot be computed. Its text has one line per problem; nothing has been written.
 
     problems: at least one; source: the file, if there is one.
     """
-
-    exit_status = 2
 
     def __init__(self, problems: Iterable[Problem], source: str = "") -> None:
         self.problems = tuple(problems)

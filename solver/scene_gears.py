@@ -6,6 +6,7 @@ import math
 
 from scipy.optimize import brentq
 
+from meshes.errors import InputError
 from meshes.limits import GeometryError
 from meshes.parameters import GearPair, GearParameters, Modifications, involute
 from solver.scene_errors import NOTHING, Problem, shown
@@ -38,7 +39,7 @@ GEAR_KEYS = {
 }
 
 
-class ImpossibleGears(ValueError):
+class ImpossibleGears(InputError):
     """The gears of a scene can't exist or can't mesh; carries the Problem in the scene's own keys."""
 
     def __init__(self, problem: Problem) -> None:

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints
+from meshes.errors import ResultError
 from solver.clipping import EMPTY, clip, fan
 from solver.facet import area_vector, cross, reference_cell
 from solver.lagrange import quadrature
@@ -36,7 +37,7 @@ ALLOWED_LOSS = 1e-3  # share of the covered area whose partner may fail to be fo
 DOUBLE = 1e-6  # share of a facet that may seem covered twice
 
 
-class SearchError(RuntimeError):
+class SearchError(ResultError):
     """The partner of more than a thousandth of the covered area was not found, or an area has two partners."""
 
 

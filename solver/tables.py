@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from meshes.data import Floats
+from meshes.errors import InputError
 
 
-class TableError(ValueError):
+class TableError(InputError):
     """Measured numbers that cannot be used as they are; the message names file, line and column."""
 
 

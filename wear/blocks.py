@@ -15,6 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from meshes.data import Floats
+from meshes.errors import ResultError
 from solver.newton import NotConverged
 from solver.search import SearchError
 from wear.law import StepsTooLong
@@ -31,7 +32,7 @@ TOO_LONG = (NotConverged, SearchError, StepsTooLong, MeshInverted, MeshVolumeLos
 NEGATIVE = 1e-6  # of a block's largest depth: a depth below minus that is no rounding
 
 
-class WearStopped(RuntimeError):
+class WearStopped(ResultError):
     """No block, however short, could be made; the message says from where on and why."""
 
 

@@ -14,16 +14,17 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats, Ints
+from meshes.errors import InputError, ResultError
 from solver.surface import Surface
 
 VOLUME = 1e-6  # relative difference of a volume by nodes and by contact points that is an error
 
 
-class VolumeLost(RuntimeError):
+class VolumeLost(ResultError):
     """The depth at the nodes is not the volume that the contact took away."""
 
 
-class StepsTooLong(ValueError):
+class StepsTooLong(InputError):
     """The steps of a cycle slide further than the contact is wide."""
 
 

@@ -15,6 +15,7 @@ Another scene wears by the same law at its first friction coefficient, until abo
 from __future__ import annotations
 
 import csv
+import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -24,13 +25,15 @@ import typer
 from mpi4py import MPI
 
 from solver import compat
+from solver.draw import draw
 from solver.engagement import engagement
 from solver.estimates import hertz_estimate
 from solver.run import run_scene
+from solver.run_folder import RunFolder
 from solver.scene import GEARS, Scene, load_scene
 from solver.scene_errors import SceneError
 from wear.observed import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
-from wear.passage_figures import UM, draw_passage
+from wear.passage_figures import UM, pictures
 from wear.report import WornRun, read_worn
 
 SCENE = Path(__file__).resolve().with_name("he2022.toml")
@@ -133,10 +136,11 @@ def write_table(study: WornRun, out: Path) -> None:
     head = ["radius_mm", "million_um", "million_line_contact_um", "million_eq_24_um"]
     formulas = [UM * values for values in (depths.own, depths.line, depths.peak_times_sliding)]
     columns = [depths.radius, *formulas, *(pair.profile(0)[1] for pair in reports)]
-    with open(out / "table.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow([*head, *(f"after_{pair.cycles:.15g}_um" for pair in reports)])
-        table.writerows([f"{value:.6g}" for value in row] for row in zip(*columns))
+    text = io.StringIO()
+    table = csv.writer(text)
+    table.writerow([*head, *(f"after_{pair.cycles:.15g}_um" for pair in reports)])
+    table.writerows([f"{value:.6g}" for value in row] for row in zip(*columns))
+    RunFolder(out).write_text("table.csv", text.getvalue())
 
 
 def main(
@@ -152,7 +156,7 @@ def main(
         worn = worn_scene(scene, quick, setting or [])
     except SceneError as error:
         raise typer.BadParameter(str(error)) from error
-    run_scene(worn, out, quiet=quick)
+    run_scene(worn, out, resume=True, quiet=quick)
     if MPI.COMM_WORLD.rank:
         return
     study = read_worn(out)
@@ -160,7 +164,8 @@ def main(
     if run.plane and wear is not None and wear.pinion_mm2_per_N > 0.0:
         middle = float(radius_at(run.pair, 0, np.asarray(0.5 * run.pair.path_of_contact[1])))
         point = PointPassage.of(run, POINT if scene == SCENE else middle)
-        draw_passage(study, point, out / "pictures")
+        for failure in draw(pictures(study, point), RunFolder(out)).failures:
+            print(failure)
         write_table(study, out)
         rows = compared(study, point, quick)
         print(*rows, sep="\n")

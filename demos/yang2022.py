@@ -28,7 +28,7 @@ SMALL = (
 def main(out: Path, quick: bool = False) -> None:
     """Computes the pair into `out` and checks the trend."""
     scene = load_scene(Path(__file__).with_name("yang2022.toml"), SMALL if quick else ())
-    run_scene(scene, out, quiet=quick)
+    run_scene(scene, out, resume=True, quiet=quick)
     if MPI.COMM_WORLD.rank == 0:
         before, after = friction_effect(read_run(out))
         print(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +13,7 @@ import gmsh
 import numpy as np
 
 from meshes.data import CELL_DIMENSION, FACET_SHAPE, Floats, Ints, MeshData, MeshError
+from meshes.files import whole
 
 ELEMENT_TYPES: dict[int, tuple[str, int]] = {
     1: ("interval", 1),
@@ -168,14 +172,28 @@ def _points(used: Ints) -> Floats:
 def write_msh(mesh: MeshData, path: Path | str) -> None:
     """Write a gmsh file (format by the suffix, .msh: 4.1) with the mesh's groups as named physical groups.
 
-    Raises MeshError for cells in no volume group: gmsh leaves these out silently.
+    Raises MeshError for cells in no volume group: gmsh leaves these out silently; WriteError.
     """
-    with gmsh_model("write"):
+    path = Path(path)
+    with gmsh_model("write"), whole(path, 8 * mesh.points.size + 8 * mesh.cells.size) as part:
         to_gmsh(mesh)
         binary = gmsh.option.getNumber("Mesh.Binary")
         gmsh.option.setNumber("Mesh.Binary", 1)  # text would round the coordinates
-        gmsh.write(str(path))
-        gmsh.option.setNumber("Mesh.Binary", binary)
+        try:
+            gmsh.write(str(part))
+        except Exception as error:  # gmsh raises nothing narrower
+            raise OSError(str(error)) from error
+        finally:
+            gmsh.option.setNumber("Mesh.Binary", binary)
+        _require_end(part)
+
+
+def _require_end(path: Path) -> None:
+    """On a full disk gmsh cuts a file short and says nothing. Raises OSError."""
+    with open(path, "rb") as stream:
+        stream.seek(max(0, path.stat().st_size - 64))
+        if not re.search(rb"\$End\w+\s*$", stream.read()):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def to_gmsh(mesh: MeshData) -> None:

@@ -10,11 +10,9 @@ state is written last and removed first, so what it counts is there and belongs 
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import io
 import json
-import os
 import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -31,15 +29,10 @@ from solver.gear_points import ContactPoints
 from solver.gear_position import PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
+from solver.run_folder import RunFolder
 from solver.scene import GEARS, Scene, derived_values
 from solver.schema_output import Output, Skipping
 from solver.skips import OF_OUTPUT
-
-EARLIER = (
-    "results/*.npz", "results/*.tmp", "summary.json", "positions.csv", "teeth.csv", "fields/contact*",
-    "pictures/*.png", "pictures/animation.gif", "wear.csv", "wear.json",
-)  # fmt: skip
-"""What an earlier run has left in its folder."""
 
 
 class ArchiveError(InputError):
@@ -68,27 +61,20 @@ class Archive:
     """The folder of a run. Only rank 0 writes."""
 
     def __init__(self, folder: Path, scene: Scene) -> None:
-        self.out, self.folder = folder, folder / "results"
+        self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
         self.fingerprint = fingerprint(scene)
 
-    def clear(self) -> None:
-        """Removes what an earlier run has left, its state first; other files stay. Raises OSError."""
-        if not self.folder.is_dir():
-            return  # nothing that looks like ours is
-        for first in ("wear.npz", "state.npz"):
-            (self.folder / first).unlink(missing_ok=True)
-        for pattern in (*EARLIER, *(f"worn_*/{earlier}" for earlier in EARLIER)):
-            for path in self.out.glob(pattern):
-                path.unlink()
+    def keep(self, name: str, arrays: dict[str, Any]) -> None:
+        """Writes OUT/results/name atomically and durably. Raises WriteError, FolderError."""
+        self.files.write(f"results/{name}", arrays_bytes(arrays))
 
     def write_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Keeps both gears' surfaces."""
-        self.folder.mkdir(parents=True, exist_ok=True)
         arrays: dict[str, Any] = {}
         for name, shape in zip(("pinion", "wheel"), shapes):
             arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
             arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
-        write_arrays(self.folder / "gears.npz", arrays)
+        self.keep("gears.npz", arrays)
 
     def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Raises ArchiveError if the kept results stand on other meshes."""
@@ -112,8 +98,8 @@ class Archive:
         }  # fmt: skip
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
-        write_arrays(self.folder / f"position_{index:04d}.npz", arrays)
-        write_arrays(self.folder / "state.npz", self._state_arrays(index + 1, position.state))
+        self.keep(f"position_{index:04d}.npz", arrays)
+        self.keep("state.npz", self._state_arrays(index + 1, position.state))
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
         """The pitch, each position as it was solved last, without their states. Raises ArchiveError."""
@@ -196,27 +182,15 @@ def fingerprint(scene: Scene) -> str:
     return hashlib.sha256(values.encode()).hexdigest()
 
 
-def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
-    """Writes a NumPy archive atomically and durably. Raises OSError (disk full, not writable)."""
-    temporary, content = path.with_suffix(".tmp"), io.BytesIO()
+def arrays_bytes(arrays: dict[str, Any]) -> memoryview:
+    """The content of a NumPy archive."""
+    content = io.BytesIO()
     np.savez(content, **{name.replace("/", "|"): value for name, value in arrays.items()})
-    try:
-        with open(temporary, "wb") as stream:
-            stream.write(content.getbuffer())
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise OSError(
-            f"{path}: wanted to write a results file, found {error.strerror or error}; make room or mend the access, "
-            "then go on with --resume: what was computed before is kept"
-        ) from error
+    return content.getbuffer()
 
 
 def read_arrays(path: Path) -> dict[str, Any]:
-    """Reads what `write_arrays` wrote. Raises ArchiveError."""
+    """Reads what `arrays_bytes` makes. Raises ArchiveError."""
     try:
         with np.load(path, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}

@@ -22,6 +22,7 @@ from mpi4py import MPI
 
 from meshes.errors import EvolventError
 from solver.scene_errors import SceneError
+from solver.stopping import stoppable
 
 if TYPE_CHECKING:
     from solver.scene import Scene
@@ -37,6 +38,9 @@ class Exit(IntEnum):
     BAD_INPUT = 2
     NOT_CONVERGED = 3
 
+
+RESUME = "; `evolvent run ... --resume` continues"
+PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"  # solver.petsc reads it
 
 app = typer.Typer(
     name="evolvent",
@@ -84,18 +88,25 @@ def run(
     settings: Overrides = None,
     no_skip: NoSkip = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar; the log file is written.")] = False,
+    petsc: Annotated[
+        str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
+    ] = None,
 ) -> None:
     """Compute a scene.
 
     One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
     """
-    with reported(parallel=True):
+    with reported(parallel=True, advice=RESUME):
         loaded = _load(scene, level, settings, no_skip)
-        _require(not out.is_file(), f"--out: found the file {out}; allowed: a directory; remedy: give another name")
+        found = "found --resume and --overwrite; allowed: one of them"
+        _require(not (resume and overwrite), f"--overwrite: {found}; remedy: --resume keeps what --overwrite removes")
+        if petsc is not None:
+            os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         from solver.run import run_scene
 
-        run_scene(loaded, out, resume=resume, quiet=quiet)
+        run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
@@ -120,6 +131,7 @@ def mesh(
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.msh.")] = False,
 ) -> None:
     """Write the mesh of both sectors for gmsh.
 
@@ -128,6 +140,9 @@ def mesh(
     with reported():
         loaded = _load(scene, level, settings, no_skip)
         _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
+        there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
+        _require(overwrite or not (out.exists() or out.is_symlink()), there)
+        _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
         if MPI.COMM_WORLD.rank > 0:
             return
         from meshes.gmsh_io import write_msh
@@ -135,7 +150,6 @@ def mesh(
         from solver.sectors import standing_pair
 
         made = standing_pair(loaded)
-        out.parent.mkdir(parents=True, exist_ok=True)
         write_msh(made, out)
         quality = scaled_jacobians(made).min()
         typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.3f}")
@@ -151,14 +165,12 @@ def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a 
         _require((directory / "summary.json").is_file(), wanted)
         if MPI.COMM_WORLD.rank > 0:
             return
-        from solver.plots import plot_directory
+        from solver.run_plot import plot_folder
 
-        plot_directory(directory)
-        if (directory / "wear.json").is_file():
-            from wear.plots import draw_wear
-            from wear.report import read_worn
-
-            draw_wear(read_worn(directory), directory / "pictures")
+        drawn = plot_folder(directory)
+        for failure in drawn.failures:
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        typer.echo(f"{len(drawn.written)} pictures in {directory / 'pictures'}")
 
 
 @app.command(
@@ -210,17 +222,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 @contextlib.contextmanager
-def reported(parallel: bool = False) -> Iterator[None]:
-    """Turn exceptions into one message on stderr and an exit status; in a parallel run end the other ranks too."""
+def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
+    """Turn exceptions and signals into one message on stderr and an exit status; in a parallel run end the other ranks
+    too. advice: what is said beside a signal's name."""
     try:
-        yield
+        with stoppable(advice, _end_all if parallel else lambda: None):
+            yield
     except (typer.Exit, typer.Abort, typer.BadParameter):
         raise
     except SceneError as error:  # the same on all ranks
         raise _leave(str(error), Exit.BAD_INPUT) from error
-    except KeyboardInterrupt as error:
-        _abort_others(parallel, message := "interrupted; `evolvent run ... --resume` continues", Exit.FAILED)
-        raise _leave(message, Exit.FAILED) from error
+    except KeyboardInterrupt as error:  # `stoppable` has said so
+        if parallel:
+            _end_all()
+        raise typer.Exit(int(Exit.FAILED)) from error
     except Exception as error:
         status = Exit(error.exit_status) if isinstance(error, EvolventError) else Exit.FAILED
         plain = isinstance(error, (EvolventError, OSError, MemoryError))
@@ -262,6 +277,12 @@ def _details(error: Exception) -> str:
 def _leave(message: str, status: Exit) -> typer.Exit:
     typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
     return typer.Exit(int(status))
+
+
+def _end_all() -> None:
+    """End all ranks, if there are several."""
+    if MPI.COMM_WORLD.size > 1:
+        MPI.COMM_WORLD.Abort(int(Exit.FAILED))
 
 
 def _abort_others(parallel: bool, message: str, status: Exit) -> None:

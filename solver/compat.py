@@ -21,6 +21,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from solver.petsc import PETSc  # before dolfinx, which would start it
+
+# isort: split
 import dolfinx
 import dolfinx.fem.petsc
 import numpy as np
@@ -29,7 +32,6 @@ import ufl
 from dolfinx import cpp, fem
 from mpi4py import MPI
 from numpy.typing import NDArray
-from petsc4py import PETSc
 
 from meshes.data import CELL_DIMENSION, Floats, Ints
 

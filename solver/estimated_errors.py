@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from solver.archive import Archive, ArchiveError, read_arrays, write_arrays
+from solver.archive import Archive, ArchiveError, read_arrays
 
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
@@ -48,10 +48,7 @@ def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
     """Writes OUT/results/errors.npz, if there is something to keep. Raises OSError."""
     if errors.figures:
         values = np.array([astuple(row) for row in errors.figures])
-        write_arrays(
-            archive.folder / "errors.npz",
-            {"fingerprint": archive.fingerprint, "method": errors.method, "values": values},
-        )
+        archive.keep("errors.npz", {"fingerprint": archive.fingerprint, "method": errors.method, "values": values})
 
 
 def kept_errors(archive: Archive) -> EstimatedErrors | None:

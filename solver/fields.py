@@ -34,15 +34,14 @@ from solver.gear_surfaces import (
     sliding,
     space_vectors,
 )
-from solver.results import write_text
 from solver.run_data import RunData, SolvedPosition, flank_nodes
+from solver.run_folder import RunFolder
 
 Arrays = dict[str, Floats]
 
 
-def write_fields(run: RunData, folder: Path) -> Path:
-    """Writes the series of a run into OUT/fields; gives the .pvd file. Raises OSError."""
-    folder.mkdir(parents=True, exist_ok=True)
+def write_fields(run: RunData, folder: RunFolder) -> Path:
+    """Writes the series of a run into OUT/fields; gives the .pvd file. Raises WriteError, FolderError."""
     collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
     series = ElementTree.SubElement(collection, "Collection")
     for k, each in enumerate(run.positions):
@@ -50,13 +49,12 @@ def write_fields(run: RunData, folder: Path) -> Path:
         gears = surrounding(run, each[0].result)
         for part, (name, surface, values) in enumerate((("flanks", flanks, arrays), ("gears", gears, {}))):
             file = f"{name}_{k:04d}.vtp"
-            write_polygons(folder / file, surface, values)
+            folder.write(f"fields/{file}", vtp_bytes(surface, values))
             degrees = f"{np.degrees(run.angles[k]):.6f}"
             ElementTree.SubElement(series, "DataSet", timestep=degrees, group="", part=str(part), name=name, file=file)
     ElementTree.indent(collection)
-    path = folder / "contact.pvd"
-    write_text(path, '<?xml version="1.0"?>\n' + ElementTree.tostring(collection, encoding="unicode") + "\n")
-    return path
+    text = ElementTree.tostring(collection, encoding="unicode")
+    return folder.write_text("fields/contact.pvd", f'<?xml version="1.0"?>\n{text}\n')
 
 
 def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Polygons, Arrays]:
@@ -131,14 +129,21 @@ def surrounding(run: RunData, result: PositionResult) -> Polygons:
     return joined([surface for surface in placed if surface is not None])
 
 
-def write_polygons(path: Path, surface: Polygons, arrays: Arrays) -> None:
-    """Writes a .vtp in single precision, atomically. Raises OSError."""
+def vtp_bytes(surface: Polygons, arrays: Arrays) -> bytes:
+    """The content of a .vtp in single precision. VTK makes it in memory: writing to a full disk, it crashes."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
     mesh: Any = poly_data(Polygons(surface.points.astype(np.float32), surface.faces))
     for name, values in arrays.items():
         mesh.point_data[name] = np.ascontiguousarray(values, dtype=np.float32)
-    temporary = path.with_name("writing_" + path.name)
-    mesh.save(temporary)
-    temporary.replace(path)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(mesh)
+    writer.WriteToOutputStringOn()
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOn()
+    if not writer.Write():
+        raise RuntimeError("fields: wanted VTK's XML of a surface, found that VTK could not make it")
+    return str(writer.GetOutputString()).encode()
 
 
 def poly_data(surface: Polygons) -> Any:

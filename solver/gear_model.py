@@ -74,9 +74,13 @@ class Preparation:
 
 
 def prepare_model(
-    scene: Scene, comm: MPI.Comm, mesh: Callable[[Scene, int], MeshData] | None = None
+    scene: Scene,
+    comm: MPI.Comm,
+    mesh: Callable[[Scene, int], MeshData] | None = None,
+    meshed: Callable[[], None] = lambda: None,
 ) -> Preparation:
-    """Meshes and condenses both gears of a scene. mesh: makes gear 0's and 1's, by default `gear_mesh`.
+    """Meshes and condenses both gears of a scene. mesh: makes gear 0's and 1's, by default `gear_mesh`. meshed: called
+    when both are meshed.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
@@ -84,7 +88,8 @@ def prepare_model(
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [index for index in (0, 1) if index % comm.size == comm.rank]
     meshes = together(comm, lambda: {index: (mesh or gear_mesh)(scene, index) for index in own})
-    meshed, cores = time.perf_counter(), Cores(comm)
+    after_meshing, cores = time.perf_counter(), Cores(comm)
+    meshed()
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 
     def condensed(index: int) -> GearBody:
@@ -101,7 +106,7 @@ def prepare_model(
         pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
         friction_terms="friction-terms" in switched_off(scene), deflected="deflected-flanks" in switched_off(scene),
     )  # fmt: skip
-    return Preparation(model, meshed - begin, time.perf_counter() - meshed)
+    return Preparation(model, after_meshing - begin, time.perf_counter() - after_meshing)
 
 
 def _charted(body: GearBody, chart: FlankChart | None) -> GearBody:

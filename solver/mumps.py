@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from petsc4py import PETSc
 
 from meshes.errors import EvolventError, InputError
+from solver.petsc import PETSc
 
 Floats = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from petsc4py import PETSc
 from scipy.optimize import brentq
 
 from meshes.data import Floats
 from meshes.errors import ResultError
+from solver.petsc import PETSc
 
 NOT_A_NUMBER = (PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN, PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN)
 TURNED = 0.9

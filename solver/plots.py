@@ -3,37 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from functools import partial
 
 from matplotlib.figure import Figure
 
 from solver.display import off_screen
+from solver.draw import Picture
 from solver.plots_drive import hertz_comparison, line_load, load_sharing, losses, transmission_error
 from solver.plots_flank import has_two_lines, line_pressure_over_z, points_over_friction, pressure_map
 from solver.plots_stress import engagement_stress, friction_trend, tooth_stress
-from solver.plots_style import save, styled
-from solver.run_data import RunData, read_run
+from solver.plots_style import png, styled
+from solver.run_data import RunData
 
 Draw = Callable[[RunData], Figure]
 
 
-def plot_directory(folder: Path) -> list[Path]:
-    """Draws what the scene asks for into OUT/pictures from OUT/scene.toml and OUT/results; gives the files written.
-
-    Raises SceneError, ArchiveError, OSError; RuntimeError where nothing can be rendered (the message says what to do).
-    """
-    return draw_all(read_run(folder), folder / "pictures")
-
-
-def draw_all(run: RunData, folder: Path) -> list[Path]:
-    """Draws the pictures and the animation, unless the scene's [output] says otherwise."""
-    written = []
-    with styled():
-        if run.scene.output.pictures:
-            written += [save(draw(run), folder / f"{name}.png") for name, draw in figures(run)]
-        if run.scene.output.pictures or run.scene.output.animation:
-            written += _in_space(run, folder)
-    return written
+def pictures(run: RunData) -> Iterator[Picture]:
+    """The pictures and the animation, unless the scene's [output] says otherwise."""
+    if run.scene.output.pictures:
+        yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
+        for name, draw in figures(run):
+            yield Picture(f"{name}.png", partial(_flat, draw, run))
+    if run.scene.output.animation:
+        yield Picture("animation.gif", partial(_animation, run))
 
 
 def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
@@ -58,14 +50,20 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
     yield "12_line_load", line_load
 
 
-def _in_space(run: RunData, folder: Path) -> list[Path]:
-    """The rendered pictures; pyvista is only loaded for them."""
-    from solver.plots_space import animation, loaded_pair
+def _flat(draw: Draw, run: RunData) -> bytes:
+    with styled():
+        return png(draw(run))
 
-    written = []
-    with off_screen():
-        if run.scene.output.pictures:
-            written.append(save(loaded_pair(run), folder / "01_loaded_pair.png"))
-        if run.scene.output.animation:
-            written.append(animation(run, folder / "animation.gif"))
-    return written
+
+def _loaded_pair(run: RunData) -> bytes:
+    from solver.plots_space import loaded_pair  # pyvista takes a second: only where it renders
+
+    with styled(), off_screen():
+        return png(loaded_pair(run))
+
+
+def _animation(run: RunData) -> bytes:
+    from solver.plots_space import animation
+
+    with styled(), off_screen():
+        return animation(run)

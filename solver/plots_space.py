@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -68,10 +68,11 @@ def _image(axes: Axes, image: np.ndarray, title: str) -> None:
     axes.axis("off")
 
 
-def animation(run: RunData, path: Path, index: int = 0, step: Callable[[], None] = lambda: None) -> Path:
-    """One pitch as a GIF that runs on without a seam: a pitch later every tooth stands where the one before it stood.
+def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: None) -> bytes:
+    """The content of a GIF of one pitch that runs on without a seam: a pitch later every tooth stands where the one
+    before it stood.
 
-    step: called after each frame. Raises OSError.
+    step: called after each frame.
     """
     curve, top = engagement(run, index), pressure_top(run, index)
     frames = []
@@ -80,9 +81,10 @@ def animation(run: RunData, path: Path, index: int = 0, step: Callable[[], None]
         step()
     palette = _with_pressure_colours(frames[0]).quantize(255, dither=Image.Dither.NONE)
     reduced = [frame.quantize(255, palette=palette, dither=Image.Dither.NONE) for frame in frames]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=FRAME_MS, loop=0, optimize=True)
-    return path
+    content = io.BytesIO()
+    more = {"append_images": reduced[1:], "duration": FRAME_MS, "loop": 0, "optimize": True}
+    reduced[0].save(content, format="GIF", save_all=True, **more)
+    return content.getvalue()
 
 
 def _with_pressure_colours(frame: Image.Image) -> Image.Image:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+
+from meshes.files import write_bytes
 
 PINION, WHEEL = "#1f5fa8", "#c0392b"
 """Curves that belong to the pinion and to the wheel."""
@@ -56,7 +59,10 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
     band = 0.62 / size[1]
     figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - band))  # type: ignore[union-attr, call-arg]
     left = 0.14 / size[0]
-    figure.text(left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK)
+    figure.text(
+        left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
+        parse_math=False,  # a user's words, not a formula
+    )  # fmt: skip
     fitting = (size[0] - 0.3) / (CHARACTER * max(1, len(see)))
     see_size = 10.0 * min(1.0, fitting)
     figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
@@ -84,8 +90,13 @@ def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:
     axes.text(x, y, text, transform=axes.transAxes, va="top", ha="left", fontsize=9, color="#444444")
 
 
+def png(figure: Figure) -> bytes:
+    """The content of a figure's PNG."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png")
+    return content.getvalue()
+
+
 def save(figure: Figure, path: Path) -> Path:
-    """Writes a PNG and gives its path back. Raises OSError."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
-    return path
+    """Writes a PNG and gives its path back. Raises WriteError."""
+    return write_bytes(path, png(figure))

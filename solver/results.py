@@ -10,10 +10,8 @@ import csv
 import io
 import json
 import math
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -22,6 +20,7 @@ from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
 from solver.run_data import RunData, SolvedPosition
+from solver.run_folder import RunFolder
 from solver.scene import GEARS
 from solver.skips import Skipped
 
@@ -203,25 +202,18 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
     }
 
 
-def write_tables(folder: Path, run: RunData, facts: RunFacts) -> None:
+def write_tables(folder: RunFolder, run: RunData, facts: RunFacts) -> None:
     """Writes summary.json, positions.csv and teeth.csv. Raises OSError."""
     rows = position_rows(run)
-    write_text(folder / "positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
+    folder.write_text("positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
     teeth = [
         {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
         for row in rows
         for tooth in row.teeth
     ]
-    write_text(folder / "teeth.csv", csv_text(teeth))
+    folder.write_text("teeth.csv", csv_text(teeth))
     text = json.dumps(_without_nan(summary(run, facts)), ensure_ascii=False, indent=1, allow_nan=False)
-    write_text(folder / "summary.json", text + "\n")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Writes a file atomically. Raises OSError."""
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
+    folder.write_text("summary.json", text + "\n")
 
 
 def _flat(row: dict[str, object]) -> dict[str, object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 from mpi4py import MPI
@@ -11,27 +12,50 @@ from solver import compat
 from solver.archive import Archive
 from solver.companion import companion_of
 from solver.parallel import on_first
+from solver.run_checks import check_folder, others
+from solver.run_folder import RunFolder
+from solver.run_lock import locked
+from solver.run_log import logged
 from solver.run_output import peak_memory_MB, write_output
-from solver.run_start import continued, kept_start, logged
+from solver.run_start import continued, kept_start
 from solver.run_sweep import pitch_of, sweep_scene
 from solver.run_wear import wear_scene, write_wear
 from solver.scene import Scene
 from solver.skips import skipped, switched_off, wanted_output
 
 
-def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False) -> None:
+def run_scene(
+    scene: Scene,
+    out: Path,
+    resume: bool = False,
+    quiet: bool = False,
+    overwrite: bool = False,
+    source: Path | None = None,
+) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
-    resume: go on after the positions, or the blocks of wear, that `out` holds; else what an earlier run left there is
-    removed once the gears are ready. A pitch whose energy does not balance is solved again on deflected flanks, as the
-    scene that asks for these. Raises NotConverged, BalanceError, MeshError, ArchiveError, WearStopped,
-    VolumeLost, OSError, on all ranks; nothing unconverged is ever written.
+    resume: go on after the positions, or the blocks of wear, that `out` holds. overwrite: remove an earlier run's files
+    (those that nobody has changed since) once the gears are ready. With neither, `out` may hold no results. source: the
+    scene's file, which is never written over. A pitch whose energy does not balance is solved again on deflected
+    flanks, as the scene that asks for these. Raises FolderError before anything is touched, NotConverged,
+    BalanceError, MeshError, ArchiveError, WearStopped, VolumeLost, WriteError, on all ranks; nothing unconverged is
+    ever written.
     """
+    with ExitStack() as lock:
+        on_first(MPI.COMM_WORLD, lambda: lock.enter_context(locked(out)))
+        on_first(MPI.COMM_WORLD, lambda: check_folder(scene, out, resume, overwrite, source))
+        _run(scene, out, resume, quiet)
+
+
+def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
+    """The run in a folder that is its own."""
     comm, begin = MPI.COMM_WORLD, time.perf_counter()
     compat.silence_logs()
     scene = on_first(comm, lambda: continued(scene, Archive(out, scene), resume))
     start = on_first(comm, lambda: kept_start(scene, Archive(out, scene), resume))  # before the first file is touched
-    with logged(out, comm, start) as log:
+    with logged(RunFolder(out), comm, resume) as log:
+        if left := on_first(comm, lambda: others(out)):
+            log.info("%s", left)
         for skip in skipped(scene):
             log.info("skipped, %s: %s", skip.name, skip.sentence)
         for name in switched_off(scene):
@@ -46,3 +70,4 @@ def run_scene(scene: Scene, out: Path, resume: bool = False, quiet: bool = False
         on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
         if scene.wear is not None:
             on_first(comm, lambda: write_wear(scene, out, log))
+        on_first(comm, RunFolder(out).remove_parts)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import logging
 import resource
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
 from solver.companion import Companion
+from solver.draw import Drawn, draw
 from solver.error_bars import with_errors
 from solver.fields import write_fields
 from solver.gear_model import Preparation
@@ -23,6 +22,8 @@ from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
 from solver.results import MeshFacts, RunFacts, Timings, write_tables
 from solver.run_data import RunData, run_data
+from solver.run_folder import RunFolder
+from solver.run_log import RunLog
 from solver.run_start import Meshes, keep_scene
 from solver.scene import Scene
 from solver.skips import skipped, wanted_output
@@ -61,30 +62,45 @@ def timings_of(preparation: Preparation) -> Timings:
 
 def write_output(
     scene: Scene, archive: Archive, sweep: Sweep, companion: Companion | None, ranks: int, begin: float, memory: float,
-    log: logging.Logger,
+    log: RunLog,
 ) -> None:  # fmt: skip
-    """Fields and pictures; then the tables, whose being there says that the run is complete."""
+    """The tables, which say that the run is complete; then fields and pictures, whose failing costs nothing else.
+
+    Raises WriteError, FolderError.
+    """
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
     data = with_errors(data, archive, companion)
-    keep_scene(scene, archive.out)  # a resumed run may ask for other output
-    draw(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.out, log)
-    now = time.perf_counter()
-    seconds = 0.0 if companion is None else companion.seconds
-    timings = replace(sweep.timings, error_bars=seconds, output=now - started, total=now - begin)
-    write_tables(archive.out, data, facts_of(data, sweep.meshes, ranks, timings, memory))
-    log.info("done in %.1f s, %.0f MB", timings.total, memory)
+    keep_scene(scene, archive.files)  # a resumed run may ask for other output
+
+    def write(seconds_since: float) -> None:
+        bars = 0.0 if companion is None else companion.seconds
+        now = time.perf_counter()
+        timings = replace(sweep.timings, error_bars=bars, output=now - seconds_since, total=now - begin)
+        write_tables(archive.files, data, facts_of(data, sweep.meshes, ranks, timings, memory))
+
+    write(started)
+    show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
+    write(started)  # with the time that pictures took
+    log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
 
 
-def draw(data: RunData, out: Path, log: logging.Logger) -> None:
-    """Fields and pictures, as the scene asks."""
+def show(data: RunData, folder: RunFolder, log: RunLog) -> None:
+    """Fields and pictures, as the scene asks. Raises WriteError, FolderError."""
     if data.scene.output.fields:
-        log.info("fields: %s", write_fields(data, out / "fields"))
+        log.info("fields: %s", write_fields(data, folder))
     if data.scene.output.pictures or data.scene.output.animation:
-        from solver.plots import draw_all  # pyvista and matplotlib take a second: only where a scene wants pictures
+        from solver.plots import pictures  # pyvista and matplotlib take a second: only where a scene wants pictures
 
-        for path in draw_all(data, out / "pictures"):
-            log.info("picture: %s", path)
+        tell(draw(pictures(data), folder), log)
+
+
+def tell(drawn: Drawn, log: RunLog) -> None:
+    """Which pictures there are, and which could not be drawn."""
+    for path in drawn.written:
+        log.info("picture: %s", path)
+    for failure in drawn.failures:
+        log.warning(failure)
 
 
 def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory: float) -> RunFacts:

@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
-
-from mpi4py import MPI
 
 from meshes.data import Floats, MeshData
 from solver.archive import Archive, GearShape, gear_shape
 from solver.closed_pitch import errors_of
 from solver.gear_sweep import SweepState
-from solver.parallel import together
-from solver.results import write_text
+from solver.run_folder import RunFolder
 from solver.scene import GEARS, Scene
 from solver.sectors import sector_meshes
 from solver.skips import with_deflected_flanks
 from solver.surface import surface_of
 
 Meshes = tuple[MeshData, MeshData]
+SCENE_FILES = ("flank_pinion.csv", "flank_wheel.csv", "scene.toml")
 
 
 @dataclass(frozen=True)
@@ -62,57 +56,40 @@ def same_meshes(scene: Scene, archive: Archive) -> Meshes:
 def open_archive(scene: Scene, archive: Archive, meshes: Meshes, start: Start | None) -> None:
     """Makes the folder ready for this scene's positions. Raises ArchiveError, OSError."""
     if start is None:
-        archive.clear()
+        clear(archive.files)
         archive.write_gears(gear_shapes(meshes))
     else:
         archive.check_gears(gear_shapes(meshes))
-    keep_scene(scene, archive.out)
+    keep_scene(scene, archive.files)
 
 
-def keep_scene(scene: Scene, folder: Path) -> None:
+def clear(folder: RunFolder) -> None:
+    """Removes an earlier run, but not its scene, from which this run may have come. Raises OSError."""
+    folder.clear(keep=[folder.out / name for name in SCENE_FILES])
+
+
+def keep_scene(scene: Scene, folder: RunFolder) -> None:
     """Writes OUT/scene.toml, and the flank charts that it names beside it. Raises OSError."""
+    texts = scene_texts(scene)
+    for name in SCENE_FILES:
+        if name in texts:
+            folder.write_text(name, texts[name])
+        elif folder.is_ours(folder.out / name):
+            (folder.out / name).unlink()
+
+
+def scene_texts(scene: Scene) -> dict[str, str]:
+    """What `keep_scene` writes: file name -> text."""
     local: dict[str, Any] = {}
+    texts: dict[str, str] = {}
     for name in GEARS:
         if chart := scene.flank_chart(name):
-            write_text(folder / f"flank_{name}.csv", chart.text())
+            texts[f"flank_{name}.csv"] = chart.text()
             local[name] = getattr(scene, name).model_copy(update={"flank_csv": f"flank_{name}.csv"})
-    write_text(folder / "scene.toml", scene.model_copy(update=local).resolved_toml())
+    return texts | {"scene.toml": scene.model_copy(update=local).resolved_toml()}
 
 
 def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:
     """What the archive keeps of both sectors."""
     pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
     return pinion, wheel
-
-
-@contextmanager
-def logged(out: Path, comm: MPI.Comm, start: Start | None) -> Iterator[logging.Logger]:
-    """The run's log: OUT/run.log on rank 0, nothing elsewhere; a resumed run adds to it. Makes the folder.
-
-    Raises OSError.
-    """
-    log = logging.getLogger("evolvent")
-    log.setLevel(logging.INFO)
-    log.propagate = False
-    handler = together(comm, lambda: logging.NullHandler() if comm.rank > 0 else _log_file(out, "a" if start else "w"))
-    log.addHandler(handler)
-    try:
-        yield log
-    except Exception as error:
-        log.error("failed: %s", error)
-        raise
-    finally:
-        log.removeHandler(handler)
-        handler.close()
-
-
-def _log_file(out: Path, mode: str) -> logging.Handler:
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        handler = logging.FileHandler(out / "run.log", mode=mode, encoding="utf-8")
-    except OSError as error:
-        raise OSError(
-            f"{out}: wanted a folder to write to, found {error.strerror}; name another one with --out"
-        ) from error
-    handler.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
-    return handler

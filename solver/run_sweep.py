@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, field, replace
@@ -19,6 +18,7 @@ from solver.gear_sweep import Pitch, SweptPosition, initial_state, joined, unifo
 from solver.parallel import on_first
 from solver.progress import Progress
 from solver.results import Timings
+from solver.run_log import RunLog
 from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
 from solver.run_start import Start, open_archive, same_meshes
 from solver.scene import Scene
@@ -26,7 +26,7 @@ from solver.skips import pitches, skips, switched_off, with_deflected_flanks
 
 
 def sweep_scene(
-    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, quiet: bool, log: logging.Logger
+    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, quiet: bool, log: RunLog
 ) -> tuple[Scene, Sweep]:
     """The scene whose positions are then in its archive: this one, or, where the energy of its pitch does not balance,
     the one on deflected flanks. Raises what `run_scene` does, on all ranks."""
@@ -62,7 +62,7 @@ class _Gears:
 
     scene: Scene
     comm: MPI.Comm
-    log: logging.Logger
+    log: RunLog
     kept: list[Preparation] = field(default_factory=list)
 
     def prepared(self) -> tuple[Preparation, Timings]:
@@ -70,7 +70,7 @@ class _Gears:
         if self.kept:
             deflected = "deflected-flanks" in switched_off(self.scene)
             return replace(self.kept[0], model=replace(self.kept[0].model, deflected=deflected)), Timings()
-        preparation = prepare_model(self.scene, self.comm)
+        preparation = prepare_model(self.scene, self.comm, meshed=self.log.begin)
         self.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
         if len(friction_groups(self.scene)) == 1:
             self.kept.append(preparation)
@@ -82,6 +82,7 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: b
     comm, log, archive = gears.comm, gears.log, Archive(out, scene)
     groups, begun = friction_groups(scene), time.perf_counter()
     if start is not None and start.is_end:
+        log.begin()
         log.info("resumed after all of %d positions", len(start.errors))
         return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
     if start is not None and len(groups) > 1:

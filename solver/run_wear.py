@@ -13,14 +13,17 @@ from mpi4py import MPI
 
 from meshes.data import MeshData
 from solver.archive import Archive
+from solver.draw import draw
 from solver.gear_model import GearModel, prepare_model
 from solver.gear_sweep import uniform_pitch
 from solver.parallel import on_first
 from solver.progress import Progress
 from solver.results import Timings, write_tables
 from solver.run_data import run_data
-from solver.run_output import Sweep, certify, certify_pitch, facts_of, peak_memory_MB, timings_of
-from solver.run_start import Meshes, keep_scene, same_meshes
+from solver.run_folder import RunFolder
+from solver.run_log import RunLog
+from solver.run_output import Sweep, certify, certify_pitch, facts_of, peak_memory_MB, tell, timings_of
+from solver.run_start import Meshes, clear, keep_scene, same_meshes
 from solver.scene import Scene
 from solver.schema_wear import Wear
 from solver.skips import wanted_output
@@ -38,7 +41,7 @@ depths within 8e-4 of their volume (2.5e-3 with tip relief) whether its meshes f
 
 
 def wear_scene(
-    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, quiet: bool, log: logging.Logger
+    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, quiet: bool, log: RunLog
 ) -> Sweep:
     """All blocks of a scene with [wear]; in OUT the pair at the beginning as a sweep leaves it, in OUT/worn_N that
     after N cycles. Raises what run_scene does."""
@@ -48,8 +51,10 @@ def wear_scene(
     if kept is not None:
         log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
         if kept.cycles >= wear.cycles:
-            return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
-    preparation = prepare_model(scene, comm)
+            meshes = on_first(comm, lambda: same_meshes(scene, archive))
+            log.begin()
+            return Sweep(meshes, Timings())
+    preparation = prepare_model(scene, comm, meshed=log.begin)
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
@@ -67,15 +72,14 @@ def wear_scene(
     return Sweep(meshes, Timings(timings.mesh, timings.assemble, timings.factor, spent))
 
 
-def write_wear(scene: Scene, out: Path, log: logging.Logger) -> None:
-    """Figures and pictures of the finished study, beside those of the pair at the beginning. Raises OSError."""
+def write_wear(scene: Scene, out: Path, log: RunLog) -> None:
+    """Figures and pictures of the finished study, beside those of the pair at the beginning. Raises WriteError."""
     study = read_worn(out)
-    write_report(study, out)
+    write_report(study, RunFolder(out))
     if wanted_output(scene).pictures:
-        from wear.plots import draw_wear  # matplotlib takes a second: only where a scene wants pictures
+        from wear.plots import pictures  # matplotlib takes a second: only where a scene wants pictures
 
-        for path in draw_wear(study, out / "pictures"):
-            log.info("picture: %s", path)
+        tell(draw(pictures(study), RunFolder(out)), log)
 
 
 def law_of(wear: Wear) -> Archard:
@@ -114,15 +118,17 @@ def _write(
     """The pair where it is asked for; then what the study goes on from, whose being there says that it is whole."""
     state = stage.state
     if stage.report and state.cycles == 0.0:
+        clear(archive.files)
         write_pitch(archive, meshes, state.now.positions)
-        keep_scene(scene, archive.out)
+        keep_scene(scene, archive.files)
     elif stage.report:
         folder = worn_folder(archive.out, state.cycles)
+        RunFolder(folder).clear()
         worn = write_worn(scene, folder, gears, state.depth)
         own = Archive(folder, worn)
         write_pitch(own, meshes, state.now.positions)
         data = run_data(worn, own.read_gears(), own.read_positions(worn.gear_pair()))
-        write_tables(folder, data, facts_of(data, meshes, ranks, Timings(), peak_memory_MB()))
+        write_tables(RunFolder(folder), data, facts_of(data, meshes, ranks, Timings(), peak_memory_MB()))
     write_study(archive, study)
 
 

@@ -25,8 +25,9 @@ import numpy as np
 from demos.hertz_cylinder import Slip, cylinder_on_block
 from demos.hertz_sphere import ball_on_block
 from demos.two_blocks import variants
+from meshes.files import write_bytes
 from solver import compat
-from solver.archive import ArchiveError, read_arrays, write_arrays
+from solver.archive import ArchiveError, arrays_bytes, read_arrays
 from solver.problem import Solution, solve
 from solver.run import run_scene
 from tests.gear_cases import helical_scene, spur_scene
@@ -59,7 +60,7 @@ def compute(out: Path) -> None:
     # not in rings: where edges of both bodies coincide, rounding decides how facets are cut, felt at 1e-5
     keep(out / "hertz" / "ball.npz", solve(ball_on_block(2, friction=0.2, rings=False)))
     for name, profile in zip(("pressed", "pushed"), Slip().profiles(4)):
-        write_arrays(out / "hertz" / f"{name}.npz", {"pressure": profile.pressure, "shear": profile.shear})
+        write_bytes(out / "hertz" / f"{name}.npz", arrays_bytes({"pressure": profile.pressure, "shear": profile.shear}))
 
 
 def keep(path: Path, solution: Solution) -> None:
@@ -72,7 +73,7 @@ def keep(path: Path, solution: Solution) -> None:
     arrays: dict[str, Any] = {"force": contact.force, "point_traction": contact.traction}
     for i in range(len(solution.prepared)):
         arrays |= {f"{i}/displacement": solution.displacement(i), f"{i}/nodal_forces": solution.nodal_forces[i]}
-    write_arrays(path, arrays)
+    write_bytes(path, arrays_bytes(arrays))
 
 
 def results(folder: Path) -> dict[tuple[str, str], np.ndarray]:

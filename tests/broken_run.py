@@ -22,7 +22,9 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from solver import archive, gear_model, gear_sweep, rank_sweep, run_output
+from meshes import files
+from solver import gear_model, gear_sweep, rank_sweep, run_output
+from solver.archive import Archive
 from solver.cli import main
 from solver.equilibrium import CondensedSystem
 from solver.gear_contact import GearContact
@@ -48,25 +50,38 @@ def kill_when(wanted: int) -> Callable[[int], None]:
     return lambda number: kill() if number == wanted else None
 
 
-def kill_half_written(wanted: int) -> None:
-    """Cuts the N-th file to its half when it is to be made durable, then kills."""
+def at_archive_file(wanted: int, strike: Callable[[], None]) -> None:
+    """Calls `strike` when the archive begins to write its N-th file."""
+    before_call(Archive, "keep", lambda number: strike() if number == wanted else None)
+
+
+def kill_before_renaming() -> None:
+    before_call(files.os, "replace", lambda _: kill())
+
+
+def kill_half_written() -> None:
+    """Cuts the file to its half when it is to be made durable, the manifest before it being whole; then kills."""
     fsync, numbers = os.fsync, count(1)
 
     def patched(descriptor: int) -> None:
-        if next(numbers) == wanted:
+        if next(numbers) == 2:
             os.ftruncate(descriptor, os.fstat(descriptor).st_size // 2)
             kill()
         fsync(descriptor)
 
-    archive.os.fsync = patched
+    files.os.fsync = patched
 
 
-def disk_full(wanted: int) -> Callable[[int], None]:
-    def action(number: int) -> None:
-        if number == wanted:
+def disk_full() -> None:
+    """No room for the file, but for its line in the manifest."""
+    fsync, numbers = os.fsync, count(1)
+
+    def patched(descriptor: int) -> None:
+        if next(numbers) == 2:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fsync(descriptor)
 
-    return action
+    files.os.fsync = patched
 
 
 def failing_rank(rank: int, wanted: int) -> Callable[[int], None]:
@@ -101,13 +116,13 @@ def break_it(how: str) -> None:
     elif kind == "kill":
         when, wanted = numbers[0], int(numbers[1])
         if when == "before":
-            before_call(archive.os, "replace", kill_when(wanted))
+            at_archive_file(wanted, kill_before_renaming)
         elif when == "after":
-            before_call(archive, "write_arrays", kill_when(wanted + 1))
+            at_archive_file(wanted + 1, kill)
         else:
-            kill_half_written(wanted)
+            at_archive_file(wanted, kill_half_written)
     elif kind == "full":
-        before_call(archive.os, "fsync", disk_full(int(numbers[0])))
+        at_archive_file(int(numbers[0]), disk_full)
     elif kind == "raise":
         before_call(rank_sweep._Crew, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "killrank":
@@ -120,7 +135,8 @@ def break_it(how: str) -> None:
         run_output.BALANCE_LIMIT = 1e-9
     elif kind == "strict":
         run_output.BALANCE_LIMIT = 2e-3
-        before_call(archive.os, "replace", kill_when(int(numbers[0]) if numbers else 0))
+        if numbers:
+            at_archive_file(int(numbers[0]), kill_before_renaming)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from demos.two_blocks import Patch
-from solver.archive import read_arrays, write_arrays
+from meshes.files import write_bytes
+from solver.archive import arrays_bytes, read_arrays
 from solver.problem import Step, solve
 from tests.agreement import TOLERANCE, differences, keep, main
 
@@ -26,7 +27,7 @@ def write(folder: Path, change: Change | None = None) -> Path:
     if change is not None:
         change(rows[1], arrays)
     (folder / "results").mkdir(parents=True)
-    write_arrays(folder / "results" / "position_0000.npz", arrays)
+    write_bytes(folder / "results" / "position_0000.npz", arrays_bytes(arrays))
     (folder / "summary.json").write_text(json.dumps(table), encoding="utf-8")
     return folder
 

@@ -53,7 +53,7 @@ def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can start a process as another user")
 def test_folder_that_may_not_be_written(tmp_path: Path) -> None:
-    """A folder of somebody else: status 1, its name and what to do, no traceback."""
+    """A folder of somebody else: status 2, its name and what to do, no traceback."""
     out = tmp_path / "theirs"
     out.mkdir(mode=0o555)
     for folder in (tmp_path, *tmp_path.parents):
@@ -62,8 +62,8 @@ def test_folder_that_may_not_be_written(tmp_path: Path) -> None:
     done = run(out, user=65534)
     if "ModuleNotFoundError" in done.stderr:
         pytest.skip("another user cannot read the checkout")
-    assert done.returncode == 1
-    assert f"{out}: wanted a folder to write to, found Permission denied; name another one with --out" in done.stderr
+    assert done.returncode == 2
+    assert f"--out: found {str(out)!r} (Permission denied); allowed: a directory that can be made" in done.stderr
     assert "Traceback" not in done.stderr
 
 

@@ -14,6 +14,7 @@ from solver.fields import write_fields
 from solver.flank_field import flank_field, flank_patch, line_distance
 from solver.gear_surfaces import Polygons, joined, sector_surface, sliding, space_vectors
 from solver.run_data import RunData
+from solver.run_folder import RunFolder
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +25,7 @@ def run() -> RunData:
 def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) -> None:
     """Exact: one time a position, the pinion rotation in degrees; the largest nodal pressure as computed; one array per
     friction coefficient; pressures on both gears."""
-    reader = pyvista.get_reader(str(write_fields(run, tmp_path)))
+    reader = pyvista.get_reader(str(write_fields(run, RunFolder(tmp_path))))
     np.testing.assert_allclose(reader.time_values, np.degrees(run.angles), atol=1e-6)
     for k, time in enumerate(reader.time_values):
         reader.set_active_time_value(time)
@@ -34,13 +35,13 @@ def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) ->
             assert pressure[flanks["gear"] == 0].max() == pytest.approx(solved.result.pressure.max(), rel=1e-6)
             assert pressure[flanks["gear"] == 1].max() == pytest.approx(solved.result.contact.pressure.max(), rel=0.1)
         assert gears.n_cells > 1000
-    assert not list(tmp_path.glob("writing_*"))
+    assert not list(tmp_path.rglob("*.evolvent-part*"))
 
 
 def test_nodes_stand_where_the_solver_had_them(run: RunData, tmp_path: Path) -> None:
     """Exact: a pinion flank node under pressure lies within the contact's half-width (0.2 mm at most) of the plane of
     action, in which all contact lines stand in space: distance (x − r_b1 n)·n with n along the line of action."""
-    reader = pyvista.get_reader(str(write_fields(run, tmp_path)))
+    reader = pyvista.get_reader(str(write_fields(run, RunFolder(tmp_path))))
     flanks = reader.read()[0]
     loaded = (flanks["pressure_MPa (mu=0)"] > 0.0) & (flanks["gear"] == 0)
     assert loaded.sum() > 100
@@ -107,7 +108,7 @@ def test_plane_run_is_drawn_over_its_width(tmp_path: Path) -> None:
     """Problem: a 2D run. Exact: flanks from −b/2 to b/2, the sector closed all round: its surface has no free edge but
     where it joins its neighbours at the two cuts."""
     plane = synthetic_run(file="demos/he2022.toml")
-    reader = pyvista.get_reader(str(write_fields(plane, tmp_path)))
+    reader = pyvista.get_reader(str(write_fields(plane, RunFolder(tmp_path))))
     assert reader.read()[0].bounds[4:6] == pytest.approx((-10.0, 10.0))
     sector = sector_surface(plane.shapes[0], 20.0, with_flank=True)
     edges: dict[tuple[int, int], int] = {}

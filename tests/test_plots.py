@@ -13,11 +13,12 @@ from synthetic_run import synthetic_run
 from test_results import store
 
 from solver.display import off_screen
-from solver.plots import draw_all, figures, plot_directory
+from solver.plots import figures, pictures
 from solver.plots_flank import at_point, envelope, paper_points, paper_position
 from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, signed, styled
 from solver.results import friction_rows
 from solver.run_data import RunData
+from solver.run_plot import plot_folder
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +55,10 @@ def test_pictures_name_the_same_largest_pressure(run: RunData) -> None:
 def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
     """A run on disk is drawn whole: all figures, the pair and an animation of as many frames as positions."""
     store(run, tmp_path)
-    written = plot_directory(tmp_path)
+    drawn = plot_folder(tmp_path)
+    assert not drawn.failures
     names = sorted(path.name for path in (tmp_path / "pictures").iterdir())
-    assert names == sorted(path.name for path in written)
+    assert names == sorted(path.name for path in drawn.written)
     assert len(names) == 13
     with Image.open(tmp_path / "pictures" / "animation.gif") as film:
         assert film.n_frames == len(run.positions)
@@ -64,11 +66,10 @@ def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
         assert picture.size[0] > 1500
 
 
-def test_scene_can_switch_pictures_off(tmp_path: Path) -> None:
+def test_scene_can_switch_pictures_off() -> None:
     """With both switched off nothing is drawn."""
     silent = synthetic_run("contact.friction=0.1", "output.pictures=false", "output.animation=false")
-    assert draw_all(silent, tmp_path) == []
-    assert not list(tmp_path.iterdir())
+    assert list(pictures(silent)) == []
 
 
 @pytest.mark.parametrize("file", ["demos/he2022.toml", "demos/zhang2023.toml"])

@@ -15,6 +15,7 @@ from solver.archive import Archive
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.results import MeshFacts, RunFacts, Timings, friction_rows, position_rows, summary, write_tables
 from solver.run_data import RunData, read_run
+from solver.run_folder import RunFolder
 
 FACTS = RunFacts(
     {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
@@ -84,7 +85,7 @@ def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -
     charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
     assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(run))
     assert all(np.isnan(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
-    write_tables(tmp_path, charted, FACTS)
+    write_tables(RunFolder(tmp_path), charted, FACTS)
     text = (tmp_path / "summary.json").read_text(encoding="utf-8")
     assert json.loads(text)["frictions"][0]["mesh_stiffness_N_per_mm_um"] is None
 
@@ -105,7 +106,7 @@ def test_plane_run_is_reported_for_the_whole_width() -> None:
 def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
     """One line a position and friction in positions.csv, one more level down in teeth.csv; strict JSON (no NaN); no
     half-written file stays behind."""
-    write_tables(tmp_path, run, FACTS)
+    write_tables(RunFolder(tmp_path), run, FACTS)
     with open(tmp_path / "positions.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     with open(tmp_path / "teeth.csv", encoding="utf-8") as stream:

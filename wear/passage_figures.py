@@ -3,33 +3,38 @@ the profile, and the depth of a million meshes; each beside its formula."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from solver.plots_style import FAINT, INK, PINION, WHEEL, save, sheet, styled
+from solver.draw import Picture
+from solver.plots_style import FAINT, INK, PINION, WHEEL, png, sheet, styled
 from solver.run_data import RunData
 from solver.scene import GEARS
 from wear.observed import Contacts, Depths, PointPassage, pitch_point_depth
 from wear.plots import wearing
 from wear.report import WornRun
 
+T = TypeVar("T")
 FORMULA = {"color": INK, "linestyle": "--", "linewidth": 1.2}
 MESHES = 1e6
 UM = 1e3 * MESHES  # from mm a mesh to µm in a million
 
 
-def draw_passage(study: WornRun, point: PointPassage, folder: Path) -> list[Path]:
-    """The figures of a plane pair's first passage into OUT/pictures; gives the files written. Raises OSError."""
+def pictures(study: WornRun, point: PointPassage) -> Iterator[Picture]:
+    """The figures of a plane pair's first passage."""
+    yield Picture("26_point_in_contact.png", partial(_drawn, point_in_contact, point))
+    yield Picture("27_stress_and_sliding.png", partial(_drawn, stress_and_sliding, study.pairs[0].run))
+    yield Picture("28_depth_by_formula.png", partial(_drawn, depth_by_formula, study))
+
+
+def _drawn(figure: Callable[[T], Figure], of: T) -> bytes:
     with styled():
-        figures = {
-            "26_point_in_contact": point_in_contact(point),
-            "27_stress_and_sliding": stress_and_sliding(study.pairs[0].run),
-            "28_depth_by_formula": depth_by_formula(study),
-        }
-        return [save(figure, folder / f"{name}.png") for name, figure in figures.items()]
+        return png(figure(of))
 
 
 def point_in_contact(point: PointPassage) -> Figure:

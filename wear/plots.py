@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from solver.display import off_screen
+from solver.draw import Picture
 from solver.engagement import engagement
 from solver.flank_field import flank_patch
 from solver.plots3d import flank_picture
-from solver.plots_style import FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, save, sheet, styled
+from solver.plots_style import FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, png, sheet, styled
 from solver.scene import GEARS
 from wear.report import WornPair, WornRun
 
@@ -24,10 +25,15 @@ PATCH = (240, 60)  # points of a flank over profile and width: wear is smooth
 Draw = Callable[[WornRun], Figure]
 
 
-def draw_wear(study: WornRun, folder: Path) -> list[Path]:
-    """All pictures of a study into OUT/pictures; gives the files written. Raises OSError."""
+def pictures(study: WornRun) -> Iterator[Picture]:
+    """All pictures of a study."""
+    for name, draw in _figures(study):
+        yield Picture(f"{name}.png", partial(_drawn, draw, study))
+
+
+def _drawn(draw: Draw, study: WornRun) -> bytes:
     with styled(), off_screen():
-        return [save(draw(study), folder / f"{name}.png") for name, draw in _figures(study)]
+        return png(draw(study))
 
 
 def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:

@@ -12,8 +12,9 @@ from scipy.integrate import trapezoid
 from meshes.data import Floats
 from solver.archive import Archive, ArchiveError
 from solver.flank_chart import FlankChart
-from solver.results import friction_rows, write_text
+from solver.results import friction_rows
 from solver.run_data import RunData, read_run
+from solver.run_folder import RunFolder
 from solver.scene import GEARS, Scene, load_scene
 from wear.flank_grid import inner_arcs
 from wear.pair_study import BlockRow
@@ -134,7 +135,7 @@ def _mean(chart: FlankChart) -> Floats:
     return np.asarray(trapezoid(chart.depth, chart.heights, axis=1) / np.ptp(chart.heights))
 
 
-def write_report(study: WornRun, folder: Path) -> None:
+def write_report(study: WornRun, folder: RunFolder) -> None:
     """OUT/wear.json: the figures at each report. Raises OSError."""
     wear = study.scene.wear
     assert wear is not None
@@ -145,4 +146,4 @@ def write_report(study: WornRun, folder: Path) -> None:
         "largest_block_error": max(row.error for row in study.rows),
         "reports": [asdict(pair.report()) for pair in study.pairs],
     }
-    write_text(folder / "wear.json", json.dumps(found, ensure_ascii=False, indent=1) + "\n")
+    folder.write_text("wear.json", json.dumps(found, ensure_ascii=False, indent=1) + "\n")

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from meshes.data import Floats
-from solver.archive import Archive, read_arrays, write_arrays
+from solver.archive import Archive, read_arrays
 from solver.flank_chart import FlankChart
 from solver.gear_position import PositionResult, SearchedAt
 from solver.gear_sweep import SweepState, SweptPosition
-from solver.results import csv_text, write_text
+from solver.results import csv_text
+from solver.run_folder import RunFolder
 from solver.run_start import Meshes, gear_shapes, keep_scene
 from solver.scene import GEARS, Scene
 from wear.gears import GearWear
@@ -39,8 +40,8 @@ def write_study(archive: Archive, kept: Kept) -> None:
         "rows": np.array([list(asdict(row).values()) for row in kept.rows]),
     }  # fmt: skip
     if kept.rows:
-        write_text(archive.out / "wear.csv", csv_text([asdict(row) for row in kept.rows]))
-    write_arrays(archive.folder / FILE, arrays)
+        archive.files.write_text("wear.csv", csv_text([asdict(row) for row in kept.rows]))
+    archive.keep(FILE, arrays)
 
 
 def read_study(archive: Archive) -> Kept | None:
@@ -71,14 +72,13 @@ def worn_folder(out: Path, cycles: float) -> Path:
 def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Scene:
     """Writes the flanks after some cycles as charts, depths (n,), and the scene that has them; returns that scene.
     Raises OSError."""
-    folder.mkdir(parents=True, exist_ok=True)
+    files = RunFolder(folder)
     worn: dict[str, object] = {"wear": None}
     for gear, (name, own) in enumerate(zip(GEARS, gears.by_gear(depth))):
-        path = folder / f"flank_{name}.csv"
-        write_text(path, chart_of(gears, gear, own).text())
+        path = files.write_text(f"flank_{name}.csv", chart_of(gears, gear, own).text())
         worn[name] = getattr(scene, name).model_copy(update={"flank_csv": str(path)})
     changed = scene.model_copy(update=worn)
-    keep_scene(changed, folder)
+    keep_scene(changed, files)
     return changed
 
 
@@ -89,8 +89,7 @@ def chart_of(gears: GearWear, gear: int, depth: Floats) -> FlankChart:
 
 
 def write_pitch(archive: Archive, meshes: Meshes, results: Sequence[PositionResult]) -> None:
-    """A pitch at one friction coefficient as a sweep leaves it, in place of an earlier one. Raises OSError."""
-    archive.clear()
+    """A pitch at one friction coefficient as a sweep leaves it. Raises OSError."""
     archive.write_gears(gear_shapes(meshes))
     for k, result in enumerate(results):
         state = SweepState(result.stand.extra, (None,))

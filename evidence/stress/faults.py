@@ -132,7 +132,7 @@ def differs(found: Path, wanted: Path) -> float:
 def _numbers(out: Path) -> dict[str, np.ndarray]:
     return {
         f"{path.name}/{key}": array
-        for path in (out / "results").iterdir()
+        for path in (out / "results").glob("*.npz")
         for key, array in read_arrays(path).items()
         if not key.endswith(PASSING)
     }

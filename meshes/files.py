@@ -1,0 +1,61 @@
+"""Files are written whole or not at all: under another name, flushed to the disk, then renamed."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from meshes.errors import EvolventError
+
+PART = ".evolvent-part"
+"""In the name of a file that is being written; one that a killed run has left may be removed."""
+
+
+class WriteError(EvolventError, OSError):
+    """A file that could not be written; nothing of it is left. The message names file, size and remedy."""
+
+
+def write_bytes(path: Path, content: bytes | memoryview) -> Path:
+    """Writes a file, its folders too, atomically and durably; gives its path. Raises WriteError."""
+    with whole(path, len(content)) as part:
+        part.write_bytes(content)
+    return path
+
+
+@contextmanager
+def whole(path: Path, size: int) -> Iterator[Path]:
+    """The name under which the block writes a file of about `size` bytes, which then becomes `path`. Raises WriteError
+    where the block or the renaming raises OSError."""
+    part = part_of(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield part
+        with open(part, "rb+") as stream:
+            os.fsync(stream.fileno())
+        os.replace(part, path)
+    except OSError as error:
+        raise write_error(path, size, error) from error
+    finally:
+        with contextlib.suppress(OSError):  # it is `path` now, or was never made
+            part.unlink()
+
+
+def write_text(path: Path, text: str) -> Path:
+    """`write_bytes` of a text as UTF-8."""
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def write_error(path: Path, size: int, error: OSError) -> WriteError:
+    """The error of a file of so many bytes that could not be written."""
+    return WriteError(
+        f"{path}: wanted to write {size / 1e6:.3g} MB, found {error.strerror or error}; make room or mend the access, "
+        "then try again (a run goes on with --resume: what it computed before is kept)"
+    )
+
+
+def part_of(path: Path) -> Path:
+    """The name under which a file is written: in the same folder, hidden, with the same ending."""
+    return path.with_name(f".{path.stem}{PART}{path.suffix}")

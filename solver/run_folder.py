@@ -1,0 +1,175 @@
+"""The folder of a run, in which other files may lie too: what our runs have made is listed, all else is left alone.
+
+    OUT/results/evolvent-files.jsonl   a line for each file when it was written: its path below OUT and its SHA-256
+
+A file is ours if a line of the manifest has its path and its content; one that somebody has changed since is theirs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import json
+import os
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshes.errors import InputError
+from meshes.files import PART, write_bytes, write_error
+
+MANIFEST = Path("results/evolvent-files.jsonl")
+LOG = Path("run.log")
+LOCK = Path(".evolvent.lock")
+WORN = "worn_*"  # folders of worn pairs, each with a manifest of its own
+FOLDERS = (".", "results", "fields", "pictures")
+"""Where a run writes. Others below OUT, which may be a home with a million files, are not looked into."""
+
+
+class FolderError(InputError):
+    """A folder that a run may not write to as it is; nothing in it has been touched."""
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """The folder OUT of a run."""
+
+    out: Path
+
+    def write(self, name: str | Path, content: bytes | memoryview) -> Path:
+        """Writes OUT/name and lists it; gives its path. Ours with this very content is left as it is. Raises
+        WriteError, FolderError where a file that is not ours has this name."""
+        path = self.out / name
+        self.require_ours([path])
+        if path.exists() and _digest(path.read_bytes()) == _digest(content):
+            return path
+        self._list(path, content)
+        return write_bytes(path, content)
+
+    def write_text(self, name: str | Path, text: str) -> Path:
+        """`write` of a text as UTF-8."""
+        return self.write(name, text.encode("utf-8"))
+
+    def is_ours(self, path: Path) -> bool:
+        """Whether a run has made this file, and nobody has changed it."""
+        made = self._made().get(self._name(path), set())
+        if not made or path.is_symlink() or not path.is_file():
+            return False
+        return path == self.out / LOG or _digest(path.read_bytes()) in made
+
+    def require_ours(self, paths: Iterable[Path]) -> None:
+        """Raises FolderError where one of these exists and is not ours."""
+        theirs = [path for path in paths if (path.exists() or path.is_symlink()) and not self.is_ours(path)]
+        if theirs:
+            raise FolderError(
+                f"{self.out}: wanted to write {', '.join(self._name(path) for path in theirs[:5])}, found "
+                f"{_files(len(theirs))} of this name that no run has made, or that somebody has changed since; "
+                "name another folder with --out, or move what is yours"
+            )
+
+    def require_free(self, patterns: Iterable[str]) -> None:
+        """Raises FolderError where a file that is not ours has a name that a run writes (globs below OUT)."""
+        self.require_ours(path for pattern in patterns for path in sorted(self.out.glob(pattern)))
+
+    def ours(self) -> list[Path]:
+        """All files that are here and ours, the last written first."""
+        return [path for name in reversed(self._made()) if self.is_ours(path := self.out / name)]
+
+    def theirs(self) -> list[Path]:
+        """All other files where a run writes."""
+        known = {*self.ours(), self.out / MANIFEST}
+        here = (path for folder in FOLDERS for path in sorted((self.out / folder).glob("*")))
+        files = [path for path in here if path.is_file() and PART not in path.name and path != self.out / LOCK]
+        below = [path for worn in self._worn() for path in worn.theirs()]
+        return [path for path in files if path not in known] + below
+
+    def clear(self, keep: Collection[Path] = ()) -> None:
+        """Removes what our runs have made, the newest first, and folders that are then empty; but for the log and
+        `keep`. Raises OSError."""
+        kept, stays = {path.resolve() for path in keep}, [self.out / LOG]
+        for worn in self._worn():
+            worn.clear(keep)
+        for path in self.ours():
+            if path.resolve() in kept:
+                stays.append(path)
+            elif path != self.out / LOG:
+                path.unlink()
+        self._forget_all_but(stays)
+        for folder in FOLDERS[1:]:
+            with contextlib.suppress(OSError):  # not empty, or not there
+                (self.out / folder).rmdir()
+
+    def remove_parts(self) -> None:
+        """Removes files that a killed run was writing."""
+        for folder in FOLDERS:
+            for path in (self.out / folder).glob(f".*{PART}*"):
+                path.unlink(missing_ok=True)
+        for worn in self._worn():
+            worn.remove_parts()
+
+    def list_log(self) -> None:
+        """The log, which grows, is ours by its name."""
+        self._list(self.out / LOG, b"")
+
+    def _worn(self) -> Iterator[RunFolder]:
+        for path in sorted(self.out.glob(WORN)):
+            if (path / MANIFEST).is_file():
+                yield RunFolder(path)
+
+    def _name(self, path: Path) -> str:
+        return path.relative_to(self.out).as_posix()
+
+    def _made(self) -> dict[str, set[str]]:
+        """Name -> SHA-256 of all that was ever written under it, in the order of the last writing."""
+        made: dict[str, set[str]] = {}
+        with contextlib.suppress(FileNotFoundError):
+            for line in (self.out / MANIFEST).read_text(encoding="utf-8").splitlines():
+                with contextlib.suppress(ValueError, KeyError, TypeError):  # the last line of a killed run
+                    entry = json.loads(line)
+                    if ".." not in Path(entry["path"]).parts:
+                        made[entry["path"]] = made.pop(entry["path"], set()) | {entry["sha256"]}
+        return made
+
+    def _forget_all_but(self, stays: Collection[Path]) -> None:
+        manifest, names = self.out / MANIFEST, {self._name(path) for path in stays}
+        entries = [_entry(name, digest) for name, all_ in self._made().items() if name in names for digest in all_]
+        if entries:
+            write_bytes(manifest, b"".join(entries))
+        else:
+            manifest.unlink(missing_ok=True)
+
+    def _list(self, path: Path, content: bytes | memoryview) -> None:
+        """Before the file itself is there: one that is listed and missing does no harm. Raises WriteError."""
+        line, manifest = _entry(self._name(path), _digest(content)), self.out / MANIFEST
+        try:
+            manifest.parent.mkdir(parents=True, exist_ok=True)
+            _append(manifest, line)
+        except OSError as error:
+            raise write_error(manifest, len(line), error) from error
+
+
+def _entry(name: str, digest: str) -> bytes:
+    """A line; it begins anew where a killed run has left half of one."""
+    return ("\n" + json.dumps({"path": name, "sha256": digest}, ensure_ascii=False) + "\n").encode()
+
+
+def _append(path: Path, line: bytes) -> None:
+    """All of the line or nothing of it, on the disk. Raises OSError."""
+    with open(path, "ab", buffering=0) as stream:
+        before = stream.tell()
+        try:
+            if stream.write(line) != len(line):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            os.fsync(stream.fileno())
+        except OSError:
+            stream.truncate(before)
+            raise
+
+
+def _digest(content: bytes | memoryview) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _files(count: int) -> str:
+    return "a file" if count == 1 else f"{count} files"

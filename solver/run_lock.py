@@ -1,0 +1,95 @@
+"""One run a folder: a lock of the operating system, which ends with the process that holds it, however it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import getpass
+import os
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from solver.run_folder import LOCK, FolderError
+
+ATTEMPTS = 10  # at a lock file that its owner removes while we open it
+
+
+@contextmanager
+def locked(out: Path) -> Iterator[None]:
+    """No other run computes into OUT inside this block. Makes the folder; what it has made and nobody has used is gone
+    afterwards. Raises FolderError where it cannot be made or written, or another run is at it."""
+    made = _make(out)
+    try:
+        with _lock(out):
+            yield
+    finally:
+        for folder in made:
+            with contextlib.suppress(OSError):  # in use
+                folder.rmdir()
+
+
+def _make(out: Path) -> list[Path]:
+    """Makes the folder; gives those that are new, the innermost first. Raises FolderError."""
+    try:
+        new = [folder for folder in (out, *out.parents) if not folder.exists()]
+        out.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
+        raise _unusable(out, error) from error
+    return new
+
+
+@contextmanager
+def _lock(out: Path) -> Iterator[None]:
+    path = out / LOCK
+    try:
+        descriptor = _opened(path)
+    except OSError as error:
+        raise _unusable(out, error) from error
+    try:
+        os.ftruncate(descriptor, 0)
+        with contextlib.suppress(OSError):  # a full disk: the lock holds without its owner's name
+            os.write(descriptor, _owner().encode())
+        yield
+    finally:
+        with contextlib.suppress(OSError):
+            path.unlink()
+        os.close(descriptor)
+
+
+def _opened(path: Path) -> int:
+    """The locked file. Raises OSError, FolderError where another process holds the lock."""
+    for _ in range(ATTEMPTS):
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if path.exists() and os.path.samestat(os.fstat(descriptor), os.stat(path)):
+                return descriptor
+        except BlockingIOError as error:
+            owner = os.read(descriptor, 1000).decode(errors="replace").strip() or "another run"
+            os.close(descriptor)
+            raise FolderError(
+                f"{path.parent}: wanted a folder that no other run computes into, found {owner} at it; wait for its "
+                "end, or name another folder with --out"
+            ) from error
+        except OSError:  # no locks on this file system: a second run is not seen
+            return descriptor
+        os.close(descriptor)
+    raise FolderError(f"{path}: wanted to lock this file, found it removed {ATTEMPTS} times; start the run again")
+
+
+def _owner() -> str:
+    with contextlib.suppress(OSError, KeyError):
+        user = getpass.getuser()
+        return f"process {os.getpid()} of {user} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
+    return f"process {os.getpid()} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
+
+
+def _unusable(out: Path, error: OSError | ValueError) -> FolderError:
+    found = "a file" if isinstance(error, FileExistsError) else getattr(error, "strerror", None) or str(error)
+    return FolderError(
+        f"--out: found {str(out)[:200]!r} ({found}); allowed: a directory that can be made and written to by user "
+        f"{os.geteuid()}; remedy: name another one, or mend its access"
+    )

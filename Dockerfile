@@ -7,7 +7,6 @@ RUN /opt/evolvent/packages/install && apt-get clean && rm -rf /var/lib/apt/lists
 COPY . /opt/evolvent
 RUN /opt/evolvent/packages/venv /opt/venv \
  && install -d -m 1777 -o evolvent /out /var/cache/evolvent \
- && gcc -O2 -o /usr/local/bin/claim-out /opt/evolvent/packages/claim-out.c && chmod 4755 /usr/local/bin/claim-out \
  && ln -s /opt/evolvent/packages/entry /usr/local/bin/evolvent
 
 # Compiled forms and fonts are cached where any user (docker run --user) may write. The rest: one BLAS thread a rank;

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from meshes.errors import EvolventError
+from meshes.errors import EvolventError, InputError
 
 PART = ".evolvent-part"
 """In the name of a file that is being written; one that a killed run has left may be removed."""
@@ -46,6 +46,42 @@ def whole(path: Path, size: int) -> Iterator[Path]:
 def write_text(path: Path, text: str) -> Path:
     """`write_bytes` of a text as UTF-8."""
     return write_bytes(path, text.encode("utf-8"))
+
+
+@contextmanager
+def folder_for(out: Path, option: str = "--out") -> Iterator[None]:
+    """The folder exists inside the block; where the block leaves it empty, what was made for it goes again. Raises
+    InputError, which names the option, where it cannot be made."""
+    try:
+        made = [folder for folder in (out, *out.parents) if not folder.exists()]
+        out.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
+        raise unusable(out, error, option) from error
+    try:
+        yield
+    finally:
+        for folder in made:
+            with contextlib.suppress(OSError):  # in use
+                folder.rmdir()
+
+
+def unusable(out: Path, error: OSError | ValueError, option: str = "--out") -> InputError:
+    """The error of a folder that cannot be made or written to."""
+    found = "a file" if isinstance(error, FileExistsError) else getattr(error, "strerror", None) or str(error)
+    return InputError(
+        f"{option}: found {str(out)[:200]!r} ({found}); allowed: a directory that can be made and written to by user "
+        f"{os.geteuid()}; remedy: name another one, or mend its access"
+    )
+
+
+def require_writable(path: Path) -> None:
+    """Raises InputError where no file of this name can be made; leaves nothing."""
+    with folder_for(path.parent):
+        try:
+            part_of(path).touch()
+            part_of(path).unlink(missing_ok=True)
+        except (OSError, ValueError) as error:
+            raise unusable(path, error) from error
 
 
 def write_error(path: Path, size: int, error: OSError) -> WriteError:

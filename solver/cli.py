@@ -21,6 +21,7 @@ import typer
 from mpi4py import MPI
 
 from meshes.errors import EvolventError
+from meshes.files import require_writable
 from solver.scene_errors import SceneError
 from solver.stopping import stoppable
 
@@ -140,6 +141,7 @@ def mesh(
     with reported():
         loaded = _load(scene, level, settings, no_skip)
         _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
+        require_writable(out)
         there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
         _require(overwrite or not (out.exists() or out.is_symlink()), there)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from meshes.files import folder_for, unusable
 from solver.run_folder import LOCK, FolderError
 
 ATTEMPTS = 10  # at a lock file that its owner removes while we open it
@@ -20,25 +21,9 @@ ATTEMPTS = 10  # at a lock file that its owner removes while we open it
 @contextmanager
 def locked(out: Path) -> Iterator[None]:
     """No other run computes into OUT inside this block. Makes the folder; what it has made and nobody has used is gone
-    afterwards. Raises FolderError where it cannot be made or written, or another run is at it."""
-    made = _make(out)
-    try:
-        with _lock(out):
-            yield
-    finally:
-        for folder in made:
-            with contextlib.suppress(OSError):  # in use
-                folder.rmdir()
-
-
-def _make(out: Path) -> list[Path]:
-    """Makes the folder; gives those that are new, the innermost first. Raises FolderError."""
-    try:
-        new = [folder for folder in (out, *out.parents) if not folder.exists()]
-        out.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
-        raise _unusable(out, error) from error
-    return new
+    afterwards. Raises InputError where it cannot be made or written, FolderError where another run is at it."""
+    with folder_for(out), _lock(out):
+        yield
 
 
 @contextmanager
@@ -47,7 +32,7 @@ def _lock(out: Path) -> Iterator[None]:
     try:
         descriptor = _opened(path)
     except OSError as error:
-        raise _unusable(out, error) from error
+        raise unusable(out, error) from error
     try:
         os.ftruncate(descriptor, 0)
         with contextlib.suppress(OSError):  # a full disk: the lock holds without its owner's name
@@ -85,11 +70,3 @@ def _owner() -> str:
         user = getpass.getuser()
         return f"process {os.getpid()} of {user} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
     return f"process {os.getpid()} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
-
-
-def _unusable(out: Path, error: OSError | ValueError) -> FolderError:
-    found = "a file" if isinstance(error, FileExistsError) else getattr(error, "strerror", None) or str(error)
-    return FolderError(
-        f"--out: found {str(out)[:200]!r} ({found}); allowed: a directory that can be made and written to by user "
-        f"{os.geteuid()}; remedy: name another one, or mend its access"
-    )

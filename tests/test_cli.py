@@ -142,7 +142,7 @@ def test_mesh_writes_a_gmsh_file(shape: str, order: int, scene: Path, capsys: py
         ("from meshes.data import MeshError; raise MeshError('bad cell')", 2, "evolvent: bad cell"),
         ("raise OSError(28, 'No space left on device')", 1, "No space left on device"),
         ("raise ZeroDivisionError('by zero')", 1, "ZeroDivisionError: by zero"),
-        ("raise KeyboardInterrupt", 1, "--resume"),
+        ("import signal; signal.raise_signal(signal.SIGINT)", 1, "stopped by SIGINT; `evolvent run ... --resume`"),
     ],
 )
 def test_exit_statuses(body: str, status: int, message: str, scene: Path) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from meshes.errors import InputError
 from meshes.files import PART, WriteError, part_of, write_text
 from solver.run_folder import MANIFEST, FolderError, RunFolder
 from solver.run_lock import locked
@@ -174,10 +175,10 @@ def test_lock_names_its_owner_and_ends_with_it(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("place", ["file/out", "/dev/null", "/proc/out", "x" * 300, "a\0b", "file"])
 def test_impossible_folders(place: str, tmp_path: Path) -> None:
-    """Below a file, a device, where nobody may, a name that is too long: FolderError, and nothing is made."""
+    """Below a file, a device, where nobody may, a name that is too long: InputError, and nothing is made."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     message = r"--out: found .*; allowed: a directory that can be made and written"
-    with pytest.raises(FolderError, match=message), locked(tmp_path / place):
+    with pytest.raises(InputError, match=message), locked(tmp_path / place):
         pass
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 

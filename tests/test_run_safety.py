@@ -198,6 +198,15 @@ def test_no_room_for_pictures_is_an_error(tmp_path: Path, monkeypatch: pytest.Mo
         draw([Picture("a.png", lambda: b"a")], RunFolder(tmp_path))
 
 
+@pytest.mark.parametrize("place", ["file/a.msh", "/dev/null/a.msh", "/proc/a.msh", "x" * 300 + ".msh"])
+def test_mesh_where_no_file_can_be(place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Status 2 before anything is meshed, and nothing is made."""
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    assert main(["mesh", "demos/he2022.toml", "--out", str(tmp_path / place)]) == 2
+    assert "can be made and written to" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
 @pytest.mark.parametrize("kind", ["file", "folder", "link"])
 def test_mesh_is_not_written_over_anything(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

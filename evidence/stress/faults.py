@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -71,20 +70,20 @@ def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
 
     A kill falls after a random number of positions, at a random time of what an undisturbed run takes there, so that
     start, meshes, positions and writing are all hit on a machine of any speed. A run that is beyond that number, or
-    that ended before it was killed, is started anew. Raises RuntimeError where resuming does not end well.
+    that ended before it was killed, is started anew with --overwrite. Somebody else's files lie in the same folders all
+    the time. Raises RuntimeError where resuming does not end well or one of these files is touched.
     """
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
         stages = _stages(Path(folder) / "out")
+    theirs = _somebody_elses(out)
     complete: list[int] = []
     while len(complete) < kills:
         after = int(rng.integers(len(stages)))
-        if (out / "summary.json").exists() or _complete(out) > after:
-            shutil.rmtree(out)
-        more = ["--resume"] if out.exists() else []
-        span = stages[after if _complete(out) < after else 0]
-        with started(out, *more) as process:
-            _await(process, out, after)
+        anew = (out / "summary.json").exists() or _complete(out) > after
+        span = stages[after if anew or _complete(out) < after else 0]
+        with started(out, "--overwrite" if anew else "--resume") as process:
+            _await(process, out, after, anew)
             try:
                 process.communicate(timeout=float(rng.uniform()) * span)
             except subprocess.TimeoutExpired:
@@ -94,6 +93,9 @@ def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
     last = run(out, "--resume")
     if last.returncode != 0:
         raise RuntimeError(f"{out}: wanted a resumed run to end with status 0, found {last.returncode}: {last.stderr}")
+    for path, content in theirs.items():
+        if path.read_bytes() != content:
+            raise RuntimeError(f"{path}: wanted somebody else's file as it was, found it changed")
     return Struck(tuple(complete))
 
 
@@ -108,8 +110,19 @@ def _stages(out: Path) -> list[float]:
     return np.diff(times).tolist()
 
 
-def _await(process: subprocess.Popen[str], out: Path, positions: int) -> None:
-    """Until so many positions are complete, or the run has ended."""
+def _somebody_elses(out: Path) -> dict[Path, bytes]:
+    """Makes files that are no run's, where runs write."""
+    theirs = {out / name: name.encode() for name in ("photo.png", "pictures/02_mine.png", "results/measured.npz")}
+    for path, content in theirs.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    return theirs
+
+
+def _await(process: subprocess.Popen[str], out: Path, positions: int, anew: bool = False) -> None:
+    """Until so many positions are complete, or the run has ended. anew: those of an earlier run do not count."""
+    while process.poll() is None and anew and (out / "summary.json").exists():
+        time.sleep(GLANCE)
     while process.poll() is None and _complete(out) < positions:
         time.sleep(GLANCE)
 
@@ -133,6 +146,7 @@ def _numbers(out: Path) -> dict[str, np.ndarray]:
     return {
         f"{path.name}/{key}": array
         for path in (out / "results").glob("*.npz")
+        if path.name != "measured.npz"
         for key, array in read_arrays(path).items()
         if not key.endswith(PASSING)
     }

@@ -11,6 +11,9 @@
 release := $(shell . /etc/os-release; echo $${VERSION_ID:-unstable})
 ready := .venv/.ready-debian-$(release)
 
+# Whole modules go to a worker each, for their tests share what is costly to compute.
+ON_ALL_CORES := -n auto --dist loadfile
+
 # One BLAS thread a process: two ranks with two threads each on two cores are slower than two with one.
 test verification: export OMP_NUM_THREADS ?= 1
 # Tests start mpirun: as root in a container, with more ranks than a small machine has cores, on this machine only.
@@ -22,10 +25,10 @@ export OMPI_MCA_btl ?= self,vader
 export OMPI_MCA_btl_vader_single_copy_mechanism ?= none
 
 demo: $(ready)
-	.venv/bin/evolvent run demos/yang2022.toml --level quick --set sweep.positions=12 --out out/yang2022
+	.venv/bin/evolvent run demos/yang2022.toml --level quick --set sweep.positions=12 --out out/yang2022 --overwrite
 
 test: $(ready)
-	.venv/bin/python -m pytest $(PYTEST_ARGS)
+	.venv/bin/python -m pytest $(ON_ALL_CORES) $(PYTEST_ARGS)
 
 verification: $(ready)
 	.venv/bin/python -m evidence.ladder --out docs

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -23,19 +26,31 @@ def _quiet() -> None:
 
 @pytest.fixture(scope="session")
 def run_script() -> Run:
-    """run_script(script, *arguments, ranks=1, timeout=120): the finished process with its output, status unchecked.
+    """run_script(script, *arguments, ranks=1, timeout=300): the finished process with its output, status unchecked.
 
     script: a path from the checkout's root, or "-c" with the program as the first argument.
     """
 
-    def run(script: str, *arguments: str, ranks: int = 1, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
+    def run(script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> subprocess.CompletedProcess[str]:
         launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks)]
         command = [*launcher, sys.executable, script, *arguments]
-        return subprocess.run(
-            command, cwd=ROOT, env=_environment(), capture_output=True, text=True, timeout=timeout, check=False
-        )
+        with one_at_a_time(ranks):
+            return subprocess.run(
+                command, cwd=ROOT, env=_environment(), capture_output=True, text=True, timeout=timeout, check=False
+            )
 
     return run
+
+
+@contextmanager
+def one_at_a_time(ranks: int) -> Iterator[None]:
+    """Of the workers that run tests side by side one starts mpirun: its ranks want all cores."""
+    if ranks == 1:
+        yield
+        return
+    with open(Path(tempfile.gettempdir()) / f"evolvent-tests-{os.getuid()}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def _environment() -> dict[str, str]:

@@ -9,6 +9,7 @@ import textwrap
 from pathlib import Path
 
 import pytest
+from conftest import one_at_a_time
 from malformed_scenes import HE, MALFORMED, ROOT
 
 from meshes.gmsh_io import read_msh
@@ -44,7 +45,8 @@ def run_with(body: str, scene: Path, ranks: int = 1) -> subprocess.CompletedProc
     root = {f"{name}_ALLOW_RUN_AS_ROOT{tail}": "1" for name in ("OMPI", "PRTE") for tail in ("", "_CONFIRM")}
     environment = {**os.environ, **root, "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
     command = [*mpirun, sys.executable, "-c", code]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment, cwd=scene.parent)
+    with one_at_a_time(ranks):
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment, cwd=scene.parent)
 
 
 @pytest.mark.parametrize("case", MALFORMED)

@@ -8,32 +8,28 @@ Node numbers are always those of the caller's mesh (gmsh's); dolfinx renumbers, 
 
 from __future__ import annotations
 
-import fcntl
 import inspect
 import logging
-import os
 import platform
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
 from importlib import metadata
-from pathlib import Path
 from typing import Any
 
-from solver.petsc import PETSc  # before dolfinx, which would start it
-
-# isort: split
-import dolfinx
-import dolfinx.fem.petsc
 import numpy as np
 import scipy.sparse as sp
 import ufl
-from dolfinx import cpp, fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
 from meshes.data import CELL_DIMENSION, Floats, Ints
+from solver.jit import cache_directory, compiling, root_logger_kept
+from solver.petsc import PETSc  # before dolfinx, which would start it
+
+with root_logger_kept():  # FFCx, until 0.9, gives it a handler
+    import dolfinx
+    import dolfinx.fem.petsc
+    from dolfinx import cpp, fem
 
 Mesh = Any  # dolfinx and UFL carry no usable type hints in 0.5.2
 Space = Any
@@ -59,7 +55,7 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
             "gmsh must write complete second-order cells (Mesh.SecondOrderIncomplete = 0)"
         )
     dimension = CELL_DIMENSION[shape]
-    permuted = np.ascontiguousarray(cells[:, _gmsh_permutation(shape, wanted)], dtype=np.int64)
+    permuted = np.ascontiguousarray(cells[:, gmsh_permutation(shape, wanted)], dtype=np.int64)
     coordinates = np.ascontiguousarray(points[:, :dimension], dtype=np.float64)
     domain = _coordinate_domain(shape, order, dimension)
     # The coordinate element's argument has had two names and two places in the call.
@@ -69,12 +65,17 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
     return mesh
 
 
+def gmsh_permutation(shape: str, count: int) -> Ints:
+    """perm (count,) such that cells[:, perm] has basix's node order where cells of `count` nodes have gmsh's."""
+    return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
+
+
 def vector_space(mesh: Mesh, order: int) -> Space:
     """Continuous Lagrange displacements, one vector of the mesh's dimension a node."""
     dimension = mesh.geometry.dim
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, ("Lagrange", order, (dimension,)))
-    with _jit_lock():
+    with compiling(dolfinx.__version__):
         return fem.FunctionSpace(
             mesh, ufl.VectorElement("Lagrange", mesh.ufl_cell(), order), jit_params=_jit_options()
         )
@@ -144,9 +145,12 @@ def facet_tags(mesh: Mesh, groups: list[Ints]) -> Any:
 
 
 def compile_form(form: Form) -> Form:
-    """A UFL form compiled by FFCx; safe when ranks or runs compile the same one at once, or one was killed at it."""
+    """A UFL form compiled by FFCx; safe when ranks or runs compile the same one at once, or one was killed at it.
+
+    Raises CompileError where it cannot be compiled or kept.
+    """
     options: dict[str, Any] = {_first_parameter(fem.form, "jit_options", "jit_params"): _jit_options()}
-    with _jit_lock():
+    with compiling(dolfinx.__version__):
         return fem.form(form, **options)
 
 
@@ -217,10 +221,6 @@ def _nodes_per_cell(shape: str, order: int) -> int:
     }[shape]
 
 
-def _gmsh_permutation(shape: str, count: int) -> Ints:
-    return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
-
-
 def _coordinate_domain(shape: str, order: int, dimension: int) -> Any:
     if hasattr(ufl, "VectorElement"):  # UFL had elements of its own until 2022
         cell = ufl.Cell(shape, geometric_dimension=dimension)
@@ -271,29 +271,4 @@ def _facet_corners(mesh: Mesh) -> Ints:
 
 
 def _jit_options() -> dict[str, Any]:
-    return {"cache_dir": _jit_directory(), "timeout": JIT_SECONDS}
-
-
-@cache
-def _jit_directory() -> Path:
-    """A cache of our own: what we find half-written there under our lock is a killed run's, and may go."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    directory = base / "evolvent" / f"dolfinx-{dolfinx.__version__}"
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=directory):
-            return directory
-    except OSError:  # no home, or one that cannot be written: a container run as another user
-        return Path(tempfile.mkdtemp(prefix="evolvent-jit-"))
-
-
-@contextmanager
-def _jit_lock() -> Iterator[None]:
-    """One process at a time compiles, so FFCx never waits for another (and never gives up waiting after 10 s)."""
-    directory = _jit_directory()
-    with open(directory / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        for source in directory.glob("*.c"):
-            if not source.with_suffix(".c.cached").exists():
-                source.unlink()
-        yield
+    return {"cache_dir": cache_directory(dolfinx.__version__), "timeout": JIT_SECONDS}

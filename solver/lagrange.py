@@ -10,10 +10,9 @@ from typing import Any
 
 import basix
 import numpy as np
-from dolfinx.cpp.io import perm_gmsh
-from dolfinx.cpp.mesh import CellType
 
 from meshes.data import Floats, Ints
+from solver import compat
 
 
 @cache
@@ -49,5 +48,4 @@ def quadrature(shape: str, degree: int) -> tuple[Floats, Floats]:
 @cache
 def gmsh_permutation(shape: str, order: int) -> Ints:
     """perm (k,) such that cells[:, perm] has basix's node order where cells has gmsh's."""
-    count = len(node_points(shape, order))
-    return np.asarray(perm_gmsh(getattr(CellType, shape), count), dtype=np.int64)
+    return compat.gmsh_permutation(shape, len(node_points(shape, order)))

@@ -11,7 +11,7 @@ import pytest
 import ufl
 
 from meshes.data import CELL_DIMENSION
-from solver import compat
+from solver import compat, jit
 
 SHAPES = [(shape, order) for shape in CELL_DIMENSION for order in (1, 2)]
 SIZE = (2.0, 3.0, 5.0)
@@ -187,7 +187,8 @@ def test_wrong_cells_are_refused(cells, shape, order, message):
 
 
 def _compile_in_a_child(directory, queue):
-    compat._jit_directory = lambda: directory  # the forked child's own copy
+    jit.cache_directory = lambda version: directory  # the spawned child's own copy
+    compat.cache_directory = jit.cache_directory
     points = np.array(list(itertools.product((0.0, 1.0), repeat=2)))
     mesh = compat.create_mesh(np.c_[points, np.zeros(4)], np.array([[0, 2, 3, 1]]), "quadrilateral", 1)
     x = ufl.SpatialCoordinate(mesh)

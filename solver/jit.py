@@ -1,0 +1,156 @@
+"""Compiled forms: where FFCx keeps them, one process at a time, and without a word of the compiler's.
+
+FFCx (0.4 to 0.9) gives the root logger a handler when it is imported, and setuptools, by which it compiles, sets that
+logger to INFO and adds handlers where there are none (`setuptools.logging.configure`): every command of the compiler
+would be shown. An application's own logging is left as it is.
+"""
+
+from __future__ import annotations
+
+import atexit
+import errno
+import fcntl
+import logging
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+
+from meshes.errors import EvolventError
+
+COMPILER_PACKAGES = ("distutils", "_distutils", "setuptools")
+COMPILER_ERRORS = ("VerificationError", "CompileError", "LinkError")
+FULL, FORBIDDEN = {errno.ENOSPC, errno.EDQUOT}, {errno.EACCES, errno.EPERM, errno.EROFS}
+LEAST_ROOM = 1_000_000  # bytes; a form's library has a tenth of it
+
+
+class CompileError(EvolventError, OSError):
+    """A form could not be compiled, or not be kept."""
+
+
+@contextmanager
+def root_logger_kept() -> Iterator[None]:
+    """The root logger has the level and the handlers afterwards that it had before."""
+    root = logging.getLogger()
+    level, handlers = root.level, list(root.handlers)
+    try:
+        yield
+    finally:
+        root.setLevel(level)
+        for handler in [added for added in root.handlers if added not in handlers]:
+            root.removeHandler(handler)
+
+
+@contextmanager
+def compiling(version: str) -> Iterator[None]:
+    """Where forms are compiled: one process at a time, so that FFCx never waits for another (nor gives up waiting).
+
+    version: dolfinx's, as of `cache_directory`. Raises CompileError where there is no room, no right to write or no
+    compiler.
+    """
+    directory = cache_directory(version)
+    try:
+        with open(directory / "lock", "w") as lock, _silent_compiler():
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            _remove_half_written(directory)
+            yield
+    except Exception as error:
+        if cause := _cause(error, directory):
+            raise CompileError(f"{directory}: wanted to keep compiled forms there, found {cause}") from error
+        raise
+
+
+@cache
+def cache_directory(version: str) -> Path:
+    """A cache of our own, $XDG_CACHE_HOME/evolvent or ~/.cache/evolvent; where that cannot be written, a folder of this
+    user's below the temporary one, which the next run finds again. Raises CompileError where that cannot be, either.
+    """
+    try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        return _writable(base / "evolvent" / f"dolfinx-{version}")
+    except (OSError, RuntimeError):  # no home, or one that cannot be written: a container run as another user
+        pass
+    try:
+        return _writable(_temporary() / f"dolfinx-{version}")
+    except OSError as error:
+        raise CompileError(
+            f"{tempfile.gettempdir()}: wanted a folder for compiled forms, found {error.strerror or error}; name one "
+            "that can be written to by XDG_CACHE_HOME"
+        ) from error
+
+
+def _temporary() -> Path:
+    """This user's folder below the temporary one. What is loaded from it runs with this user's rights: where another
+    one owns it or may write to it, a new one, removed at the end of the process."""
+    folder = Path(tempfile.gettempdir()) / f"evolvent-{os.geteuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    if _is_private(folder):
+        return folder
+    own = Path(tempfile.mkdtemp(prefix="evolvent-jit-"))
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+    logging.getLogger("evolvent").warning(
+        "%s: wanted a folder that only this user may write to, found one that others may; compiled forms are not kept. "
+        "Remove it, or name another one by XDG_CACHE_HOME", folder,
+    )  # fmt: skip
+    return own
+
+
+def _is_private(folder: Path) -> bool:
+    """A folder, not a link to one, of this user, to which nobody else may write."""
+    facts = folder.lstat()
+    others = facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return stat.S_ISDIR(facts.st_mode) and facts.st_uid == os.geteuid() and not others
+
+
+def _writable(directory: Path) -> Path:
+    """The folder, made where it is missing. Raises OSError where it cannot be written."""
+    directory.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=directory):
+        return directory
+
+
+def _remove_half_written(directory: Path) -> None:
+    """Under our lock that is what a killed run, or one without room, has left."""
+    unfinished = [source for source in directory.glob("*.c") if not source.with_suffix(".c.cached").exists()]
+    for path in (*unfinished, *directory.glob("*.c.~*"), *directory.glob("*.c.failed")):
+        path.unlink()
+
+
+@contextmanager
+def _silent_compiler() -> Iterator[None]:
+    """distutils and setuptools log to the root logger itself; all that others have to say is let through."""
+    root = logging.getLogger()
+    level = root.level
+
+    def of_others(record: logging.LogRecord) -> bool:
+        return record.levelno >= level and not set(COMPILER_PACKAGES) & set(Path(record.pathname).parts)
+
+    with root_logger_kept():
+        root.addFilter(of_others)
+        try:
+            yield
+        finally:
+            root.removeFilter(of_others)
+
+
+def _cause(error: BaseException | None, directory: Path) -> str:
+    """What went wrong with the folder or the compiler, and the remedy; empty for an error of another kind."""
+    remedy = "name another folder by XDG_CACHE_HOME"
+    known: list[BaseException] = []
+    while error is not None and error not in known:
+        known.append(error)
+        error = error.__cause__ or error.__context__
+    numbers = {each.errno for each in known if isinstance(each, OSError)}
+    failed = [each for each in known if type(each).__name__ in COMPILER_ERRORS]
+    room = shutil.disk_usage(directory).free
+    if numbers & FULL or (failed and room < LEAST_ROOM):
+        return f"{room / 1e6:.1f} MB left on its disk; free some, or {remedy}"
+    if failed:
+        return f"{failed[-1]}; install a C compiler (packages/install does)"
+    if numbers & FORBIDDEN:
+        return f"no right to write; {remedy}"
+    return ""

@@ -22,6 +22,7 @@ from mpi4py import MPI
 
 from meshes.errors import EvolventError
 from meshes.files import require_writable
+from solver.cache import keep_fonts
 from solver.scene_errors import SceneError
 from solver.stopping import stoppable
 
@@ -216,6 +217,7 @@ def info() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
     with _silent_unless_first():
+        keep_fonts()
         try:
             app(args=None if arguments is None else list(arguments), prog_name="evolvent")
         except SystemExit as leave:

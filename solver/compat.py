@@ -23,7 +23,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from meshes.data import CELL_DIMENSION, Floats, Ints
-from solver.jit import cache_directory, compiling, root_logger_kept
+from solver.jit import compiling, form_directory, root_logger_kept
 from solver.petsc import PETSc  # before dolfinx, which would start it
 
 with root_logger_kept():  # FFCx, until 0.9, gives it a handler
@@ -147,7 +147,7 @@ def facet_tags(mesh: Mesh, groups: list[Ints]) -> Any:
 def compile_form(form: Form) -> Form:
     """A UFL form compiled by FFCx; safe when ranks or runs compile the same one at once, or one was killed at it.
 
-    Raises CompileError where it cannot be compiled or kept.
+    Raises CompileError, CacheError where it cannot be compiled or kept.
     """
     options: dict[str, Any] = {_first_parameter(fem.form, "jit_options", "jit_params"): _jit_options()}
     with compiling(dolfinx.__version__):
@@ -271,4 +271,4 @@ def _facet_corners(mesh: Mesh) -> Ints:
 
 
 def _jit_options() -> dict[str, Any]:
-    return {"cache_dir": cache_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
+    return {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}

@@ -7,20 +7,16 @@ would be shown. An application's own logging is left as it is.
 
 from __future__ import annotations
 
-import atexit
 import errno
 import fcntl
 import logging
-import os
 import shutil
-import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 
 from meshes.errors import EvolventError
+from solver.cache import cache_directory
 
 COMPILER_PACKAGES = ("distutils", "_distutils", "setuptools")
 COMPILER_ERRORS = ("VerificationError", "CompileError", "LinkError")
@@ -45,14 +41,18 @@ def root_logger_kept() -> Iterator[None]:
             root.removeHandler(handler)
 
 
+def form_directory(version: str) -> Path:
+    """Of the forms that this version of dolfinx has compiled. Raises CacheError."""
+    return cache_directory(f"dolfinx-{version}")
+
+
 @contextmanager
 def compiling(version: str) -> Iterator[None]:
     """Where forms are compiled: one process at a time, so that FFCx never waits for another (nor gives up waiting).
 
-    version: dolfinx's, as of `cache_directory`. Raises CompileError where there is no room, no right to write or no
-    compiler.
+    version: dolfinx's. Raises CacheError; CompileError where there is no room, no right to write or no compiler.
     """
-    directory = cache_directory(version)
+    directory = form_directory(version)
     try:
         with open(directory / "lock", "w") as lock, _silent_compiler():
             fcntl.flock(lock, fcntl.LOCK_EX)
@@ -62,55 +62,6 @@ def compiling(version: str) -> Iterator[None]:
         if cause := _cause(error, directory):
             raise CompileError(f"{directory}: wanted to keep compiled forms there, found {cause}") from error
         raise
-
-
-@cache
-def cache_directory(version: str) -> Path:
-    """A cache of our own, $XDG_CACHE_HOME/evolvent or ~/.cache/evolvent; where that cannot be written, a folder of this
-    user's below the temporary one, which the next run finds again. Raises CompileError where that cannot be, either.
-    """
-    try:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-        return _writable(base / "evolvent" / f"dolfinx-{version}")
-    except (OSError, RuntimeError):  # no home, or one that cannot be written: a container run as another user
-        pass
-    try:
-        return _writable(_temporary() / f"dolfinx-{version}")
-    except OSError as error:
-        raise CompileError(
-            f"{tempfile.gettempdir()}: wanted a folder for compiled forms, found {error.strerror or error}; name one "
-            "that can be written to by XDG_CACHE_HOME"
-        ) from error
-
-
-def _temporary() -> Path:
-    """This user's folder below the temporary one. What is loaded from it runs with this user's rights: where another
-    one owns it or may write to it, a new one, removed at the end of the process."""
-    folder = Path(tempfile.gettempdir()) / f"evolvent-{os.geteuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
-    if _is_private(folder):
-        return folder
-    own = Path(tempfile.mkdtemp(prefix="evolvent-jit-"))
-    atexit.register(shutil.rmtree, own, ignore_errors=True)
-    logging.getLogger("evolvent").warning(
-        "%s: wanted a folder that only this user may write to, found one that others may; compiled forms are not kept. "
-        "Remove it, or name another one by XDG_CACHE_HOME", folder,
-    )  # fmt: skip
-    return own
-
-
-def _is_private(folder: Path) -> bool:
-    """A folder, not a link to one, of this user, to which nobody else may write."""
-    facts = folder.lstat()
-    others = facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-    return stat.S_ISDIR(facts.st_mode) and facts.st_uid == os.geteuid() and not others
-
-
-def _writable(directory: Path) -> Path:
-    """The folder, made where it is missing. Raises OSError where it cannot be written."""
-    directory.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryFile(dir=directory):
-        return directory
 
 
 def _remove_half_written(directory: Path) -> None:

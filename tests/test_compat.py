@@ -187,8 +187,7 @@ def test_wrong_cells_are_refused(cells, shape, order, message):
 
 
 def _compile_in_a_child(directory, queue):
-    jit.cache_directory = lambda version: directory  # the spawned child's own copy
-    compat.cache_directory = jit.cache_directory
+    jit.form_directory = compat.form_directory = lambda version: directory  # the spawned child's own copy
     points = np.array(list(itertools.product((0.0, 1.0), repeat=2)))
     mesh = compat.create_mesh(np.c_[points, np.zeros(4)], np.array([[0, 2, 3, 1]]), "quadrilateral", 1)
     x = ufl.SpatialCoordinate(mesh)

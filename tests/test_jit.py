@@ -102,7 +102,19 @@ def test_no_place_at_all() -> None:
     done = python(program, XDG_CACHE_HOME="", HOME=NOWHERE)
     assert done.returncode == 1
     last = done.stderr.splitlines()[-1]
-    assert "CompileError: /proc/nowhere: wanted a folder for compiled forms" in last and "XDG_CACHE_HOME" in last
+    assert "CacheError: /proc/nowhere: wanted a folder for compiled forms" in last and "XDG_CACHE_HOME" in last
+
+
+def test_fonts_are_listed_once(tmp_path: Path) -> None:
+    """Without a home matplotlib makes a list of fonts, and a folder for it, in every process, and says so: kept beside
+    the forms, without a word; a folder that the user has named stays what it is."""
+    program = "from solver.cache import keep_fonts; keep_fonts(); import matplotlib; print(matplotlib.get_configdir())"
+    bare = {"XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": "", "HOME": NOWHERE, "TMPDIR": str(tmp_path)}
+    done = python(program, **bare, MPLCONFIGDIR="")
+    assert (done.stderr, done.stdout) == ("", f"{tmp_path}/evolvent-{os.geteuid()}/matplotlib\n")
+    own = tmp_path / "own"
+    own.mkdir()
+    assert python(program, **bare, MPLCONFIGDIR=str(own)).stdout == f"{own}\n"
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can mount")

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from mpi4py import MPI
 
+import solver
 from meshes.errors import EvolventError
 from meshes.files import require_writable
 from solver.cache import keep_fonts
@@ -62,6 +63,15 @@ Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything 
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"evolvent {solver.__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", is_eager=True, callback=_version, help="Print the version.")
+]
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.")]
 Overrides = Annotated[
     list[str] | None,
@@ -74,6 +84,10 @@ NoSkip = Annotated[
 LevelOption = Annotated[
     str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
 ]
+
+
+@app.callback()
+def evolvent(version: Version = False) -> None: ...
 
 
 @app.command(
@@ -91,7 +105,7 @@ def run(
     no_skip: NoSkip = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar; the log file is written.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the log file is written.")] = False,
     petsc: Annotated[
         str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
     ] = None,
@@ -107,8 +121,11 @@ def run(
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         from solver.run import run_scene
+        from solver.run_output import whereabouts
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
+        if not quiet:
+            typer.echo(whereabouts(out))
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

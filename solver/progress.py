@@ -1,40 +1,106 @@
-"""A progress bar with the time left, on rank 0 only; a hook on the sweep, never inside the solve."""
+"""What a run is doing and how far it is, on rank 0 only: stage after stage, each with its time. A hook on the sweep,
+never inside the solve.
+
+A terminal shows bars; where stderr is a file or a pipe each stage is a line when it begins, and its tenths are.
+"""
 
 from __future__ import annotations
 
+import time
 from types import TracebackType
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
+from rich.progress import BarColumn, ProgressColumn, SpinnerColumn, Task, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bars
+from rich.text import Text
+
+MESHING, CONDENSING, POSITIONS, CYCLES = "meshing", "condensing", "positions", "cycles of wear"
+ERROR_BARS, OUTPUT = "error bars", "tables and pictures"
+TENTHS = 10
 
 
 class Progress:
-    """`total` positions, or what `what` names, of which `done` need not be computed any more."""
+    """The stages of a run; beginning one ends the one before. hidden: nothing is shown."""
 
-    def __init__(self, total: int, done: int = 0, what: str = "positions", hidden: bool = False) -> None:
+    def __init__(self, hidden: bool = False, console: Console | None = None) -> None:
+        console = console or Console(stderr=True)
+        self._plain = None if hidden or console.is_terminal else console
         columns = (
-            TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("left"),
-            TimeRemainingColumn(),
+            SpinnerColumn(finished_text="[green]✓"), TextColumn("{task.description:<19}"), BarColumn(bar_width=24),
+            _Count(), TimeElapsedColumn(), _Left(),
         )  # fmt: skip
-        self._bar = Bar(*columns, console=Console(stderr=True), disable=hidden)
-        self._task = self._bar.add_task(what, total=total, completed=done)
+        self._bars = Bars(*columns, console=console, disable=hidden or self._plain is not None)
+        self._begun = time.monotonic()
 
     def __enter__(self) -> Progress:
-        self._bar.start()
+        self._bars.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._bar.stop()
+        if kind is None:
+            self._end()
+        self._bars.stop()
 
-    def advance(self) -> None:
-        """One more position is done, be it one more than was thought."""
-        self._bar.advance(self._task)
-        task = self._bar.tasks[self._task]
-        self._bar.update(self._task, total=max(task.total or 0.0, task.completed))
+    def stage(self, what: str, total: int | None = None, done: int = 0) -> None:
+        """The next stage. total: how many it has of what it counts, `done` of which are there already; None where that
+        cannot be told."""
+        self._end()
+        self._bars.add_task(what, total=total, completed=done)
+        self._say(what if total is None else f"{what}: {done} of {total}")
+
+    def advance(self, more: bool = False) -> None:
+        """One is done. more: another one follows, be it beyond what was thought: a stage that goes on is never shown as
+        complete."""
+        task = self._task
+        if task is not None:
+            done = round(task.completed) + 1
+            self._show(task, done, max(task.total or 0.0, done + more))
 
     def reach(self, done: int) -> None:
         """So many are done."""
-        self._bar.update(self._task, completed=done)
+        if self._task is not None:
+            self._show(self._task, done, self._task.total or 0.0)
+
+    @property
+    def _task(self) -> Task | None:
+        """Of the stage that is going on."""
+        return self._bars.tasks[-1] if self._bars.tasks else None
+
+    def _show(self, task: Task, done: int, total: float) -> None:
+        tenths = [int(TENTHS * count / max(total, 1.0)) for count in (task.completed, done)]
+        self._bars.update(task.id, completed=done, total=total)
+        if tenths[1] > tenths[0]:
+            self._say(f"{task.description}: {done} of {total:.0f}")
+
+    def _end(self) -> None:
+        """A stage that has ended is complete, whatever was thought of its length."""
+        task = self._task
+        if task is not None:
+            done = max(task.completed, 1) if task.total is None else task.completed
+            self._bars.update(task.id, completed=done, total=done)
+
+    def _say(self, line: str) -> None:
+        if self._plain is not None:
+            self._plain.print(Text(f"{time.monotonic() - self._begun:7.1f} s  {line}"), soft_wrap=True)
+
+
+class _Count(ProgressColumn):
+    """How many of how many, where a stage counts."""
+
+    def render(self, task: Task) -> Text:
+        total = task.total
+        counts = total is not None and (total > 1 or not task.finished)
+        return Text(f"{task.completed:,.0f}/{total:,.0f}" if counts and total is not None else "", style="green")
+
+
+class _Left(ProgressColumn):
+    """The time left, where it can be told."""
+
+    def render(self, task: Task) -> Text:
+        seconds = task.time_remaining
+        if task.finished or not task.total or seconds is None:
+            return Text("")
+        minutes, rest = divmod(round(seconds), 60)
+        return Text(f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} left", style="cyan")

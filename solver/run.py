@@ -12,6 +12,7 @@ from solver import compat
 from solver.archive import Archive
 from solver.companion import companion_of
 from solver.parallel import on_first
+from solver.progress import ERROR_BARS, OUTPUT, Progress
 from solver.run_checks import check_folder, others
 from solver.run_folder import RunFolder
 from solver.run_lock import locked
@@ -53,7 +54,7 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
     compat.silence_logs()
     scene = on_first(comm, lambda: continued(scene, Archive(out, scene), resume))
     start = on_first(comm, lambda: kept_start(scene, Archive(out, scene), resume))  # before the first file is touched
-    with logged(RunFolder(out), comm, resume) as log:
+    with logged(RunFolder(out), comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
         if left := on_first(comm, lambda: others(out)):
             log.info("%s", left)
         for skip in skipped(scene):
@@ -61,11 +62,15 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
         for name in switched_off(scene):
             log.info("not skipped: %s", name)
         if scene.wear is None:
-            scene, sweep = sweep_scene(scene, out, start, comm, quiet, log)
+            scene, sweep = sweep_scene(scene, out, start, comm, progress, log)
         else:
-            sweep = wear_scene(scene, Archive(out, scene), resume, comm, quiet, log)
+            sweep = wear_scene(scene, Archive(out, scene), resume, comm, progress, log)
         archive, pitch = Archive(out, scene), pitch_of(scene)
-        companion = companion_of(scene, archive, pitch, comm) if wanted_output(scene).error_bars else None
+        companion = None
+        if wanted_output(scene).error_bars:
+            progress.stage(ERROR_BARS)
+            companion = companion_of(scene, archive, pitch, comm)
+        progress.stage(OUTPUT)
         memory = comm.allreduce(peak_memory_MB())
         on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
         if scene.wear is not None:

@@ -85,6 +85,19 @@ def write_output(
     log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
 
 
+def whereabouts(out: Path) -> str:
+    """The last line of a run: where its figures, tables, pictures and fields are, of those that are there."""
+    kinds = {
+        "figures with error bars": ("summary.json",),
+        "tables": ("positions.csv", "teeth.csv", "wear.csv"),
+        "figures of wear": ("wear.json",),
+        "pictures": ("pictures",),
+        "fields for ParaView": ("fields/contact.pvd",),
+    }
+    found = {kind: [str(out / name) for name in names if (out / name).exists()] for kind, names in kinds.items()}
+    return "done: " + "; ".join(f"{kind} in {', '.join(paths)}" for kind, paths in found.items() if paths)
+
+
 def show(data: RunData, folder: RunFolder, log: RunLog) -> None:
     """Fields and pictures, as the scene asks. Raises WriteError, FolderError."""
     if data.scene.output.fields:

@@ -16,7 +16,7 @@ from solver.gear_model import Preparation, prepare_model
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from solver.parallel import on_first
-from solver.progress import Progress
+from solver.progress import CONDENSING, MESHING, POSITIONS, Progress
 from solver.results import Timings
 from solver.run_log import RunLog
 from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
@@ -26,12 +26,12 @@ from solver.skips import pitches, skips, switched_off, with_deflected_flanks
 
 
 def sweep_scene(
-    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, quiet: bool, log: RunLog
+    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, progress: Progress, log: RunLog
 ) -> tuple[Scene, Sweep]:
     """The scene whose positions are then in its archive: this one, or, where the energy of its pitch does not balance,
     the one on deflected flanks. Raises what `run_scene` does, on all ranks."""
-    gears = _Gears(scene, comm, log)
-    sweep = _swept(scene, out, start, gears, quiet)
+    gears = _Gears(scene, comm, progress, log)
+    sweep = _swept(scene, out, start, gears)
     loss = on_first(comm, lambda: _imbalance(scene, out))
     if loss is None:
         return scene, sweep
@@ -40,7 +40,7 @@ def sweep_scene(
         raise loss
     log.info("%s", loss)
     log.info("solved again, on deflected flanks")
-    again = _swept(deflected, out, None, replace(gears, scene=deflected), quiet)
+    again = _swept(deflected, out, None, replace(gears, scene=deflected))
     if loss := on_first(comm, lambda: _imbalance(deflected, out)):
         raise loss
     both = zip(astuple(sweep.timings), astuple(again.timings))
@@ -62,6 +62,7 @@ class _Gears:
 
     scene: Scene
     comm: MPI.Comm
+    progress: Progress
     log: RunLog
     kept: list[Preparation] = field(default_factory=list)
 
@@ -70,14 +71,19 @@ class _Gears:
         if self.kept:
             deflected = "deflected-flanks" in switched_off(self.scene)
             return replace(self.kept[0], model=replace(self.kept[0].model, deflected=deflected)), Timings()
-        preparation = prepare_model(self.scene, self.comm, meshed=self.log.begin)
+        self.progress.stage(MESHING)
+        preparation = prepare_model(self.scene, self.comm, meshed=self._meshed)
         self.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
         if len(friction_groups(self.scene)) == 1:
             self.kept.append(preparation)
         return preparation, timings_of(preparation)
 
+    def _meshed(self) -> None:
+        self.log.begin()
+        self.progress.stage(CONDENSING)
 
-def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: bool) -> Sweep:
+
+def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears) -> Sweep:
     """All positions in the archive. Where they are there already the gears are not even condensed."""
     comm, log, archive = gears.comm, gears.log, Archive(out, scene)
     groups, begun = friction_groups(scene), time.perf_counter()
@@ -99,17 +105,17 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears, quiet: b
         if not made:
             on_first(comm, lambda: open_archive(scene, archive, (pinion, wheel), start))
         made.append(Sweep((pinion, wheel), timings))
+        gears.progress.stage(POSITIONS, len(pitch_of(scene).angles), len(done))
         frictions = scene.contact.friction[group]
         state = start.state if start is not None else initial_state(frictions)
         for position in sweep_closed(preparation.model, pitch_of(scene), frictions, state, comm, done):
             certify(position.results)
             yield position
 
-    with Progress(len(pitch_of(scene).angles), len(done), hidden=quiet or comm.rank > 0) as progress:
-        for k, position in enumerate(_together([solved(group) for group in groups]), len(done)):
-            on_first(comm, partial(archive.write_position, k, position))
-            log.info(_line(position))
-            progress.advance()
+    for k, position in enumerate(_together([solved(group) for group in groups]), len(done)):
+        on_first(comm, partial(archive.write_position, k, position))
+        log.info(_line(position))
+        gears.progress.advance(more=not position.closes)
     return _total(made, time.perf_counter() - begun)
 
 

@@ -17,7 +17,7 @@ from solver.draw import draw
 from solver.gear_model import GearModel, prepare_model
 from solver.gear_sweep import uniform_pitch
 from solver.parallel import on_first
-from solver.progress import Progress
+from solver.progress import CONDENSING, CYCLES, MESHING, Progress
 from solver.results import Timings, write_tables
 from solver.run_data import run_data
 from solver.run_folder import RunFolder
@@ -41,7 +41,7 @@ depths within 8e-4 of their volume (2.5e-3 with tip relief) whether its meshes f
 
 
 def wear_scene(
-    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, quiet: bool, log: RunLog
+    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, progress: Progress, log: RunLog
 ) -> Sweep:
     """All blocks of a scene with [wear]; in OUT the pair at the beginning as a sweep leaves it, in OUT/worn_N that
     after N cycles. Raises what run_scene does."""
@@ -54,19 +54,25 @@ def wear_scene(
             meshes = on_first(comm, lambda: same_meshes(scene, archive))
             log.begin()
             return Sweep(meshes, Timings())
-    preparation = prepare_model(scene, comm, meshed=log.begin)
+
+    def meshed() -> None:
+        log.begin()
+        progress.stage(CONDENSING)
+
+    progress.stage(MESHING)
+    preparation = prepare_model(scene, comm, meshed=meshed)
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm, following_of(scene, comm))
     meshes = pinion.mesh, wheel.mesh
-    with Progress(round(wear.cycles), round(kept.cycles if kept else 0.0), "cycles", quiet or comm.rank > 0) as bar:
-        for stage in stages(gears, wear.reports, settings_of(wear), kept):
-            certify_positions(stage.state.now)
-            study = kept_of(gears, stage)
-            on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
-            log.info(_line(stage))
-            bar.reach(round(study.cycles))
+    progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))
+    for stage in stages(gears, wear.reports, settings_of(wear), kept):
+        certify_positions(stage.state.now)
+        study = kept_of(gears, stage)
+        on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
+        log.info(_line(stage))
+        progress.reach(round(study.cycles))
     timings = timings_of(preparation)
     spent = time.perf_counter() - begin - timings.total
     return Sweep(meshes, Timings(timings.mesh, timings.assemble, timings.factor, spent))

@@ -6,12 +6,14 @@ import os
 import subprocess
 import sys
 import textwrap
+import tomllib
 from pathlib import Path
 
 import pytest
 from conftest import one_at_a_time
 from malformed_scenes import HE, MALFORMED, ROOT
 
+import solver
 from meshes.gmsh_io import read_msh
 from meshes.quality import scaled_jacobians
 from solver.cli import main
@@ -176,3 +178,11 @@ def test_bad_scene_under_mpirun(scene: Path) -> None:
     done = run_with("pass", scene, ranks=2)
     assert done.returncode == 2
     assert done.stderr.count("load.torque_Nm: found -1") == 1
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    """--version: status 0 and the version of pyproject.toml, which is `solver.__version__` too."""
+    pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"evolvent {solver.__version__}\n"
+    assert solver.__version__ == pyproject["project"]["version"]

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from mpi4py import MPI
 
-import solver
 from meshes.errors import EvolventError
 from meshes.files import require_writable
+from solver import __version__
 from solver.cache import keep_fonts
 from solver.scene_errors import SceneError
 from solver.stopping import stoppable
@@ -65,7 +65,7 @@ Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"evolvent {solver.__version__}")
+        typer.echo(f"evolvent {__version__}")
         raise typer.Exit
 
 

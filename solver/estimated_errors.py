@@ -21,10 +21,15 @@ class FigureErrors:
     has none."""
 
     max_pressure_MPa: float
+    """Of the largest contact pressure."""
     mean_pressure_MPa: float
+    """Of the mean pressure."""
     transmission_error_peak_to_peak_um: float
+    """Of the peak-to-peak transmission error."""
     mesh_stiffness_N_per_mm_um: float
+    """Of the mesh stiffness."""
     loss_percent: float
+    """Of the loss."""
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,9 @@ class Skipped:
     """A skip that was made, as summary.json tells it."""
 
     name: SkipName
+    """As in docs/scene.md."""
     sentence: str
+    """What is left out, in this scene."""
 
 
 def has_equal_sections(scene: Scene) -> bool:

@@ -21,20 +21,28 @@ ROUNDING = 1e-12  # of the number of cycles
 
 @dataclass(frozen=True)
 class BlockRow:
-    """A finished block: cycles at its end and in it, its error over its volume, how many longer ones were refused and
-    how many positions searched; so far: how often the meshes have followed, largest depths [µm] between the tip-edge
-    zones, volumes off a tooth [mm³]."""
+    """A finished block of cycles."""
 
     cycles: float
+    """Revolutions of the pinion at its end."""
     block_cycles: float
+    """Revolutions in it."""
     error: float
+    """Share of its worn volume that may be taken off in the wrong place."""
     refused: int
+    """Longer blocks that were tried before and refused."""
     searched: int
+    """Positions that were searched anew."""
     refreshed: int
+    """How often the meshes have followed the wear so far."""
     deepest_pinion_um: float
+    """Deepest wear so far between the tip-edge zones, pinion."""
     deepest_wheel_um: float
+    """The same of the wheel."""
     volume_pinion_mm3: float
+    """Worn off a tooth so far, pinion."""
     volume_wheel_mm3: float
+    """The same of the wheel."""
 
 
 @dataclass(frozen=True)

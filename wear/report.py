@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -23,14 +24,18 @@ from wear.study_archive import read_study, worn_folder
 
 @dataclass(frozen=True)
 class GearReport:
-    """A gear after some cycles. deepest_um: wear between the tip-edge zones, where on it, and at the pitch point, mean
-    over the face. volume_mm3: worn off a tooth in all."""
+    """A gear after some cycles."""
 
     deepest_um: float
+    """Deepest wear between the tip-edge zones."""
     at_diameter_mm: float
+    """The diameter where it is."""
     at_z_mm: float
+    """The height above mid-face where it is."""
     at_pitch_point_um: float
+    """Wear at the pitch point, mean over the face."""
     volume_mm3: float
+    """Worn off a tooth in all."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +44,35 @@ class PairReport:
     wear as deflection."""
 
     cycles: float
+    """Revolutions of the pinion."""
     pinion: GearReport
+    """Its wear."""
     wheel: GearReport
+    """Its wear."""
     max_pressure_MPa: float
+    """Largest contact pressure of a tooth's engagement."""
     transmission_error_peak_to_peak_um: float
+    """Largest less smallest transmission error of the pitch."""
     loss_percent: float
+    """Friction work of the pitch, of the input."""
     balance_error: float
+    """Of the energy of the pitch."""
+
+
+@dataclass(frozen=True)
+class WearReport:
+    """wear.json."""
+
+    K_over_H_mm2_per_N: Mapping[str, float]
+    """Archard's coefficient over the hardness, of pinion and wheel."""
+    blocks: int
+    """Blocks of cycles."""
+    refused_blocks: int
+    """Longer ones that were tried and refused."""
+    largest_block_error: float
+    """Share of a block's worn volume that may be taken off in the wrong place, the largest."""
+    reports: tuple[PairReport, ...]
+    """The pair at the beginning and at each report."""
 
 
 @dataclass(frozen=True)
@@ -139,11 +167,11 @@ def write_report(study: WornRun, folder: RunFolder) -> None:
     """OUT/wear.json: the figures at each report. Raises OSError."""
     wear = study.scene.wear
     assert wear is not None
-    found = {
-        "K_over_H_mm2_per_N": {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
-        "blocks": len(study.rows),
-        "refused_blocks": sum(row.refused for row in study.rows),
-        "largest_block_error": max(row.error for row in study.rows),
-        "reports": [asdict(pair.report()) for pair in study.pairs],
-    }
-    folder.write_text("wear.json", json.dumps(found, ensure_ascii=False, indent=1) + "\n")
+    found = WearReport(
+        {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
+        blocks=len(study.rows),
+        refused_blocks=sum(row.refused for row in study.rows),
+        largest_block_error=max(row.error for row in study.rows),
+        reports=tuple(pair.report() for pair in study.pairs),
+    )
+    folder.write_text("wear.json", json.dumps(asdict(found), ensure_ascii=False, indent=1) + "\n")

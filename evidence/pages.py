@@ -1,0 +1,48 @@
+"""`python -m evidence.pages`: writes again what follows from the code and from what was measured before; measures
+nothing itself. tests/test_pages.py holds the files together.
+
+A page that is written by hand has generated parts between two marks, `<!-- begin NAME: ... -->` and `<!-- end -->`.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from evidence import outputs, promises, readme
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def generated(root: Path = ROOT) -> dict[Path, str]:
+    """File -> what it should hold. Raises ValueError where a page lacks a part's marks."""
+    docs = root / "docs"
+    bars = promises.table_of(promises.promises(docs))
+    parts = {
+        root / "README.md": {"speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs)},
+        docs / "evidence.md": {"bars": bars},
+        docs / "tutorial.md": {"check": readme.check(root / "demos" / "first_pair.toml")},
+    }
+    pages = {page: _filled(page, own) for page, own in parts.items()}
+    whole = "\n\n".join(part.strip() for part in outputs.page()) + "\n"
+    return {**pages, docs / "outputs.md": whole, docs / "summary.schema.json": outputs.schema_text()}
+
+
+def _filled(page: Path, parts: dict[str, str]) -> str:
+    text = page.read_text(encoding="utf-8")
+    for name, part in parts.items():
+        mark = re.compile(rf"(<!-- begin {name}: .*? -->\n).*?(\n<!-- end -->)", re.DOTALL)
+        if len(mark.findall(text)) != 1:
+            raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {len(mark.findall(text))} of them")
+        text = mark.sub(lambda found, part=part: found[1] + part + found[2], text)  # type: ignore[misc]
+    return text
+
+
+def main() -> None:
+    for path, text in generated().items():
+        path.write_text(text, encoding="utf-8")
+        print(path.relative_to(ROOT))
+
+
+if __name__ == "__main__":
+    main()

@@ -2,9 +2,10 @@
 # make test   sets up what is missing, runs the tests
 # make verification  solves the verification problems again, writes docs/verification.md and its figures
 # make bench  run time against error (three hours, on a quiet machine); make bench-peers  with other programs beside
+# make pages  writes the tables of README.md, docs/outputs.md and others again, from what was measured
 # make stress  settings, random scenes and faults at the edge of what can be asked, into docs/stress.md; an hour
 # make setup  only that;  make lint, make docker, make clean as they say
-.PHONY: demo test verification bench bench-peers stress setup lint docker clean
+.PHONY: demo test verification bench bench-peers pages stress setup lint docker clean
 .DELETE_ON_ERROR:
 
 # A machine upgraded to the next Debian release needs another environment.
@@ -32,6 +33,9 @@ test: $(ready)
 
 verification: $(ready)
 	.venv/bin/python -m evidence.ladder --out docs
+
+pages: $(ready)
+	.venv/bin/python -m evidence.pages
 
 stress: export OMP_NUM_THREADS ?= 1
 stress: $(ready)

@@ -50,6 +50,8 @@ FILES = (
     ("fields/flanks_*.vtp", "the loaded flanks at each position, with the arrays below"),
     ("fields/gears_*.vtp", "the teeth around them, without arrays"),
     ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
+    ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
+    (".evolvent.lock", "there while a run goes on: one run a folder"),
     ("wear.csv", "a wear study: a line a block of cycles"),
     ("wear.json", "a wear study: the figures at each report"),
     ("worn_*", "a wear study: the pair after so many cycles, a folder with all of the above"),
@@ -60,7 +62,7 @@ ARRAYS = (
     ("roll_distance_mm", "distance from the pitch point along the path of contact, negative towards the pinion's root"),
     ("pressure_MPa (mu=...)", "contact pressure; on the wheel carried over from the pinion"),
     ("traction_MPa (mu=...)", "what the wheel presses on the pinion with, a vector; 0 on the wheel"),
-    ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel per radian of the pinion, a vector; 0 on the wheel"),
+    ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel, a vector; 0 on the wheel"),
     ("sticks (mu=...)", "1 where the flanks stick, 0 where they slide or do not touch"),
 )  # fmt: skip
 SECTIONS = (

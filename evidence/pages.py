@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from evidence import outputs, promises, readme
+from evidence import outputs, promises, readme, tutorial
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -18,11 +18,14 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
     """File -> what it should hold. Raises ValueError where a page lacks a part's marks."""
     docs = root / "docs"
     bars = promises.table_of(promises.promises(docs))
+    first = root / "demos" / "first_pair.toml"
     parts = {
         root / "README.md": {"speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs)},
         docs / "evidence.md": {"bars": bars},
-        docs / "tutorial.md": {"check": readme.check(root / "demos" / "first_pair.toml")},
-    }
+        docs / "tutorial.md": {
+            "scene": tutorial.scene_text(first), "check": tutorial.check(first), "figures": tutorial.figures(docs),
+        },
+    }  # fmt: skip
     pages = {page: _filled(page, own) for page, own in parts.items()}
     whole = "\n\n".join(part.strip() for part in outputs.page()) + "\n"
     return {**pages, docs / "outputs.md": whole, docs / "summary.schema.json": outputs.schema_text()}
@@ -32,8 +35,8 @@ def _filled(page: Path, parts: dict[str, str]) -> str:
     text = page.read_text(encoding="utf-8")
     for name, part in parts.items():
         mark = re.compile(rf"(<!-- begin {name}: .*? -->\n).*?(\n<!-- end -->)", re.DOTALL)
-        if len(mark.findall(text)) != 1:
-            raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {len(mark.findall(text))} of them")
+        if (count := len(mark.findall(text))) != 1:
+            raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {count} of them")
         text = mark.sub(lambda found, part=part: found[1] + part + found[2], text)  # type: ignore[misc]
     return text
 

@@ -25,8 +25,8 @@ from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
 
 SCHEMA = json.loads((ROOT / "docs" / "summary.schema.json").read_text(encoding="utf-8"))
-HE = ("demos/he2022.toml", "--level", "quick", "--set", "sweep.positions=2", "--set", "output.animation=false",
-      "--set", "output.pictures=false")  # fmt: skip
+SHORT = ("sweep.positions=2", "output.animation=false", "output.pictures=false")
+HE = (str(ROOT / "demos/he2022.toml"), "--level", "quick", *(word for key in SHORT for word in ("--set", key)))
 WEARS = ("--set", "wear.cycles=1e4", "--set", "wear.pinion_mm2_per_N=1e-10")
 
 

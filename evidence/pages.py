@@ -17,13 +17,14 @@ ROOT = Path(__file__).resolve().parents[1]
 def generated(root: Path = ROOT) -> dict[Path, str]:
     """File -> what it should hold. Raises ValueError where a page lacks a part's marks."""
     docs = root / "docs"
-    bars = promises.table_of(promises.promises(docs))
+    bars = promises.said(docs)
     first = root / "demos" / "first_pair.toml"
     parts = {
         root / "README.md": {"speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "tutorial.md": {
-            "scene": tutorial.scene_text(first), "check": tutorial.check(first), "figures": tutorial.figures(docs),
+            "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
+            "figures": tutorial.figures(docs),
         },
     }  # fmt: skip
     pages = {page: _filled(page, own) for page, own in parts.items()}

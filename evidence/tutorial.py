@@ -1,5 +1,5 @@
-"""`python -m evidence.tutorial OUT`: keeps what docs/tutorial.md shows of a run of demos/first_pair.toml at level
-quick. Also the generated parts of that page."""
+"""`python -m evidence.tutorial OUT PRINTED`: keeps what docs/tutorial.md shows of a run of demos/first_pair.toml at level
+quick, its folder and the file with what it has printed. Also the generated parts of that page."""
 
 from __future__ import annotations
 
@@ -41,8 +41,9 @@ class FigureRow:
     bar: float
 
 
-def keep(out: Path, docs: Path) -> None:
-    """Figures and pictures of the run in `out`. Raises OSError."""
+def keep(out: Path, printed: Path, docs: Path) -> None:
+    """Figures and pictures of the run in `out`, and what it printed. Raises OSError."""
+    (docs / KEPT / "run.txt").write_text(printed.read_text(encoding="utf-8"), encoding="utf-8")
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     rows = [
         FigureRow(each["friction"], field.name, _number(each[field.name]), _number(each["estimated_error"][field.name]))
@@ -70,6 +71,11 @@ def figures(docs: Path) -> str:
     return table(head, lines, right=range(1, len(head)))
 
 
+def run(docs: Path) -> str:
+    """What the run printed, as a block of a page."""
+    return f"```text\n{(docs / KEPT / 'run.txt').read_text(encoding='utf-8').strip()}\n```"
+
+
 def check(scene: Path) -> str:
     """What `evolvent check SCENE --level quick` prints, as a block of a page; without what depends on the machine."""
     lines = overview(load_scene(scene, ["mesh.level=quick"])).strip().splitlines()
@@ -91,4 +97,4 @@ def _number(value: float | None) -> float:
 
 
 if __name__ == "__main__":
-    keep(Path(sys.argv[1]), ROOT / "docs")
+    keep(Path(sys.argv[1]), Path(sys.argv[2]), ROOT / "docs")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from evidence.benchmark.page import parts
 from evidence.outputs import described, unit
 from evidence.pages import ROOT, generated
 from evidence.promises import measured, promises, table_of
@@ -23,6 +24,14 @@ HERTZ_MPa = 857.07  # √(P E'/π R), P = 1000 N/mm, R = 50 mm, E' of steel on s
 def test_pages_are_what_the_tables_say(path: Path) -> None:
     """Exact: the file is what `make pages` would write now."""
     assert path.read_text(encoding="utf-8") == generated()[path], "run `make pages`"
+
+
+def test_the_benchmark_is_what_its_tables_say() -> None:
+    """Exact: below its header, which names the machine, docs/benchmark.md is what the tables beside it make."""
+    text = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
+    wanted = "\n\n".join(part.strip() for part in parts(ROOT / "docs" / "benchmark")) + "\n"
+    assert text.endswith("\n\n" + wanted), "run `python -m evidence.benchmark page`"
+    assert text[: -len(wanted)].count("\n\n") <= 2
 
 
 def test_another_figure_is_noticed(tmp_path: Path) -> None:

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from evidence.benchmark.figures import column
 from evidence.benchmark.wear import BLOCKS, WearCostRow, WearPrecisionRow
-from evidence.report import picture, table
+from evidence.report import table
 from solver import plots_style
 
 BAR = 5.0
 COLOURS = {"implicit": "#c0392b", "explicit": "#1f5fa8"}
 
 
-def wear_section(costs: Sequence[WearCostRow], precisions: Sequence[WearPrecisionRow], pictures: Path) -> list[str]:
+def wear_section(costs: Sequence[WearCostRow], precisions: Sequence[WearPrecisionRow]) -> list[str]:
     """Cost of blocks, and run time against error over the tolerance."""
     parts = ["## Wear"] if costs or precisions else []
     if costs:
         parts += [_costs_said(costs), _cost_table(costs)]
     if precisions:
-        picture(precision(precisions), pictures / "wear.png")
         parts += ["![Run time against error of wear](pictures/benchmark/wear.png)", _precision_table(precisions)]
     return parts
 

@@ -44,6 +44,15 @@ class RatioRow:
     bar: float
     aim: float
 
+    @property
+    def is_least(self) -> bool:
+        """Whether more is better: the aim lies beyond the bar."""
+        return self.aim > self.bar
+
+    @property
+    def met(self) -> bool:
+        return self.ratio >= self.bar if self.is_least else self.ratio <= self.bar
+
 
 @dataclass(frozen=True)
 class ScalingSizes:

@@ -35,10 +35,10 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
 def _filled(page: Path, parts: dict[str, str]) -> str:
     text = page.read_text(encoding="utf-8")
     for name, part in parts.items():
-        mark = re.compile(rf"(<!-- begin {name}: [^\n]*? -->\n\n).*?(\n\n<!-- end -->)", re.DOTALL)
+        mark = re.compile(rf"(<!-- begin {name}: [^\n]*? -->\n\n)(?:.*?\n\n)??(<!-- end -->)", re.DOTALL)
         if (count := len(mark.findall(text))) != 1:
             raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {count} of them")
-        text = mark.sub(lambda found, part=part: found[1] + part + found[2], text)  # type: ignore[misc]
+        text = mark.sub(lambda found, part=part: f"{found[1]}{part}\n\n{found[2]}", text)  # type: ignore[misc]
     return text
 
 

@@ -1,5 +1,5 @@
-"""`python -m evidence.tutorial OUT PRINTED`: keeps what docs/tutorial.md shows of a run of demos/first_pair.toml at level
-quick, its folder and the file with what it has printed. Also the generated parts of that page."""
+"""`python -m evidence.tutorial OUT [PRINTED]`: keeps what docs/tutorial.md shows of a run of demos/first_pair.toml: its
+figures, and where a file with what it has printed is given, that and its pictures. Also the page's generated parts."""
 
 from __future__ import annotations
 
@@ -35,22 +35,28 @@ MACHINE = "  memory of this machine"
 class FigureRow:
     """A figure of summary.json at one friction coefficient, and its error bar (NaN: none)."""
 
+    level: str
     friction: float
     figure: str
     value: float
     bar: float
 
 
-def keep(out: Path, printed: Path, docs: Path) -> None:
-    """Figures and pictures of the run in `out`, and what it printed. Raises OSError."""
-    (docs / KEPT / "run.txt").write_text(printed.read_text(encoding="utf-8"), encoding="utf-8")
+def keep_figures(out: Path, docs: Path) -> None:
+    """Of the run in `out`, in place of those at the same mesh level. Raises OSError."""
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    level, path = summary["scene"]["mesh"]["level"], docs / KEPT / "figures.csv"
     rows = [
-        FigureRow(each["friction"], field.name, _number(each[field.name]), _number(each["estimated_error"][field.name]))
+        FigureRow(level, each["friction"], name, _number(each[name]), _number(each["estimated_error"][name]))
         for each in summary["frictions"]
-        for field in fields(FigureErrors)
+        for name in (field.name for field in fields(FigureErrors))
     ]
-    write_rows(docs / KEPT / "figures.csv", rows)
+    write_rows(path, [*rows, *(row for row in read_rows(path, FigureRow) if row.level != level)])
+
+
+def keep_pictures(out: Path, printed: Path, docs: Path) -> None:
+    """Of the run in `out`, and what it printed. Raises OSError."""
+    (docs / KEPT / "run.txt").write_text(printed.read_text(encoding="utf-8"), encoding="utf-8")
     for name in PICTURES:
         with Image.open(out / "pictures" / f"{name}.png") as image:
             small = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
@@ -58,16 +64,17 @@ def keep(out: Path, printed: Path, docs: Path) -> None:
 
 
 def figures(docs: Path) -> str:
-    """What the run found, with its error bars. Raises ValueError where no run was kept."""
+    """What the runs found, with their error bars. Raises ValueError where none was kept."""
     rows = read_rows(docs / KEPT / "figures.csv", FigureRow)
     if not rows:
         raise ValueError(f"{docs / KEPT}: wanted figures.csv, found none; `python -m evidence.tutorial OUT` writes it")
-    frictions = list(dict.fromkeys(row.friction for row in rows))
+    found = {(row.level, row.friction, row.figure): row for row in rows}
+    columns = sorted({(row.level, row.friction) for row in rows})
     lines = [
-        (f"`{name}`", *(_shown(row) for row in rows if row.figure == name))
+        (f"`{name}`", *(_shown(found[(*column, name)]) for column in columns))
         for name in dict.fromkeys(row.figure for row in rows)
     ]
-    head = ("`frictions` in summary.json", *(f"μ = {friction:g}" for friction in frictions))
+    head = ("`frictions` in summary.json", *(f"`{level}`, μ = {friction:g}" for level, friction in columns))
     return table(head, lines, right=range(1, len(head)))
 
 
@@ -97,4 +104,6 @@ def _number(value: float | None) -> float:
 
 
 if __name__ == "__main__":
-    keep(Path(sys.argv[1]), Path(sys.argv[2]), ROOT / "docs")
+    keep_figures(Path(sys.argv[1]), ROOT / "docs")
+    if len(sys.argv) > 2:
+        keep_pictures(Path(sys.argv[1]), Path(sys.argv[2]), ROOT / "docs")

@@ -117,7 +117,7 @@ class PositionRow:
     loss_percent: float
     """Friction power, of the input power."""
     newton_iterations: int
-    """Newton's, of this position."""
+    """Iterations of Newton's method at this position."""
     balance_error: float
     """Imbalance of the forces, or the power that the teeth store or give back over the input: the larger one. A run
     ends with status 3 above 0.1."""
@@ -160,9 +160,9 @@ class ErrorBars:
     """How error bars were estimated, or why there are none."""
 
     method: str
-    """How."""
+    """How they were estimated; empty where there are none."""
     missing: str | None
-    """Why there are none; null where there are."""
+    """Why there are none; null where there are some."""
 
 
 @dataclass(frozen=True)

@@ -80,7 +80,7 @@ def figures(docs: Path) -> str:
 
 def run(docs: Path) -> str:
     """What the run printed, as a block of a page."""
-    return f"```text\n{(docs / KEPT / 'run.txt').read_text(encoding='utf-8').strip()}\n```"
+    return f"```text\n{(docs / KEPT / 'run.txt').read_text(encoding='utf-8').rstrip()}\n```"
 
 
 def check(scene: Path) -> str:
@@ -91,7 +91,7 @@ def check(scene: Path) -> str:
 
 def scene_text(scene: Path) -> str:
     """The scene, as a block of a page."""
-    return f"```toml\n{scene.read_text(encoding='utf-8').strip()}\n```"
+    return f"```toml\n{scene.read_text(encoding='utf-8').rstrip()}\n```"
 
 
 def _shown(row: FigureRow) -> str:

@@ -26,7 +26,7 @@ from meshes.data import CELL_DIMENSION, Floats, Ints
 from solver.jit import compiling, form_directory, root_logger_kept
 from solver.petsc import PETSc  # before dolfinx, which would start it
 
-with root_logger_kept():  # FFCx, until 0.9, gives it a handler
+with root_logger_kept():  # FFCx 0.4 gives it a handler
     import dolfinx
     import dolfinx.fem.petsc
     from dolfinx import cpp, fem

@@ -1,8 +1,9 @@
 """Compiled forms: where FFCx keeps them, one process at a time, and without a word of the compiler's.
 
-FFCx (0.4 to 0.9) gives the root logger a handler when it is imported, and setuptools, by which it compiles, sets that
-logger to INFO and adds handlers where there are none (`setuptools.logging.configure`): every command of the compiler
-would be shown. An application's own logging is left as it is.
+FFCx 0.4 (Debian 12) gives the root logger a handler when it is imported, later ones exchange its handlers while they
+compile, and setuptools, by which they do, sets that logger to INFO and adds handlers where there are none
+(`setuptools.logging.configure`): every command of the compiler would be shown. An application's own logging is left as
+it is.
 """
 
 from __future__ import annotations
@@ -37,8 +38,7 @@ def root_logger_kept() -> Iterator[None]:
         yield
     finally:
         root.setLevel(level)
-        for handler in [added for added in root.handlers if added not in handlers]:
-            root.removeHandler(handler)
+        root.handlers[:] = handlers
 
 
 def form_directory(version: str) -> Path:

@@ -5,6 +5,7 @@ Each test is a process of its own with an empty cache, for what is imported or c
 
 from __future__ import annotations
 
+import logging
 import os
 import stat
 import subprocess
@@ -12,6 +13,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from solver.jit import root_logger_kept
 
 ROOT = Path(__file__).resolve().parents[1]
 NOWHERE = "/proc/nowhere"  # a home that nobody can write to, not even root
@@ -56,6 +59,23 @@ def test_an_application_logs_as_it_likes(before: bool, first: str, tmp_path: Pat
     if before or "dolfinx" not in first:
         assert done.stderr.split() == ["one", "two"]
     assert "gcc" not in done.stderr + done.stdout and "build" not in done.stderr + done.stdout
+
+
+def test_the_root_logger_is_kept_through_failures() -> None:
+    """A compilation that fails after it has exchanged the handlers, as FFCx 0.9's may: level and handlers are those of
+    before."""
+    root = logging.getLogger()
+    level, handlers = root.level, list(root.handlers)
+
+    @root_logger_kept()
+    def failing() -> None:
+        root.handlers = [logging.NullHandler()]
+        root.setLevel(1)
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        failing()
+    assert (root.level, root.handlers) == (level, handlers)
 
 
 def test_home_that_cannot_be_written(tmp_path: Path) -> None:

@@ -105,7 +105,7 @@ def run(
     no_skip: NoSkip = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the log file is written.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")] = False,
     petsc: Annotated[
         str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
     ] = None,

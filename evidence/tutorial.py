@@ -71,7 +71,7 @@ def figures(docs: Path) -> str:
     found = {(row.level, row.friction, row.figure): row for row in rows}
     columns = sorted({(row.level, row.friction) for row in rows})
     lines = [
-        (f"`{name}`", *(_shown(found[(*column, name)]) for column in columns))
+        (f"`{name}`", *(_shown(found.get((*column, name))) for column in columns))
         for name in dict.fromkeys(row.figure for row in rows)
     ]
     head = ("`frictions` in summary.json", *(f"`{level}`, μ = {friction:g}" for level, friction in columns))
@@ -94,7 +94,10 @@ def scene_text(scene: Path) -> str:
     return f"```toml\n{scene.read_text(encoding='utf-8').rstrip()}\n```"
 
 
-def _shown(row: FigureRow) -> str:
+def _shown(row: FigureRow | None) -> str:
+    """Value and bar; a run of before a figure was there has none."""
+    if row is None:
+        return "–"
     digits = max(0, 2 - math.floor(math.log10(abs(row.value)))) if row.value else 1
     return plus_minus(row.value, row.bar, min(digits, 2))
 

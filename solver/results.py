@@ -15,7 +15,6 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
@@ -79,6 +78,7 @@ class ToothRow:
 class PositionRow:
     """One position at one friction coefficient.
 
+    mesh_stiffness_N_per_mm_um, secant_stiffness_N_per_mm_um: see `mesh_stiffness` and `secant_stiffness`.
     max_pressure_MPa: the largest of the teeth's. tip_edge: whether a tooth bears on a tip edge, where pressure is
     singular. loss_percent: friction power of the input power. balance_error: see `gear_results.balance_error`.
     """
@@ -88,6 +88,8 @@ class PositionRow:
     torque_pinion_Nm: float
     torque_gear_Nm: float
     transmission_error_um: float
+    mesh_stiffness_N_per_mm_um: float
+    secant_stiffness_N_per_mm_um: float
     max_pressure_MPa: float
     tip_edge: bool
     loss_percent: float
@@ -102,10 +104,9 @@ class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
     crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
     max_pressure_MPa, mean_pressure_MPa: between the tip-edge zones, see `engagement.line_peak` and `line_mean`.
-    mesh_stiffness_N_per_mm_um: mean of the tangential force at the base circle over face width and transmission error
-    (a secant: modifications of the flanks soften it; NaN, null in JSON, where flanks are charted). balance_error: of
-    the pitch's energy, over the input; what positions store in deflected teeth cancels out. estimated_error: None where
-    there is none."""
+    mesh_stiffness_N_per_mm_um, secant_stiffness_N_per_mm_um: means over the pitch, see `mesh_stiffness` and
+    `secant_stiffness`. balance_error: of the pitch's energy, over the input; what positions store in deflected teeth
+    cancels out. estimated_error: None where there is none."""
 
     friction: float
     max_pressure_MPa: float
@@ -113,6 +114,7 @@ class FrictionRow:
     mean_pressure_MPa: float
     transmission_error_peak_to_peak_um: float
     mesh_stiffness_N_per_mm_um: float
+    secant_stiffness_N_per_mm_um: float
     loss_percent: float
     crossing_deg: float
     balance_error: float
@@ -134,6 +136,8 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
         torque_pinion_Nm=1e-3 * width * result.torques[0],
         torque_gear_Nm=1e-3 * width * result.torques[1],
         transmission_error_um=1e3 * result.transmission_error,
+        mesh_stiffness_N_per_mm_um=mesh_stiffness(run, solved),
+        secant_stiffness_N_per_mm_um=secant_stiffness(run, solved),
         max_pressure_MPa=float(np.nanmax([tooth.max_pressure_MPa for tooth in teeth])),
         tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
         loss_percent=loss_percent(solved),
@@ -172,7 +176,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         max_pressure_angle_deg=math.degrees(curve.angle[top]),
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
-        mesh_stiffness_N_per_mm_um=float(np.mean(mesh_stiffness(run, index))),
+        mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
+        secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
         balance_error=pitch_imbalance(results),
@@ -180,15 +185,19 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     )
 
 
-def mesh_stiffness(run: RunData, index: int) -> Floats:
-    """T_1/(r_b1 b) over the transmission error at each position (k,) [N/(mm·µm)]; c_γ of ISO 6336-1 is their mean. NaN
-    where a flank has a chart: what is worn off it is part of the transmission error, and gives way to nothing."""
+def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
+    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction (solver/mesh_stiffness.py);
+    its mean over the pitch is c_γ of ISO 6336-1. F: over face width and base radius, δ: transmission error."""
+    return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
+
+
+def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
+    """T_1/(r_b1 b) over the transmission error [N/(mm·µm)], in which modifications of the flanks count as deflection;
+    NaN where a flank has a chart, as there is no telling how much of the error is missing material."""
     if any(getattr(run.scene, name).flank_csv is not None for name in GEARS):
-        return np.full(len(run.positions), np.nan)
-    results = [each[index].result for each in run.positions]
-    force = np.array([result.torques[0] for result in results]) / run.pair.pinion.base_radius
-    error = 1e3 * np.array([result.transmission_error for result in results])
-    return np.asarray(force * run.width / run.pair.face_width / error)
+        return math.nan
+    force = run.width * solved.result.torques[0] / run.pair.pinion.base_radius / run.pair.face_width
+    return force / (1e3 * solved.result.transmission_error)
 
 
 def summary(run: RunData, facts: RunFacts) -> dict[str, object]:

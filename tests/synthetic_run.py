@@ -33,6 +33,7 @@ from solver.skips import is_plane
 from solver.surface import Surface, surface_of
 
 PEAK_TO_PEAK = 1.6e-3  # [mm] of the made-up transmission error
+STIFFNESS = 3e5  # [N/mm] along the line of action, over the whole face
 LAST_ROW = 0.3  # [mm of ξ] beside a tip edge that count as bearing on it
 WINDOW = 0.6  # [mm of arc] on either side of a contact line
 NO_STATE = SweepState((0.0, 0.0), ())
@@ -101,7 +102,7 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
     loss = float(np.sum(points.weights[:, None] * points.traction[:, 1:] * points.rate[:, 1:]))
     return PositionResult(
         stand, friction, (torque, pair.ratio * (torque - loss)), points, tooth, node, flank.weights()[node], traction,
-        5, 1e-9, 0.1,
+        5, 1e-9, STIFFNESS / (1.0 if d == 3 else pair.face_width), 0.1,
     )  # fmt: skip
 
 

@@ -35,14 +35,14 @@ class GearReport:
 
 @dataclass(frozen=True)
 class PairReport:
-    """The pair after some cycles; figures as in summary.json. No mesh stiffness, which is a secant there: it counts
-    wear as deflection."""
+    """The pair after some cycles; figures as in summary.json."""
 
     cycles: float
     pinion: GearReport
     wheel: GearReport
     max_pressure_MPa: float
     transmission_error_peak_to_peak_um: float
+    mesh_stiffness_N_per_mm_um: float
     loss_percent: float
     balance_error: float
 
@@ -73,7 +73,7 @@ class WornPair:
         row = friction_rows(self.run)[0]
         return PairReport(
             self.cycles, self._gear(0), self._gear(1), row.max_pressure_MPa, row.transmission_error_peak_to_peak_um,
-            row.loss_percent, row.balance_error,
+            row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
         )  # fmt: skip
 
     def _gear(self, gear: int) -> GearReport:

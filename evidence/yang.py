@@ -46,8 +46,8 @@ def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
     )
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near the pitch line, median", f"{np.median(peak[near]):.0f} MPa"
-    place, top = largest_peak(run, index)
-    yield "largest pressure between the tip-edge zones", f"{top:.0f} MPa at ξ = {place:.2f} mm"
+    top = largest_peak(run, index)
+    yield "largest pressure between the tip-edge zones", f"{top.pressure:.0f} MPa at ξ = {top.ξ:.2f} mm"
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Iterator[Line]:

@@ -15,8 +15,9 @@ from solver.estimated_errors import plus_minus
 from solver.estimates import hertz_estimate
 from solver.hertz import LoadFactors
 from solver.overview import paper_estimate
+from solver.plain_text import signed
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet, signed
+from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet
 from solver.results import FrictionRow, friction_rows, loss_percent
 from solver.run_data import RunData
 
@@ -232,7 +233,7 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
             "#c98a1b",
         ),
         ("computed near the\npitch line, median", float(np.median(peak[near])), PINION),
-        ("computed, largest", largest_peak(run, index)[1], PINION),
+        ("computed, largest", largest_peak(run, index).pressure, PINION),
     ]
     places = np.arange(len(rows))[::-1]
     axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)

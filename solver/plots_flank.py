@@ -15,7 +15,8 @@ from meshes.flank import contact_lines
 from solver.engagement import largest_peak
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import Slices
-from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, note, sheet, signed
+from solver.plain_text import signed
+from solver.plots_style import FAINT, INK, PRESSURE_MAP, friction_colours, note, sheet
 from solver.run_data import RunData, SolvedPosition
 
 FACE = "face width z [mm]"
@@ -135,10 +136,10 @@ def _diameters(axes: Axes, run: RunData) -> None:
 
 
 def _see_map(run: RunData, index: int) -> str:
-    ξ, top = largest_peak(run, index)
-    side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
-    where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(top) else "nowhere"
-    see = f"Between the tip-edge zones (dotted) the largest pressure, {top:.0f} MPa, comes {where}"
+    top = largest_peak(run, index)
+    side = "below the pitch line, towards the root" if top.ξ < 0 else "above the pitch line, towards the tip"
+    where = f"at ξ = {signed(top.ξ, 2)} mm, {side}" if np.isfinite(top.ξ) else "nowhere"
+    see = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
     return see + "; dashed: contact lines of rigid flanks."
 
 

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements
 from solver.estimated_errors import plus_minus
-from solver.plots_style import FAINT, INK, TEETH, friction_colours, note, sheet, signed
+from solver.plain_text import signed
+from solver.plots_style import FAINT, INK, TEETH, friction_colours, note, sheet
 from solver.run_data import RunData
 
 STRESS = "maximum contact stress [MPa]"

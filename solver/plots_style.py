@@ -80,11 +80,6 @@ def dot_size(count: int) -> float:
     return 3.0 if count > 400 else 7.0
 
 
-def signed(value: float, digits: int = 1) -> str:
-    """A number with its sign, a true minus."""
-    return f"{value:+.{digits}f}".replace("-", "−")
-
-
 def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:
     """A small remark inside the axes, at its upper left unless said otherwise."""
     axes.text(x, y, text, transform=axes.transAxes, va="top", ha="left", fontsize=9, color="#444444")

@@ -18,8 +18,10 @@ import numpy as np
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
+from solver.mesh_facts import MeshFacts
 from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
+from solver.run_warnings import warnings_of
 from solver.scene import GEARS
 from solver.skips import Skipped
 
@@ -35,14 +37,6 @@ class Timings:
     error_bars: float = 0.0
     output: float = 0.0
     total: float = 0.0
-
-
-@dataclass(frozen=True)
-class MeshFacts:
-    """Smallest scaled Jacobian of both sectors [-] and elements across the contact width 2b, measured."""
-
-    min_scaled_jacobian: float
-    cells_across_contact_width: float
 
 
 @dataclass(frozen=True)
@@ -103,7 +97,8 @@ class PositionRow:
 class FrictionRow:
     """A pitch at one friction coefficient. crossing_deg: the tooth's rotation at which its curve of maximum pressure
     crosses that of the smallest coefficient (None: it does not); 0 is the pitch point at mid-face.
-    max_pressure_MPa, mean_pressure_MPa: between the tip-edge zones, see `engagement.line_peak` and `line_mean`.
+    max_pressure_MPa, mean_pressure_MPa: between the tip-edge zones, see `engagement.line_peak` and `line_mean`;
+    max_pressure_at_zone_end: the maximum lies where such a zone begins, so that its size is a matter of where that is.
     mesh_stiffness_N_per_mm_um, secant_stiffness_N_per_mm_um: means over the pitch, see `mesh_stiffness` and
     `secant_stiffness`. balance_error: of the pitch's energy, over the input; what positions store in deflected teeth
     cancels out. estimated_error: None where there is none."""
@@ -111,6 +106,7 @@ class FrictionRow:
     friction: float
     max_pressure_MPa: float
     max_pressure_angle_deg: float
+    max_pressure_at_zone_end: bool
     mean_pressure_MPa: float
     transmission_error_peak_to_peak_um: float
     mesh_stiffness_N_per_mm_um: float
@@ -155,7 +151,7 @@ def loss_percent(solved: SolvedPosition) -> float:
 
 def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
     length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
-    return ToothRow(tooth.tooth, tooth.force * run.width, peak, length, tooth.edge_pressure)
+    return ToothRow(tooth.tooth, tooth.force * run.width, peak.pressure, length, tooth.edge_pressure)
 
 
 def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
@@ -174,6 +170,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         friction=curve.friction,
         max_pressure_MPa=float(curve.max_pressure[top]),
         max_pressure_angle_deg=math.degrees(curve.angle[top]),
+        max_pressure_at_zone_end=bool(curve.at_zone_end[top]),
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
@@ -186,8 +183,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
 
 
 def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction (solver/mesh_stiffness.py);
-    its mean over the pitch is c_γ of ISO 6336-1. F: over face width and base radius, δ: transmission error."""
+    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction, see mesh_stiffness.py;
+    its mean over the pitch is c_γ of ISO 6336-1. F: torque over base radius and face width, δ: transmission error."""
     return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
 
 
@@ -205,6 +202,7 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
     return {
         "scene": run.scene.model_dump(mode="json"),
         **asdict(facts),
+        "warnings": list(warnings_of(run, facts.mesh)),
         "estimated_error": {"method": run.errors.method, "missing": run.errors.missing or None},
         "frictions": [asdict(row) for row in friction_rows(run)],
         "positions": [asdict(row) for row in position_rows(run)],

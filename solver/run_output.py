@@ -7,8 +7,6 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from meshes.errors import ResultError
 from meshes.quality import scaled_jacobians
 from solver import compat
@@ -20,11 +18,13 @@ from solver.fields import write_fields
 from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
-from solver.results import MeshFacts, RunFacts, Timings, write_tables
+from solver.mesh_facts import MeshFacts, cells_across
+from solver.results import RunFacts, Timings, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
 from solver.run_start import Meshes, keep_scene
+from solver.run_warnings import warnings_of
 from solver.scene import Scene
 from solver.skips import skipped, wanted_output
 
@@ -82,6 +82,8 @@ def write_output(
     write(started)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
     write(started)  # with the time that pictures took
+    for sentence in warnings_of(data, mesh_facts(data, sweep.meshes)):
+        log.warning(sentence)
     log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
 
 
@@ -110,18 +112,16 @@ def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory
         ranks=ranks,
         dofs=sum(mesh.points.shape[0] * mesh.dimension for mesh in meshes),
         cells=sum(len(mesh.cells) for mesh in meshes),
-        mesh=MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), _cells_across(data)),
+        mesh=mesh_facts(data, meshes),
         skipped=skipped(data.scene),
         timings_s=timings,
         peak_memory_MB=memory,
     )
 
 
-def _cells_across(data: RunData) -> float:
-    """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
-    widths = np.concatenate([2.0 * solved.cut.half_width for each in data.positions for solved in each])
-    arc = np.unique(np.round(data.flank.roll_length**2 / (2.0 * data.pair.pinion.base_radius), 7))
-    return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
+def mesh_facts(data: RunData, meshes: Meshes) -> MeshFacts:
+    """Of a run's meshes."""
+    return MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), cells_across(data))
 
 
 def certify(results: Iterable[PositionResult]) -> None:

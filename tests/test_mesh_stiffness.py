@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -61,9 +60,9 @@ def row_of(*settings: str) -> FrictionRow:
 
 
 def test_relief_is_no_compliance() -> None:
-    """Problem: He's pair under a tenth of its load as designed, and with relief from below the pitch circles on, so that
-    all of the path of contact lacks 10 µm and more. What bears is as stiff as before, 18.0 N/(mm·µm), but for which
-    teeth do; the secant counts what is missing as deflection: 0.55."""
+    """Problem: He's pair under a tenth of its load as designed, and with relief from below the pitch circles on, so
+    that all of the path of contact lacks material. What bears is as stiff as before, 18.0 N/(mm·µm); the secant counts
+    what is missing as deflection: 0.55."""
     plain, relieved = row_of("load.torque_Nm=17"), row_of("load.torque_Nm=17", *RELIEF)
     assert plain.mesh_stiffness_N_per_mm_um == pytest.approx(1.03 * plain.secant_stiffness_N_per_mm_um, rel=0.01)
     assert relieved.mesh_stiffness_N_per_mm_um == pytest.approx(plain.mesh_stiffness_N_per_mm_um, rel=0.01)
@@ -82,8 +81,8 @@ def test_worn_flanks_have_a_stiffness(tmp_path: Path) -> None:
 
 
 def test_the_load_does_not_matter_much(model: GearModel) -> None:
-    """Hertz contact hardens with the logarithm of the load: a tangent under ten times the torque is larger, by less than
-    half, where teeth bend most."""
+    """A Hertz contact hardens with the logarithm of its load: under three times the torque the tangent is larger, but
+    by less than half, for teeth bend more than they flatten."""
     place = shared_position(model, 0.02, (0.0, 0.0), [0.0], None)
     less = shared_position(with_load(model, 0.3 * model.load.torque, model.load.on), 0.02, (0.0, 0.0), [0.0], None)
     assert less.stiffness < place.stiffness < 1.5 * less.stiffness

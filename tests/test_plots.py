@@ -13,9 +13,10 @@ from synthetic_run import synthetic_run
 from test_results import store
 
 from solver.display import off_screen
+from solver.plain_text import signed
 from solver.plots import figures, pictures
 from solver.plots_flank import at_point, envelope, paper_points, paper_position
-from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, signed, styled
+from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, styled
 from solver.results import friction_rows
 from solver.run_data import RunData
 from solver.run_plot import plot_folder

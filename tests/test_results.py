@@ -13,7 +13,8 @@ from synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
 from solver.archive import Archive
 from solver.gear_sweep import SweepState, SweptPosition
-from solver.results import MeshFacts, RunFacts, Timings, friction_rows, position_rows, summary, write_tables
+from solver.mesh_facts import MeshFacts
+from solver.results import RunFacts, Timings, friction_rows, position_rows, summary, write_tables
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
 

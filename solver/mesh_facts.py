@@ -1,0 +1,28 @@
+"""How good a run's mesh was: its cells, and how many of them the contact is wide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.run_data import RunData
+
+SAME = 1e-6  # [mm] of height within which nodes are of one row
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """Smallest scaled Jacobian of both sectors [-] and elements across the contact width 2b, measured."""
+
+    min_scaled_jacobian: float
+    cells_across_contact_width: float
+
+
+def cells_across(run: RunData) -> float:
+    """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
+    widths = np.concatenate([2.0 * solved.cut.half_width for each in run.positions for solved in each])
+    known, flank = widths[np.isfinite(widths)], run.flank
+    row = flank.z <= flank.z.min() + SAME
+    arc = flank.roll_length[row] ** 2 / (2.0 * run.pair.pinion.base_radius)
+    elements = (int(row.sum()) - 1) / run.scene.mesh.order
+    return float(np.median(known) * elements / np.ptp(arc)) if len(known) else float("nan")

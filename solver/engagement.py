@@ -142,6 +142,19 @@ def largest_peak(run: RunData, index: int) -> LinePeak:
     return max((peak for peak in found if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
 
 
+def pooled_peaks(cut: Slices) -> Floats:
+    """The fitted peaks (n,) [MPa] of a position's slices as `line_peak` takes them, pooled with their neighbours on the
+    line; NaN where there is none."""
+    peaks = np.full(len(cut.peak), np.nan)
+    for tooth in np.unique(cut.tooth):
+        line = np.flatnonzero((cut.tooth == tooth) & has_peak(cut))
+        line = line[np.argsort(cut.ξ[line])]
+        if len(line) == 0:
+            continue
+        peaks[line] = _over_hertz(cut, line) * cut.hertz[line]
+    return peaks
+
+
 def _over_hertz(cut: Slices, fitted: Ints) -> Floats:
     """Fitted peaks (m,) of the slices along a line over Hertz's for their loads, each slice pooled with its neighbours
     in parts of 1, 2, 1.

@@ -1,4 +1,8 @@
-"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10)."""
+"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10).
+
+Where the contact is fewer than two elements wide, peaks scatter with the way it lies in the cells. Then the pictures
+say so and show points as computed, and the running median of five of them as a line.
+"""
 
 from __future__ import annotations
 
@@ -12,18 +16,16 @@ from matplotlib.figure import Figure
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements
 from solver.estimated_errors import plus_minus
+from solver.mesh_facts import cells_across
 from solver.plain_text import signed
-from solver.plots_style import FAINT, INK, TEETH, friction_colours, note, sheet
+from solver.plots_style import FAINT, INK, TEETH, friction_colours, sheet
+from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
+from solver.scene_warnings import FEWEST_CELLS
 
 STRESS = "maximum contact stress [MPa]"
 OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
-NAMES = {
-    1: "tooth 1 (ahead, leaves the mesh)",
-    0: "tooth 2 (through the pitch point)",
-    -1: "tooth 3 (enters, near the root)",
-}
-"""The paper's three teeth as this run's tooth pairs over the pitch from φ = 0."""
+MEDIAN = 5  # positions that the running median takes where the mesh does not resolve the contact
 
 
 def engagement_stress(run: RunData) -> Figure:
@@ -31,11 +33,12 @@ def engagement_stress(run: RunData) -> Figure:
     curves = engagements(run)
     cross = _crossing_deg(curves)
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
-    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 5.6))
+    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 6.2))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
+    _zone_ends(main, _lowest(curves))
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.4, 0.99)
+    main.set_title(f"between the tip-edge zones, ξ = {low} to {high} mm{_resolved(run)}", fontsize=9, loc="left")
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -43,7 +46,7 @@ def engagement_stress(run: RunData) -> Figure:
     largest = np.nanmax(_lowest(curves).max_pressure) + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
     main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
-    main.legend(loc="lower center", bbox_to_anchor=(0.5, 0.09), ncols=4)
+    main.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
         detail.set_title(
@@ -54,17 +57,18 @@ def engagement_stress(run: RunData) -> Figure:
 
 
 def tooth_stress(run: RunData) -> Figure:
-    """Teeth 1, 2 and 3 over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
+    """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(curves)
-    figure = sheet("Contact stress of teeth 1, 2 and 3 over a pitch of pinion rotation", see, (11.6, 6.6))
-    grid = figure.subplots(2, 3, sharex=True, height_ratios=(1.5, 1.0))
-    for column, tooth in enumerate(NAMES):
+    see = _see_teeth(run, curves)
+    figure = sheet(f"Contact stress of the teeth over a pitch of pinion rotation{_resolved(run)}", see, (11.6, 6.6))
+    teeth = shown_teeth(run, curves)
+    grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
+    for column, tooth in enumerate(teeth):
         top, below = grid[0, column], grid[1, column]
         members = [c.tooth == tooth for c in curves]
         _curves(top, run, curves, members, tooth)
         _change(below, run, curves, members, tooth)
-        top.set_title(NAMES[tooth], fontsize=10)
+        top.set_title(long_name(run, tooth), fontsize=10)
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
@@ -73,16 +77,17 @@ def tooth_stress(run: RunData) -> Figure:
 
 
 def friction_trend(run: RunData) -> Figure:
-    """Average and maximum contact stress of teeth 1, 2, 3 over μ, and their changes (Fig. 10)."""
+    """Average and maximum contact stress of the teeth over μ, and their changes (Fig. 10)."""
     curves = sorted(engagements(run), key=lambda c: c.friction)
-    found, μ = trends(curves), [c.friction for c in curves]
-    changes = ", ".join(f"tooth {2 - t.tooth} {signed(100 * (t.largest[-1] / t.largest[0] - 1))} %" for t in found)
+    found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
+    each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
+    changes = ", ".join(f"{name} {signed(change)} %" for name, change in each)
     see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
     figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
-    for trend, colour, marker in zip(found, TEETH, "osD"):
+    for trend, colour, marker in zip(found, TEETH, "osD^"):
         for column, values in enumerate((trend.average, trend.largest)):
-            grid[0, column].plot(μ, values, color=colour, marker=marker, label=NAMES[trend.tooth])
+            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
             grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
     for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
         grid[0, column].set_title(title, fontsize=10)
@@ -102,7 +107,45 @@ def _curves(
     """Maximum pressure over rotation; over the pinion's own φ where one tooth is picked out."""
     for curve, here, colour in zip(curves, members, friction_colours(run.frictions)):
         x, y = _shown(run, curve, here, tooth)
-        axes.plot(x, y, color=colour, marker=".", markersize=3.0, label=f"μ = {curve.friction:g}")
+        label = f"μ = {curve.friction:g}"
+        if not few_cells_across(run):
+            axes.plot(x, y, color=colour, marker=".", markersize=3.0, label=label)
+            continue
+        axes.plot(x, y, color=colour, marker=".", markersize=4.0, linestyle="", alpha=0.45)
+        axes.plot(x, running_median(y), color=colour, label=label)
+
+
+def few_cells_across(run: RunData) -> bool:
+    """Whether the mesh does not resolve the contact."""
+    return not cells_across(run) >= FEWEST_CELLS
+
+
+def _resolved(run: RunData) -> str:
+    """What the title adds where it does not."""
+    if not few_cells_across(run):
+        return ""
+    return f"; {cells_across(run):.1f} elements across: points as computed, lines their median of {MEDIAN}"
+
+
+def running_median(values: Floats) -> Floats:
+    """Of `MEDIAN` values (n,) about each, fewer at the ends; NaN stays."""
+    known = np.flatnonzero(np.isfinite(values))
+    reach, found = MEDIAN // 2, np.full(len(values), np.nan)
+    for place, index in enumerate(known):
+        span = min(reach, place, len(known) - 1 - place)  # as many on either side: an end keeps its own value
+        found[index] = np.median(values[known[place - span : place + span + 1]])
+    return found
+
+
+def _zone_ends(axes: Axes, curve: Engagement) -> None:
+    """Shades the rotations at which the maximum lies where a tip-edge zone begins."""
+    step = np.degrees(np.diff(curve.angle).min(initial=np.inf)) if len(curve.angle) > 1 else 0.0
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], curve.at_zone_end.astype(int), [0]])))
+    label = "largest where a tip-edge zone begins: rises further in"
+    for first, last in edges.reshape(-1, 2):
+        low, high = np.degrees(curve.angle[first]) - 0.5 * step, np.degrees(curve.angle[last - 1]) + 0.5 * step
+        axes.axvspan(low, high, color=FAINT, alpha=0.13, linewidth=0.0, label=label)
+        label = ""
 
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
@@ -117,7 +160,8 @@ def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Seq
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         angle, change = relative_change(curve, lowest, curve.tooth == tooth)
-        axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * change, color=colour)
+        shown = running_median(change) if few_cells_across(run) else change
+        axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * shown, color=colour)
 
 
 def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> tuple[Floats, Floats]:
@@ -126,12 +170,6 @@ def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> 
     _, first, second = np.intersect1d(key[here], np.round(lowest.angle, 9), return_indices=True)
     mine = np.flatnonzero(here)[first]
     return curve.angle[mine], curve.max_pressure[mine] / lowest.max_pressure[second] - 1.0
-
-
-def present(curves: Sequence[Engagement]) -> list[int]:
-    """Which of the three teeth have a contact stress in this pitch."""
-    pressures = [(c.tooth, pressure) for c in curves for pressure in (c.max_pressure, c.mean_pressure)]
-    return [t for t in NAMES if all(np.isfinite(pressure[tooth == t]).any() for tooth, pressure in pressures)]
 
 
 def _lowest(curves: Sequence[Engagement]) -> Engagement:
@@ -166,11 +204,11 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
-    for tooth in NAMES:
+    for tooth in shown_teeth(run, [curve]):
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
         if right - left > 0.3 * pitch:
             across = axes.get_xaxis_transform()
-            axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=across, ha="center", fontsize=9)
+            axes.text(0.5 * (left + right), 0.03, short_name(run, tooth), transform=across, ha="center", fontsize=9)
 
 
 def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
@@ -196,15 +234,15 @@ def _see_engagement(curves: Sequence[Engagement], cross: float, bar: float) -> s
     return f"{peak}; {means}; {where}."
 
 
-def _see_teeth(curves: Sequence[Engagement]) -> str:
+def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
     if len(curves) == 1:
         return f"One friction coefficient, μ = {curves[0].friction:g}."
     lowest, highest = _lowest(curves), _highest(curves)
     parts = []
-    for tooth in present(curves):
+    for tooth in shown_teeth(run, curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
         low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
-        parts.append(f"tooth {2 - tooth} {low} to {high} %")
+        parts.append(f"{short_name(run, tooth)} {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
 
 
@@ -217,13 +255,13 @@ class Trend:
     largest: Floats
 
 
-def trends(curves: Sequence[Engagement]) -> list[Trend]:
-    """Of the three teeth; the average is along the contact line, then over the positions."""
+def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
+    """Of these teeth; the average is along the contact line, then over the positions."""
     return [
         Trend(
             tooth,
             np.array([np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]),
             np.array([np.nanmax(c.max_pressure[c.tooth == tooth]) for c in curves]),
         )
-        for tooth in present(curves)
+        for tooth in teeth
     ]

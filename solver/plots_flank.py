@@ -78,24 +78,26 @@ def _envelope_map(axes: Axes, run: RunData, index: int, top: float) -> QuadMesh:
     shown = axes.pcolormesh(z, ξ, fine, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="nearest", rasterized=True)
     levels = MaxNLocator(8).tick_values(np.nanmin(peak), np.nanmax(peak))
     lines = axes.contour(z, ξ, fine, levels=levels, colors="white", linewidths=0.7)
-    axes.clabel(lines, fmt="%.0f", fontsize=8, manual=_label_places(lines, 0.3 * run.pair.face_width))
+    axes.clabel(lines, fmt="%.0f", fontsize=8, manual=_label_places(lines, run))
     angle = run.angles[0]
     for tooth in range(-3, 4):
         _nominal_lines(axes, run, angle + tooth * run.pitch / 3.0, only=0)
     return shown
 
 
-def _label_places(lines: ContourSet, reach: float) -> list[tuple[float, float]]:
-    """A place (z, ξ) for the label of each level whose longest line comes within `reach` [mm] of mid-face, where that
-    comes nearest to it; lines shorter than two millimetres have none."""
-    places = []
+def _label_places(lines: ContourSet, run: RunData) -> list[tuple[float, float]]:
+    """A place (z, ξ) for the label of each level where its longest line comes nearest to mid-face; none where that is
+    in the outer fifths of the face or near the tip-edge zones, nor for short lines."""
+    places, reach = [], 0.3 * run.pair.face_width
+    low, high = run.inner_path
+    margin = 0.06 * (high - low)
     for segments in lines.allsegs:
         lengths = [float(np.hypot(*np.diff(segment, axis=0).T).sum()) for segment in segments]
-        if not lengths or max(lengths) < 2.0:
+        if not lengths or max(lengths) < reach:
             continue
         points = segments[int(np.argmax(lengths))]
         nearest = points[np.argmin(np.abs(points[:, 0]))]
-        if abs(nearest[0]) <= reach:
+        if abs(nearest[0]) <= reach and low + margin < nearest[1] < high - margin:
             places.append((float(nearest[0]), float(nearest[1])))
     return places
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from meshes.parameters import GearPair
-from solver.engagement import engagement, pooled_peaks
+from solver.engagement import pooled_peaks
 from solver.gear_results import Slices
 from solver.plain_text import signed
 from solver.plots_flank import FACE, envelope
@@ -40,12 +40,10 @@ def has_lines(run: RunData) -> bool:
 
 
 def telling_position(run: RunData) -> int:
-    """The position to look at: the study's, or that of the largest pressure at the smallest friction coefficient."""
+    """The position to look at: the study's, or the one at which most slices of all lines have a fitted peak."""
     if compares_yang(run.scene):
         return paper_position(run)
-    curve = engagement(run, int(np.argmin(run.frictions)))
-    known = np.isfinite(curve.max_pressure)
-    return int(curve.position[known][np.argmax(curve.max_pressure[known])]) if known.any() else 0
+    return int(np.argmax([np.isfinite(each[0].cut.peak).sum() for each in run.positions]))
 
 
 def _teeth_at(run: RunData, k: int) -> list[int]:
@@ -66,9 +64,10 @@ def line_pressure_over_z(run: RunData) -> Figure:
         for solved, colour in zip(run.positions[k], friction_colours(run.frictions)):
             z, _, peak = line_of(solved.cut, tooth)
             ax.plot(z, peak, color=colour, label=f"μ = {solved.result.friction:g}")
-        for name, place in _marks(run, k, tooth):
+        for number, (name, place) in enumerate(_marks(run, k, tooth)):
             ax.axvline(place, color=FAINT, linestyle=":", linewidth=1.0)
-            ax.text(place, 0.97, name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
+            height = 0.97 - 0.05 * (number % 2)  # points may lie close together
+            ax.text(place, height, name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
         ax.set_title(short_name(run, tooth), fontsize=10)
         ax.set(xlabel=FACE, xlim=(-0.5 * run.pair.face_width, 0.5 * run.pair.face_width))
     axes[0].set_ylabel("peak pressure across the line [MPa]")
@@ -185,7 +184,7 @@ def _see_lines(run: RunData, k: int, teeth: Sequence[int]) -> str:
     for tooth in teeth:
         _, _, peak = line_of(run.positions[k][lowest].cut, tooth)
         _, _, other = line_of(run.positions[k][highest].cut, tooth)
-        change = f", {signed(100 * (other.mean() / peak.mean() - 1))} % on average" if highest != lowest else ""
+        change = f" ({signed(100 * (other.mean() / peak.mean() - 1))} %)" if highest != lowest else ""
         texts.append(f"{short_name(run, tooth)} {peak.min():.0f} to {peak.max():.0f} MPa{change}")
-    ends = f"μ = {run.frictions[lowest]:g}" + (f", and to {run.frictions[highest]:g}" if highest != lowest else "")
-    return f"At {ends}: " + "; ".join(texts) + "."
+    more = f" (and the mean change to μ = {run.frictions[highest]:g})" if highest != lowest else ""
+    return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

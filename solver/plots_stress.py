@@ -35,10 +35,11 @@ def engagement_stress(run: RunData) -> Figure:
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
     figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 6.2))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
-    _zone_ends(main, _lowest(curves))
+    _zone_ends(main, run, _lowest(curves))
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    main.set_title(f"between the tip-edge zones, ξ = {low} to {high} mm{_resolved(run)}", fontsize=9, loc="left")
+    about = f"between the tip-edge zones, ξ = {low} to {high} mm; shaded: largest where one begins, rises further in"
+    main.set_title("\n".join([about, *_resolved(run)]), fontsize=9, loc="left")
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -59,8 +60,8 @@ def engagement_stress(run: RunData) -> Figure:
 def tooth_stress(run: RunData) -> Figure:
     """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(run, curves)
-    figure = sheet(f"Contact stress of the teeth over a pitch of pinion rotation{_resolved(run)}", see, (11.6, 6.6))
+    see = " ".join([_see_teeth(run, curves), *_resolved(run)])
+    figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", see, (11.6, 6.6))
     teeth = shown_teeth(run, curves)
     grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
     for column, tooth in enumerate(teeth):
@@ -120,11 +121,11 @@ def few_cells_across(run: RunData) -> bool:
     return not cells_across(run) >= FEWEST_CELLS
 
 
-def _resolved(run: RunData) -> str:
-    """What the title adds where it does not."""
+def _resolved(run: RunData) -> list[str]:
+    """What is to be said where it does not."""
     if not few_cells_across(run):
-        return ""
-    return f"; {cells_across(run):.1f} elements across: points as computed, lines their median of {MEDIAN}"
+        return []
+    return [f"Only {cells_across(run):.1f} elements across the contact: points as computed, lines medians of {MEDIAN}."]
 
 
 def running_median(values: Floats) -> Floats:
@@ -137,15 +138,15 @@ def running_median(values: Floats) -> Floats:
     return found
 
 
-def _zone_ends(axes: Axes, curve: Engagement) -> None:
+def _zone_ends(axes: Axes, run: RunData, curve: Engagement) -> None:
     """Shades the rotations at which the maximum lies where a tip-edge zone begins."""
-    step = np.degrees(np.diff(curve.angle).min(initial=np.inf)) if len(curve.angle) > 1 else 0.0
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], curve.at_zone_end.astype(int), [0]])))
-    label = "largest where a tip-edge zone begins: rises further in"
+    step = np.degrees(run.pitch) / len(run.positions)
+    there = curve.at_zone_end.astype(float)
+    there = running_median(there) if few_cells_across(run) else there
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], (there > 0.5).astype(int), [0]])))
     for first, last in edges.reshape(-1, 2):
         low, high = np.degrees(curve.angle[first]) - 0.5 * step, np.degrees(curve.angle[last - 1]) + 0.5 * step
-        axes.axvspan(low, high, color=FAINT, alpha=0.13, linewidth=0.0, label=label)
-        label = ""
+        axes.axvspan(low, high, color=FAINT, alpha=0.13, linewidth=0.0)
 
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
@@ -199,14 +200,14 @@ def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: floa
 
 def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
     """Marks the rotations at which the next tooth pair comes to the same place, and names the teeth."""
-    low, high = np.degrees(curve.angle[0]), np.degrees(curve.angle[-1])
+    low, high = np.degrees(curve.angle[np.isfinite(curve.max_pressure)][[0, -1]])
     pitch = np.degrees(run.pitch)
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
     for tooth in shown_teeth(run, [curve]):
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
-        if right - left > 0.3 * pitch:
+        if right - left > 0.35 * pitch:
             across = axes.get_xaxis_transform()
             axes.text(0.5 * (left + right), 0.03, short_name(run, tooth), transform=across, ha="center", fontsize=9)
 

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.textpath import TextPath
 
 from meshes.files import write_bytes
 
@@ -21,8 +22,6 @@ PINION_BODY, WHEEL_BODY = "#7d9cc4", "#cf8a7f"
 TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b", "#2d6fb0")
 """Tooth pairs, the one ahead first."""
 INK, FAINT = "#222222", "#8a8f98"
-CHARACTER = 0.0700
-"""Mean width [inch] of a character of 10 points."""
 OVER = "#1f6fd0"
 """Beyond the upper end of a colour scale."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
@@ -67,8 +66,8 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
     )  # fmt: skip
-    fitting = (size[0] - 0.3) / (CHARACTER * max(1, len(see)))
-    see_size = 10.0 * min(1.0, fitting)
+    width = TextPath((0.0, 0.0), see, size=10.0).get_extents().width / 72.0 if see else 0.0
+    see_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
     figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
     return figure
 

@@ -16,7 +16,7 @@ from solver.engagement import pooled_peaks
 from solver.gear_results import Slices
 from solver.plain_text import signed
 from solver.plots_flank import FACE, envelope
-from solver.plots_style import FAINT, friction_colours, note, sheet
+from solver.plots_style import FAINT, friction_colours, sheet
 from solver.plots_teeth import compares_yang, short_name
 from solver.plots_yang import Point, has_two_lines, paper_points, paper_position
 from solver.run_data import RunData
@@ -73,7 +73,7 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
-    note(axes[0], "nothing is drawn where the\nline bears on a tip edge", 0.02, 0.12)
+    axes[0].set_title("nothing is drawn where a line bears on a tip edge", fontsize=9, loc="left", y=-0.2)
     return figure
 
 
@@ -182,9 +182,9 @@ def _see_lines(run: RunData, k: int, teeth: Sequence[int]) -> str:
     lowest, highest = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     texts = []
     for tooth in teeth:
-        _, _, peak = line_of(run.positions[k][lowest].cut, tooth)
-        _, _, other = line_of(run.positions[k][highest].cut, tooth)
-        change = f" ({signed(100 * (other.mean() / peak.mean() - 1))} %)" if highest != lowest else ""
+        (z, _, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
+        _, mine, its = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
+        change = f" ({signed(100 * (other[its].mean() / peak[mine].mean() - 1))} %)" if highest != lowest else ""
         texts.append(f"{short_name(run, tooth)} {peak.min():.0f} to {peak.max():.0f} MPa{change}")
     more = f" (and the mean change to μ = {run.frictions[highest]:g})" if highest != lowest else ""
     return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

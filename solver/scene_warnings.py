@@ -30,4 +30,4 @@ def _expected(scene: Scene) -> Iterator[str]:
 
 def few_cells() -> str:
     """What fewer cells than `FEWEST_CELLS` mean."""
-    return f"below {FEWEST_CELLS:g}, peak pressures are off by 15 % and more and for looking only: {FINER}."
+    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for looking only: {FINER}."

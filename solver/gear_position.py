@@ -45,7 +45,9 @@ class PositionResult:
     of width in 2D]. contact: at the quadrature points. Averages at the n nodes of the pinion's flanks within the
     window, for pictures: tooth, node (n,), weights m (n,) [mm²; mm] and traction (n, d) λ, τ [MPa], Σ m t the whole
     force. iterations: Newton's, all stages. residual: relative force residual. stiffness: tangent of the frictionless
-    mesh along the line of action [N/mm; per mm of width in 2D], see solver/mesh_stiffness.py.
+    mesh along the line of action [N/mm; per mm of width in 2D], see solver/mesh_stiffness.py. pinion_rows, wheel_rows:
+    (m, 2) rows of the gears' chains that carry load, and pinion_forces, wheel_forces (m, d) what it is, in the gears'
+    frames [N; per mm of width in 2D].
     """
 
     stand: Stand
@@ -59,6 +61,10 @@ class PositionResult:
     iterations: int
     residual: float
     stiffness: float
+    pinion_rows: Ints
+    wheel_rows: Ints
+    pinion_forces: Floats
+    wheel_forces: Floats
     seconds: float = 0.0
 
     @property
@@ -284,6 +290,7 @@ def position_result(
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
     weights, traction = contact.operator.averaged(found.traction)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
+    (pinion_rows, pinion_forces), (wheel_rows, wheel_forces) = (_carried(contact, gear, found) for gear in (0, 1))
     return PositionResult(
         stand=stand,
         friction=friction,
@@ -296,4 +303,15 @@ def position_result(
         iterations=found.iterations + (extra_iterations if model.has_friction_terms(friction) else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
         stiffness=stiffness,
+        pinion_rows=pinion_rows,
+        wheel_rows=wheel_rows,
+        pinion_forces=pinion_forces,
+        wheel_forces=wheel_forces,
     )
+
+
+def _carried(contact: GearContact, gear: int, found: Equilibrium) -> tuple[Ints, Floats]:
+    """Rows (m, 2) of a gear's chain that carry load, and the forces (m, d) on them."""
+    rows, forces = contact.rows(gear)[0], contact.pushed(gear, found.force)
+    loaded = forces.any(axis=1)
+    return rows[loaded], forces[loaded]

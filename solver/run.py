@@ -11,12 +11,13 @@ from mpi4py import MPI
 from solver import compat
 from solver.archive import Archive
 from solver.companion import companion_of
+from solver.deformation import deformation_of
 from solver.parallel import on_first
 from solver.run_checks import check_folder, others
 from solver.run_folder import RunFolder
 from solver.run_lock import locked
 from solver.run_log import logged
-from solver.run_output import peak_memory_MB, write_output
+from solver.run_output import Companions, peak_memory_MB, write_output
 from solver.run_start import continued, kept_start
 from solver.run_sweep import pitch_of, sweep_scene
 from solver.run_wear import wear_scene, write_wear
@@ -66,8 +67,10 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
             sweep = wear_scene(scene, Archive(out, scene), resume, comm, quiet, log)
         archive, pitch = Archive(out, scene), pitch_of(scene)
         companion = companion_of(scene, archive, pitch, comm) if wanted_output(scene).error_bars else None
+        deformation = deformation_of(scene, archive, comm) if wanted_output(scene).deformation else None
         memory = comm.allreduce(peak_memory_MB())
-        on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
+        more = Companions(companion, deformation)
+        on_first(comm, lambda: write_output(scene, archive, sweep, more, comm.size, begin, memory, log))
         if scene.wear is not None:
             on_first(comm, lambda: write_wear(scene, out, log))
         on_first(comm, RunFolder(out).remove_parts)

@@ -12,6 +12,7 @@ from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
 from solver.companion import Companion
+from solver.deformation import Deformation
 from solver.draw import Drawn, draw
 from solver.error_bars import with_errors
 from solver.fields import write_fields
@@ -54,6 +55,14 @@ class Sweep:
     timings: Timings
 
 
+@dataclass(frozen=True)
+class Companions:
+    """What was solved beside a run: its coarse companion and the insides of its teeth, None where not asked for."""
+
+    coarse: Companion | None
+    deformation: Deformation | None
+
+
 def timings_of(preparation: Preparation) -> Timings:
     """What preparing took."""
     parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
@@ -61,7 +70,7 @@ def timings_of(preparation: Preparation) -> Timings:
 
 
 def write_output(
-    scene: Scene, archive: Archive, sweep: Sweep, companion: Companion | None, ranks: int, begin: float, memory: float,
+    scene: Scene, archive: Archive, sweep: Sweep, more: Companions, ranks: int, begin: float, memory: float,
     log: RunLog,
 ) -> None:  # fmt: skip
     """The tables, which say that the run is complete; then fields and pictures, whose failing costs nothing else.
@@ -70,6 +79,7 @@ def write_output(
     """
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    companion = more.coarse
     data = with_errors(data, archive, companion)
     keep_scene(scene, archive.files)  # a resumed run may ask for other output
 
@@ -81,6 +91,10 @@ def write_output(
 
     write(started)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
+    if more.deformation is not None:
+        from solver.deformed_fields import write_deformed  # VTK takes a second
+
+        log.info("fields: %s", write_deformed(data, more.deformation, archive.files))
     write(started)  # with the time that pictures took
     for sentence in warnings_of(data, mesh_facts(data, sweep.meshes)):
         log.warning(sentence)

@@ -15,6 +15,12 @@ class Output(Section):
     pictures: bool = key("draw the PNG pictures", "true or false", default=True)
     animation: bool = key("draw the animation", "true or false", default=True)
     fields: bool = key("write the fields for ParaView", "true or false", default=True)
+    deformation: bool = key(
+        "also write displacement and stress of the teeth in contact for ParaView, at the first friction coefficient; "
+        "both gears are condensed once more",
+        "true or false",
+        default=False,
+    )
     error_bars: bool = key(
         "solve a coarse companion too, for error bars of the engineering figures", "true or false", default=True
     )

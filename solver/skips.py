@@ -230,4 +230,5 @@ def wanted_output(scene: Scene) -> Output:
         fields=asked.fields or "fields" in off,
         error_bars=asked.error_bars or "error-bars" in off,
         compare=asked.compare,
+        deformation=asked.deformation,
     )

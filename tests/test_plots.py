@@ -195,7 +195,7 @@ def test_median_where_the_contact_is_not_resolved(run: RunData) -> None:
     assert few_cells_across(run)
     with styled():
         words = " ".join(text.get_text() for text in engagement_stress(run).findobj(Text))
-    assert "elements across: points as computed, lines their median of 5" in words
+    assert "elements across the contact: points as computed, lines medians of 5" in words
     line = np.arange(12.0)
     assert not running_median(np.where(line % 3 == 1, 100.0, 0.0))[2:-2].any()
     holes = running_median(np.concatenate([[np.nan], line, [np.nan]]))

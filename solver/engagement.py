@@ -7,7 +7,7 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -111,6 +111,18 @@ class LinePeak:
 
 
 NO_PEAK = LinePeak(float("nan"), float("nan"), False)
+
+
+def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
+    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
+    where a slice bears on a tip edge."""
+
+    def exact(solved: SolvedPosition) -> SolvedPosition:
+        cut = solved.cut
+        peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
+        return replace(solved, cut=replace(cut, peak=peak))
+
+    return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
 
 
 def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float]) -> LinePeak:

@@ -27,7 +27,7 @@ import numpy as np
 from meshes.data import Floats
 from solver.archive import Archive
 from solver.companion import Companion
-from solver.engagement import engagement
+from solver.engagement import engagement, with_hertz
 from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors
 from solver.results import loss_percent, mesh_stiffness, secant_stiffness
 from solver.run_data import RunData, SolvedPosition
@@ -75,7 +75,7 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
-    runs = run, _with_hertz(run), *(_with_hertz(each, at_edges=True) for each in (run, coarse))
+    runs = run, with_hertz(run), *(with_hertz(each, at_edges=True) for each in (run, coarse))
     curves = [engagement(each, index, run.inner_path) for each in runs]
     error, tangent, secant, loss = (
         [Curve(each.angles, np.array([value(each, own[index]) for own in each.positions])) for each in (run, coarse)]
@@ -114,18 +114,6 @@ def _relative(first: Curve, second: Curve) -> float:
         return float("nan")
     size = np.linalg.norm(one[known])
     return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
-
-
-def _with_hertz(run: RunData, at_edges: bool = False) -> RunData:
-    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
-    where a slice bears on a tip edge."""
-
-    def exact(solved: SolvedPosition) -> SolvedPosition:
-        cut = solved.cut
-        peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
-        return replace(solved, cut=replace(cut, peak=peak))
-
-    return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
 
 
 def _transmission_error(_: RunData, solved: SolvedPosition) -> float:

@@ -1,20 +1,21 @@
 """Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10).
 
 Where the contact is fewer than two elements wide, peaks scatter with the way it lies in the cells. Then the pictures
-say so and show points as computed, and the running median of five of them as a line.
+say so, show points as computed, and as a line Hertz's stress for the same loads times the median of five ratios to it:
+loads are known well, and what they do, as where a single pair bears, stays.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from meshes.data import Floats
-from solver.engagement import Engagement, crossing, engagements
+from solver.engagement import Engagement, crossing, engagement, engagements, with_hertz
 from solver.estimated_errors import plus_minus
 from solver.mesh_facts import cells_across
 from solver.plain_text import signed
@@ -25,7 +26,7 @@ from solver.scene_warnings import FEWEST_CELLS
 
 STRESS = "maximum contact stress [MPa]"
 OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
-MEDIAN = 5  # positions that the running median takes where the mesh does not resolve the contact
+MEDIAN = 5  # positions that a running median takes where the mesh does not resolve the contact
 
 
 def engagement_stress(run: RunData) -> Figure:
@@ -38,8 +39,9 @@ def engagement_stress(run: RunData) -> Figure:
     _zone_ends(main, run, _lowest(curves))
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    about = f"between the tip-edge zones, ξ = {low} to {high} mm; shaded: largest where one begins, rises further in"
-    main.set_title("\n".join([about, *_resolved(run)]), fontsize=9, loc="left")
+    about = f"between the tip-edge zones, ξ = {low} to {high} mm"
+    about += "; shaded: largest where one begins, rises further in" if _lowest(curves).at_zone_end.any() else ""
+    main.set_title("\n".join([about, *_resolved(run)]), fontsize=8, loc="left")
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -60,7 +62,7 @@ def engagement_stress(run: RunData) -> Figure:
 def tooth_stress(run: RunData) -> Figure:
     """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = " ".join([_see_teeth(run, curves), *_resolved(run)])
+    see = _see_teeth(run, curves)
     figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", see, (11.6, 6.6))
     teeth = shown_teeth(run, curves)
     grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
@@ -68,12 +70,14 @@ def tooth_stress(run: RunData) -> Figure:
         top, below = grid[0, column], grid[1, column]
         members = [c.tooth == tooth for c in curves]
         _curves(top, run, curves, members, tooth)
-        _change(below, run, curves, members, tooth)
+        _change(below, run, smoothed(run, curves), members, tooth)
         top.set_title(long_name(run, tooth), fontsize=10)
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
     grid[0, 0].legend(loc="best")
+    for sentence in _resolved(run):
+        figure.supxlabel(sentence, fontsize=9, x=0.01, ha="left")
     return figure
 
 
@@ -106,14 +110,22 @@ def _curves(
     axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
 ) -> None:
     """Maximum pressure over rotation; over the pinion's own φ where one tooth is picked out."""
-    for curve, here, colour in zip(curves, members, friction_colours(run.frictions)):
-        x, y = _shown(run, curve, here, tooth)
+    coarse, lines = few_cells_across(run), smoothed(run, curves)
+    for curve, line, here, colour in zip(curves, lines, members, friction_colours(run.frictions)):
         label = f"μ = {curve.friction:g}"
-        if not few_cells_across(run):
-            axes.plot(x, y, color=colour, marker=".", markersize=3.0, label=label)
-            continue
-        axes.plot(x, y, color=colour, marker=".", markersize=4.0, linestyle="", alpha=0.45)
-        axes.plot(x, running_median(y), color=colour, label=label)
+        points = {"linestyle": "", "alpha": 0.45} if coarse else {"label": label}
+        axes.plot(*_shown(run, curve, here, tooth), color=colour, marker=".", markersize=4.0 - (not coarse), **points)
+        if coarse:
+            axes.plot(*_shown(run, line, here, tooth), color=colour, label=label)
+
+
+def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
+    """The curves themselves; where the mesh does not resolve the contact, their maximum pressures by Hertz's."""
+    if not few_cells_across(run):
+        return list(curves)
+    exact = with_hertz(run)
+    hertz = [engagement(exact, run.frictions.index(c.friction), run.inner_path).max_pressure for c in curves]
+    return [replace(c, max_pressure=own * running_median(c.max_pressure / own)) for c, own in zip(curves, hertz)]
 
 
 def few_cells_across(run: RunData) -> bool:
@@ -125,7 +137,10 @@ def _resolved(run: RunData) -> list[str]:
     """What is to be said where it does not."""
     if not few_cells_across(run):
         return []
-    return [f"Only {cells_across(run):.1f} elements across the contact: points as computed, lines medians of {MEDIAN}."]
+    return [
+        f"Only {cells_across(run):.1f} elements across the contact: points as computed; lines: Hertz for the same loads"
+        f" times the median of {MEDIAN} ratios to it."
+    ]
 
 
 def running_median(values: Floats) -> Floats:
@@ -161,8 +176,7 @@ def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Seq
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         angle, change = relative_change(curve, lowest, curve.tooth == tooth)
-        shown = running_median(change) if few_cells_across(run) else change
-        axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * shown, color=colour)
+        axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * change, color=colour)
 
 
 def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> tuple[Floats, Floats]:

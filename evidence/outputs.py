@@ -15,11 +15,11 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.report import table
 from solver.estimated_errors import FigureErrors
+from solver.mesh_facts import MeshFacts
 from solver.results import (
     SCHEMA_VERSION,
     ErrorBars,
     FrictionRow,
-    MeshFacts,
     PositionRow,
     Summary,
     Timings,
@@ -49,6 +49,8 @@ FILES = (
     ("fields/contact.pvd", "open this one in ParaView: the positions of the pitch, over the pinion's angle in degrees"),
     ("fields/flanks_*.vtp", "the loaded flanks at each position, with the arrays below"),
     ("fields/gears_*.vtp", "the teeth around them, without arrays"),
+    ("fields/deformed.pvd", "with `output.deformation`: open this one in ParaView for what is inside the teeth"),
+    ("fields/deformed_*.vtu", "the sectors that carry load, undeformed where they stand, with the arrays below"),
     ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
     ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
     (".evolvent.lock", "there while a run goes on: one run a folder"),
@@ -60,11 +62,19 @@ ARRAYS = (
     ("gear", "0 on the pinion, 1 on the wheel"),
     ("tooth", "the tooth pair, as in teeth.csv"),
     ("roll_distance_mm", "distance from the pitch point along the path of contact, negative towards the pinion's root"),
-    ("pressure_MPa (mu=...)", "contact pressure; on the wheel carried over from the pinion"),
+    ("pressure_MPa (mu=...)", "contact pressure, NaN where a tip's edge bears; on the wheel the pinion's"),
+    ("edge_pressure_MPa (mu=...)", "pressure where a tip's edge bears, where it is singular; 0 elsewhere"),
     ("traction_MPa (mu=...)", "what the wheel presses on the pinion with, a vector; 0 on the wheel"),
     ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel, a vector; 0 on the wheel"),
     ("sticks (mu=...)", "1 where the flanks stick, 0 where they slide or do not touch"),
 )  # fmt: skip
+DEFORMED = (
+    ("displacement_mm", "of the nodes, a vector, at the first friction coefficient: Warp By Vector bends the teeth"),
+    ("stress_MPa", "in the cells, at their centres: nine components, in space"),
+    ("von_mises_MPa", "in the cells, at their centres"),
+    ("gear", "of a cell: 0 the pinion's, 1 the wheel's"),
+    ("tooth", "of a cell: the tooth pair, as in teeth.csv"),
+)
 SECTIONS = (
     ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),
     ("`mesh`", MeshFacts, ""),
@@ -119,8 +129,10 @@ def page() -> list[str]:
     for title, kind, words in SECTIONS:
         rows = [(f"`{name}`", unit(name, kind), text) for name, text in described(kind).items()]
         parts += [f"## {title}", *([words] if words else []), table(("name", "unit", "meaning"), rows)]
-    rows = [(f"`{name}`", unit(name.split()[0]), text) for name, text in ARRAYS]
-    return [*parts, "## Arrays in `fields/flanks_*.vtp`", table(("name", "unit", "meaning"), rows)]
+    for files, arrays in (("flanks_*.vtp", ARRAYS), ("deformed_*.vtu", DEFORMED)):
+        rows = [(f"`{name}`", unit(name.split()[0]), text) for name, text in arrays]
+        parts += [f"## Arrays in `fields/{files}`", table(("name", "unit", "meaning"), rows)]
+    return parts
 
 
 def schema() -> Schema:

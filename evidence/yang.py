@@ -13,8 +13,10 @@ import numpy as np
 
 from meshes.data import Floats
 from solver.engagement import Engagement, between, crossing, engagement, largest_peak
-from solver.plots_flank import at_point, paper_points, paper_position
+from solver.plots_lines import at_point
 from solver.plots_stress import relative_change, trends
+from solver.plots_teeth import YANG
+from solver.plots_yang import paper_points, paper_position
 from solver.results import friction_rows
 from solver.run_data import RunData, read_run
 
@@ -46,8 +48,8 @@ def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
     )
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near the pitch line, median", f"{np.median(peak[near]):.0f} MPa"
-    place, top = largest_peak(run, index)
-    yield "largest pressure between the tip-edge zones", f"{top:.0f} MPa at ξ = {place:.2f} mm"
+    top = largest_peak(run, index)
+    yield "largest pressure between the tip-edge zones", f"{top.pressure:.0f} MPa at ξ = {top.ξ:.2f} mm"
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Iterator[Line]:
@@ -69,7 +71,7 @@ def _range(change: Floats) -> str:
 
 
 def _teeth(curves: list[Engagement]) -> Iterator[Line]:
-    for trend in trends(curves):
+    for trend in trends(curves, list(YANG)):
         largest, average = (100.0 * (v[-1] / v[0] - 1.0) for v in (trend.largest, trend.average))
         yield f"tooth {2 - trend.tooth}: maximum, average", f"{largest:+.1f} %, {average:+.1f} %"
 

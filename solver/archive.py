@@ -218,7 +218,8 @@ def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResul
     contact = ContactPoints(**{f.name: own.pop(f"contact/{f.name}") for f in fields(ContactPoints)})
     own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
     scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
-    return PositionResult(stand=stand, contact=contact, **(own | scalars))
+    values = own | scalars | {"stand": stand, "contact": contact}
+    return PositionResult(**{f.name: values[f.name] for f in fields(PositionResult)})
 
 
 def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:

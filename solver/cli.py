@@ -167,12 +167,15 @@ def mesh(
             return
         from meshes.gmsh_io import write_msh
         from meshes.quality import scaled_jacobians
+        from solver.run_warnings import WORST_CELL, bad_cells
         from solver.sectors import standing_pair
 
         made = standing_pair(loaded)
         write_msh(made, out)
-        quality = scaled_jacobians(made).min()
-        typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.3f}")
+        quality = float(scaled_jacobians(made).min())
+        typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.2g}")
+        if quality < WORST_CELL:
+            typer.echo(f"Warning: {bad_cells(quality)}", err=True)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")

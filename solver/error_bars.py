@@ -27,9 +27,9 @@ import numpy as np
 from meshes.data import Floats
 from solver.archive import Archive
 from solver.companion import Companion
-from solver.engagement import engagement
+from solver.engagement import engagement, with_hertz
 from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors
-from solver.results import loss_percent, mesh_stiffness
+from solver.results import loss_percent, mesh_stiffness, secant_stiffness
 from solver.run_data import RunData, SolvedPosition
 
 Reduction = Callable[[Floats], float]
@@ -75,11 +75,11 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
-    runs = run, _with_hertz(run), *(_with_hertz(each, at_edges=True) for each in (run, coarse))
+    runs = run, with_hertz(run), *(with_hertz(each, at_edges=True) for each in (run, coarse))
     curves = [engagement(each, index, run.inner_path) for each in runs]
-    error, stiffness, loss = (
-        [Curve(each.angles, curve(each, index)) for each in (run, coarse)]
-        for curve in (_transmission_error, mesh_stiffness, _loss)
+    error, tangent, secant, loss = (
+        [Curve(each.angles, np.array([value(each, own[index]) for own in each.positions])) for each in (run, coarse)]
+        for value in (_transmission_error, mesh_stiffness, secant_stiffness, _loss)
     )
     peaks = [Curve(each.angle, each.max_pressure) for each in curves]
     means = [Curve(each.angle, each.mean_pressure) for each in curves]
@@ -88,7 +88,8 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
         max_pressure_MPa=_pressure_error(np.nanmax, LOAD_FACTOR[order], *peaks),
         mean_pressure_MPa=_pressure_error(np.nanmean, LOAD_FACTOR[order], *means),
         transmission_error_peak_to_peak_um=STIFFNESS_FACTOR[order] * difference(np.ptp, *error),
-        mesh_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *stiffness),
+        mesh_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *tangent),
+        secant_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *secant),
         loss_percent=LOSS_FACTOR[order] * difference(np.mean, *loss),
     )
 
@@ -115,23 +116,11 @@ def _relative(first: Curve, second: Curve) -> float:
     return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
 
 
-def _with_hertz(run: RunData, at_edges: bool = False) -> RunData:
-    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
-    where a slice bears on a tip edge."""
-
-    def exact(solved: SolvedPosition) -> SolvedPosition:
-        cut = solved.cut
-        peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
-        return replace(solved, cut=replace(cut, peak=peak))
-
-    return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
+def _transmission_error(_: RunData, solved: SolvedPosition) -> float:
+    """[µm]."""
+    return 1e3 * solved.result.transmission_error
 
 
-def _transmission_error(run: RunData, index: int) -> Floats:
-    """[µm] (k,)."""
-    return np.array([1e3 * each[index].result.transmission_error for each in run.positions])
-
-
-def _loss(run: RunData, index: int) -> Floats:
-    """[%] (k,)."""
-    return np.array([loss_percent(each[index]) for each in run.positions])
+def _loss(_: RunData, solved: SolvedPosition) -> float:
+    """[%]."""
+    return loss_percent(solved)

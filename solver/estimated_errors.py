@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class FigureErrors:
     """Of the peak-to-peak transmission error."""
     mesh_stiffness_N_per_mm_um: float
     """Of the mesh stiffness."""
+    secant_stiffness_N_per_mm_um: float
+    """Of the secant stiffness."""
     loss_percent: float
     """Of the loss."""
 
@@ -57,13 +59,15 @@ def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
 
 
 def kept_errors(archive: Archive) -> EstimatedErrors | None:
-    """What `keep_errors` kept of this scene; None where there is nothing, nothing that can be read, or bars that were
-    estimated in another way."""
+    """What `keep_errors` kept of this scene; None where there is nothing, nothing that can be read, or bars of other
+    figures or that were estimated in another way."""
     try:
         arrays = read_arrays(archive.folder / "errors.npz")
     except ArchiveError:
         return None  # a bar is no reason to refuse a run's results
     if (str(arrays["fingerprint"]), str(arrays["method"])) != (archive.fingerprint, METHOD):
+        return None
+    if arrays["values"].shape[1] != len(fields(FigureErrors)):
         return None
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
 

@@ -7,8 +7,10 @@
 Arrays of the flanks, one set for each friction coefficient, are named "pressure_MPa (mu=0.07)" and so on: pressure_MPa;
 traction_MPa: the contact traction on the pinion (pressure and friction) in space; slip_mm_per_rad: velocity of the
 pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. Pressures are averages about the
-nodes, which keep the force; the peaks are in summary.json. The wheel's flanks carry the
-pressure only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth (pair), roll_distance_mm.
+nodes, which keep the force; the peaks are in summary.json. Where a layer of cells bears on a tip edge the pressure is
+singular, ten times that of the flanks: there pressure_MPa and traction_MPa are NaN, and edge_pressure_MPa, 0 elsewhere,
+has the pressure. The wheel's flanks carry pressures only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth
+(pair), roll_distance_mm.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ from solver.run_data import RunData, SolvedPosition, flank_nodes
 from solver.run_folder import RunFolder
 
 Arrays = dict[str, Floats]
+SAME = 1e-6  # [mm] of height
 
 
 def write_fields(run: RunData, folder: RunFolder) -> Path:
@@ -80,8 +83,28 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, t
     }
     for each in solved:
         values = _pinion_values(run, each.result, tooth) if gear == 0 else _wheel_values(run, each.result, tooth)
+        values = _without_edges(values, on_tip_edge(each, tooth, nodes.z))
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
+
+
+def on_tip_edge(solved: SolvedPosition, tooth: int, z: Floats) -> np.ndarray:
+    """(n,) bool: heights z (n,) [mm] of layers in which a tooth pair bears on a tip edge."""
+    cut = solved.cut
+    layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
+    away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
+    return np.asarray((away <= SAME).any(axis=1))
+
+
+def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:
+    """The arrays with the pressure of nodes in `edge` (n,) bool apart."""
+    pressure = values["pressure_MPa"]
+    bears = edge & (pressure > 0.0)
+    return values | {
+        "pressure_MPa": np.where(bears, np.nan, pressure),
+        "traction_MPa": np.where(bears[:, None], np.nan, values["traction_MPa"]),
+        "edge_pressure_MPa": np.where(bears, pressure, 0.0),
+    }
 
 
 def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:

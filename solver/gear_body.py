@@ -104,8 +104,7 @@ def condensed_gear(
         named, own_safety = range(numbers[0], numbers[-1] + 1), safety if carries_pressure else None
         system: WholeSystem | SectorSystem = whole_system(ring, material, gear.z, named, own_safety)
     else:
-        body = Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
-        system = _sector_system(body, flank, traction, pitch)
+        system = _sector_system(sector_body(mesh, material, sign), flank, traction, pitch)
     assembled = time.perf_counter()
     condensed: SectorCondensation | Compliance = system.condensed(threads)
     del system  # gigabytes at the fine end
@@ -116,11 +115,34 @@ def condensed_gear(
     return GearBody(gear, mesh, material, flank, traction, condensed, sign, assembled - begin, end - assembled)
 
 
+def sector_body(mesh: MeshData, material: Material, sign: int) -> Body:
+    """A sector held at its bore; sign: see GearBody."""
+    return Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+
+
 def _sector_system(
     body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
 ) -> SectorSystem:
-    """The sector with Nitsche's constant term, seen through its flank. A function of its own so that
-    the full matrices are gone when the elimination starts."""
+    """A function of its own so that the full matrices are gone when the elimination starts."""
+    parts = sector_parts(body, flank, traction, pitch)
+    return SectorSystem.of(parts.stiffness, parts.functionals, parts.low, parts.high, parts.graph, parts.free)
+
+
+@dataclass(frozen=True)
+class SectorParts:
+    """A sector with Nitsche's constant term, seen through its flank: stiffness (n, n), functionals (m, n), dofs of the
+    low and of the high cut face in matching order, those that are free, and the pattern of the plain stiffness."""
+
+    stiffness: sp.csr_matrix
+    functionals: sp.csr_matrix
+    low: Ints
+    high: Ints
+    free: Ints
+    graph: sp.csr_matrix
+
+
+def sector_parts(body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float) -> SectorParts:
+    """Assembles a sector."""
     assembled = assemble(body)
     K, d = assembled.stiffness, assembled.d
     P = trace_functionals(flank, K.shape[0])
@@ -129,7 +151,7 @@ def _sector_system(
         K, P = K - traction.constant_term(), P - traction.flux()
     cut = [(d * nodes[:, None] + np.arange(d)).ravel() for nodes in matching_cuts(body.mesh, pitch)]
     low, high = (dofs[~assembled.held[dofs]] for dofs in cut)
-    return SectorSystem.of(K, P, low, high, graph, assembled.free)
+    return SectorParts(K, P, low, high, assembled.free, graph)
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:

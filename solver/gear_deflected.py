@@ -8,7 +8,7 @@ goes through the mesh; along those of the deflected flanks energy is kept.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from solver.gear_memory import Footprint, Memory, recalled
 from solver.gear_model import GearModel
 from solver.gear_overlap import overlap_outside, unwatched
 from solver.gear_position import free_rotation, free_shift, rubbing
+from solver.mesh_stiffness import tangent_stiffness
 from solver.newton import NotConverged
 from solver.search import SearchError
 from solver.tooth_contact import Displaced
@@ -29,26 +30,35 @@ it or less."""
 ROUNDS = 12
 
 
+@dataclass(frozen=True)
+class Settled:
+    """The contact of flanks that deflect as its equilibrium says, and that equilibrium, whose iterations are those of
+    all searches; stiffness: of the frictionless mesh as in PositionResult, along these flanks' normals."""
+
+    contact: GearContact
+    found: Equilibrium
+    stiffness: float
+
+
 def settled(
     model: GearModel, contact: GearContact, found: Equilibrium, friction: float, before: Memory | None, span: float
-) -> tuple[GearContact, Equilibrium]:
-    """The contact of flanks that deflect as its equilibrium says, and that equilibrium; from the one of undeflected
-    flanks. Its iterations are those of all searches. before: what friction remembers, None without; span: Δφ [rad]
-    since then.
+) -> Settled:
+    """From the equilibrium of undeflected flanks. before: what friction remembers, None without; span: Δφ [rad] since
+    then.
 
     Raises NotConverged.
     """
     for _ in range(ROUNDS):
         pressed, spent = Footprint.of(contact, found.traction[:, 0]), found.iterations
         contact = deflected_contact(model, contact, found)
-        found = _equilibrium(model, contact, pressed, friction, before, span)
+        found, stiffness = _equilibrium(model, contact, pressed, friction, before, span)
         found = replace(found, iterations=spent + found.iterations)
         if contact.reaches_rim(found.traction[:, 0] > 0.0):
             contact = replace(contact, half_width=1.5 * contact.half_width)
         elif abs(free_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
             places = unwatched(contact, model.teeth)
             if overlap_outside(contact, places, found.force, free_rotation(model, found)) == 0.0:
-                return contact, found
+                return Settled(contact, found, stiffness)
             contact = replace(contact, half_width=np.inf)
     raise NotConverged(
         f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that move by less "
@@ -84,10 +94,13 @@ def _displaced(contact: GearContact, pushed: tuple[Floats, Floats], tooth: int) 
 
 def _equilibrium(
     model: GearModel, contact: GearContact, pressed: Footprint, friction: float, before: Memory | None, span: float
-) -> Equilibrium:
+) -> tuple[Equilibrium, float]:
+    """And the stiffness of the frictionless state."""
     system = contact.system(model.load.on, model.load.torque, normal_only=before is None)
-    smooth = frictionless(normal_part(system), pressed.at(contact))
+    normal = normal_part(system)
+    smooth = frictionless(normal, pressed.at(contact))
+    stiffness = tangent_stiffness(normal, smooth)
     if before is None:
-        return smooth
+        return smooth, stiffness
     found = rubbing(model, contact, system, friction, smooth, recalled(contact, [before])[0], span)
-    return replace(found, iterations=smooth.iterations + found.iterations)
+    return replace(found, iterations=smooth.iterations + found.iterations), stiffness

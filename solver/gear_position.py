@@ -20,6 +20,7 @@ from solver.gear_model import GearModel
 from solver.gear_overlap import NEARLY, Unwatched, overlap_outside, unwatched
 from solver.gear_points import ContactPoints, contact_points
 from solver.kinematics import Stand
+from solver.mesh_stiffness import tangent_stiffness
 from solver.newton import NotConverged
 
 RELOCATE = 1.7e-4
@@ -43,7 +44,10 @@ class PositionResult:
     stand: with the free rotation. torques: (pinion, wheel) moments of the contact forces about the axes [N·mm; per mm
     of width in 2D]. contact: at the quadrature points. Averages at the n nodes of the pinion's flanks within the
     window, for pictures: tooth, node (n,), weights m (n,) [mm²; mm] and traction (n, d) λ, τ [MPa], Σ m t the whole
-    force. iterations: Newton's, all stages. residual: relative force residual.
+    force. iterations: Newton's, all stages. residual: relative force residual. stiffness: tangent of the frictionless
+    mesh along the line of action [N/mm; per mm of width in 2D], see solver/mesh_stiffness.py. pinion_rows, wheel_rows:
+    (m, 2) rows of the gears' chains that carry load, and pinion_forces, wheel_forces (m, d) what it is, in the gears'
+    frames [N; per mm of width in 2D].
     """
 
     stand: Stand
@@ -56,6 +60,11 @@ class PositionResult:
     traction: Floats
     iterations: int
     residual: float
+    stiffness: float
+    pinion_rows: Ints
+    wheel_rows: Ints
+    pinion_forces: Floats
+    wheel_forces: Floats
     seconds: float = 0.0
 
     @property
@@ -86,12 +95,13 @@ class PositionResult:
 @dataclass(frozen=True)
 class SharedPosition:
     """What all friction coefficients of a position share. smooth: the frictionless state. unwatched: where flanks might
-    touch that the window does not look at."""
+    touch that the window does not look at. stiffness: of the frictionless state, as in PositionResult."""
 
     contact: GearContact
     system: CondensedSystem
     smooth: Equilibrium
     unwatched: tuple[Unwatched, ...]
+    stiffness: float
 
     @property
     def footprint(self) -> Footprint:
@@ -138,7 +148,8 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
-        smooth = frictionless(normal_part(system), _foreseen(contact, before))
+        normal = normal_part(system)
+        smooth = frictionless(normal, _foreseen(contact, before))
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
@@ -150,7 +161,7 @@ def shared_position(
         elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
             places = unwatched(contact, model.teeth)
             if overlap_outside(contact, places, smooth.force, free_rotation(model, smooth)) == 0.0:
-                return SharedPosition(contact, system, smooth, places)
+                return SharedPosition(contact, system, smooth, places, tangent_stiffness(normal, smooth))
             half_width = np.inf
         stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
     raise NotConverged(
@@ -164,8 +175,9 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
     contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
     normal_only = not any(map(model.has_friction_terms, frictions))
     system = contact.system(model.load.on, model.load.torque, normal_only)
-    smooth = frictionless(normal_part(system), _foreseen(contact, None))
-    return SharedPosition(contact, system, smooth, unwatched(contact, model.teeth))
+    normal = normal_part(system)
+    smooth = frictionless(normal, _foreseen(contact, None))
+    return SharedPosition(contact, system, smooth, unwatched(contact, model.teeth), tangent_stiffness(normal, smooth))
 
 
 def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
@@ -182,7 +194,8 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     is found."""
     contact = shared.contact.on(model.bodies)
     system = replace(shared.system, operator=contact.operator)
-    smooth = _smooth(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
+    normal = normal_part(system)
+    smooth = _smooth(normal, [pressed, shared.smooth.traction[:, 0] > 0.0])
     if smooth is None:
         return None
     shift = free_shift(model, smooth)
@@ -190,7 +203,9 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     good = good and not contact.reaches_rim(smooth.traction[:, 0] > 0.0)
     rotation = free_rotation(model, smooth)
     good = good and overlap_outside(contact, shared.unwatched, smooth.force, rotation) == 0.0
-    return SharedPosition(contact, system, smooth, shared.unwatched) if good else None
+    if not good:
+        return None
+    return SharedPosition(contact, system, smooth, shared.unwatched, tangent_stiffness(normal, smooth))
 
 
 def _smooth(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equilibrium | None:
@@ -238,7 +253,8 @@ def solve_position(
     if before is not None:
         near = foretold(friction, [Solved(0.0, smooth), *solved])
         found = rubbing(model, contact, shared.system, friction, smooth, before, span, near)
-    return position_result(model, contact, found, friction, smooth.iterations), Solved(friction, found)
+    result = position_result(model, contact, found, friction, shared.stiffness, smooth.iterations)
+    return result, Solved(friction, found)
 
 
 def rubbing(
@@ -266,13 +282,15 @@ def foretold(friction: float, solved: Sequence[Solved]) -> Start | None:
 
 
 def position_result(
-    model: GearModel, contact: GearContact, found: Equilibrium, friction: float, extra_iterations: int
-) -> PositionResult:
+    model: GearModel, contact: GearContact, found: Equilibrium, friction: float, stiffness: float,
+    extra_iterations: int,
+) -> PositionResult:  # fmt: skip
     """Torques, tractions and flags of a converged state."""
     k = found.force.shape[1]
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
     weights, traction = contact.operator.averaged(found.traction)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
+    (pinion_rows, pinion_forces), (wheel_rows, wheel_forces) = (_carried(contact, gear, found) for gear in (0, 1))
     return PositionResult(
         stand=stand,
         friction=friction,
@@ -284,4 +302,16 @@ def position_result(
         traction=traction,
         iterations=found.iterations + (extra_iterations if model.has_friction_terms(friction) else 0),
         residual=found.residual / float(np.sum(found.force[:, 0])),
+        stiffness=stiffness,
+        pinion_rows=pinion_rows,
+        wheel_rows=wheel_rows,
+        pinion_forces=pinion_forces,
+        wheel_forces=wheel_forces,
     )
+
+
+def _carried(contact: GearContact, gear: int, found: Equilibrium) -> tuple[Ints, Floats]:
+    """Rows (m, 2) of a gear's chain that carry load, and the forces (m, d) on them."""
+    rows, forces = contact.rows(gear)[0], contact.pushed(gear, found.force)
+    loaded = forces.any(axis=1)
+    return rows[loaded], forces[loaded]

@@ -151,8 +151,9 @@ def _position(
         solved.append(found)
         contact, equilibrium = shared.contact, found.state
         if model.deflected:
-            contact, equilibrium = settled(model, contact, equilibrium, μ, memory, span)
-            result = position_result(model, contact, equilibrium, μ, shared.smooth.iterations)
+            bent = settled(model, contact, equilibrium, μ, memory, span)
+            contact, equilibrium = bent.contact, bent.found
+            result = position_result(model, contact, equilibrium, μ, bent.stiffness, shared.smooth.iterations)
         memories.append(remembered(model, contact, equilibrium) if memory is not None else None)
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))

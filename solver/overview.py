@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 from typing import NamedTuple
 
 from meshes.parameters import GearPair, GearParameters
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors, yang_estimate
+from solver.plain_text import fixed
 from solver.resolution import elements_per_contact_width, memory_megabytes, sector_resolutions, sector_size
 from solver.scene import GEARS, Scene
 from solver.scene_gears import working_angle_of
+from solver.scene_warnings import scene_warnings
 from solver.schema_wear import Wear
 from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth
 
@@ -32,32 +35,40 @@ def overview(scene: Scene) -> str:
     pair, estimate = scene.gear_pair(), hertz_estimate(scene)
     blocks = [
         scene.title,
-        table("Gears", _gear_rows(pair), GEARS),
+        table("Gears", [*_gear_rows(pair), *_chart_rows(scene)], GEARS),
         table("Pair", _pair_rows(pair)),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
         table("Mesh and cost (estimate)", _cost_rows(scene), GEARS),
         _skip_lines(scene),
+        *_warning_lines(scene),
     ]
     return "\n\n".join(blocks)
 
 
 def _skip_lines(scene: Scene) -> str:
-    lines = ["Skipped", *(f"  {skip.name:<15}{skip.sentence}" for skip in skipped(scene))]
+    left_out = skipped(scene)
+    column = 2 + max((len(skip.name) for skip in left_out), default=0)
+    lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
     off = switched_off(scene)
     return "\n".join([*lines, *(["Computed the long way", f"  {', '.join(off)}"] if off else [])])
+
+
+def _warning_lines(scene: Scene) -> list[str]:
+    found = scene_warnings(scene)
+    return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in found)])] if found else []
 
 
 def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
     """Aligned columns: name, symbol, unit, values to the right."""
     lines = [f"{title:<62}" + "".join(f"{head:>13}" for head in heads)]
     for row in rows:
-        lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f"{text:>13}" for text in row.values))
+        lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f" {text:>12}" for text in row.values))
     return "\n".join(line.rstrip() for line in lines)
 
 
 def _both(name: str, symbol: str, unit: str, digits: int, values: Iterable[float]) -> Row:
-    return Row(name, symbol, unit, tuple(f"{value:.{digits}f}" for value in values))
+    return Row(name, symbol, unit, tuple(fixed(value, digits) for value in values))
 
 
 def _one(name: str, symbol: str, unit: str, digits: int, value: float) -> Row:
@@ -96,6 +107,19 @@ def _gear_rows(pair: GearPair) -> list[Row]:
     ]
 
 
+def _chart_rows(scene: Scene) -> list[Row]:
+    """Of flanks as charted, whose depths come on top of the modifications."""
+    charts = [scene.flank_chart(name) for name in GEARS]
+    if not any(charts):
+        return []
+    files = [Path(getattr(scene, name).flank_csv or "none").name for name in GEARS]
+    deepest = ["–" if chart is None else fixed(1e3 * float(chart.depth.max()), 1) for chart in charts]
+    return [
+        Row("chart of the flank", "", "", tuple(files)),
+        Row("  missing at most, beside C_a and C_b", "", "µm", tuple(deepest)),
+    ]
+
+
 def _hand(gear: GearParameters) -> str:
     return HANDS[gear.hand] if gear.helix_angle else "spur"
 
@@ -117,7 +141,7 @@ def _pair_rows(pair: GearPair) -> list[Row]:
         _one("transverse contact ratio", "ε_α", "", 4, pair.transverse_contact_ratio),
         _one("overlap ratio", "ε_β", "", 4, pair.overlap_ratio),
         _one("total contact ratio", "ε_γ", "", 4, pair.total_contact_ratio),
-        _one("normal backlash", "j_bn", "mm", 4, pair.normal_backlash),
+        _one("normal backlash", "j_bn", "µm", 2, 1e3 * pair.normal_backlash),
         _one("pinion rotation of one engagement", "", "°", 3, math.degrees(pair.engagement_angle)),
         _one("misalignment over the face width", "", "µm", 1, pair.misalignment_um),
     ]
@@ -142,7 +166,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
         pressure("at the pitch point, shortest length", 0.0, shortest),
         pressure("at the start of engagement, mean length", start),
         pressure("at the end of engagement, mean length", end),
-        *_paper_rows(estimate),
+        *(_paper_rows(estimate) if scene.output.compare == "yang2022" else ()),
     ]
 
 

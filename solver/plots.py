@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from solver.display import off_screen
 from solver.draw import Picture
 from solver.plots_drive import hertz_comparison, line_load, load_sharing, losses, transmission_error
-from solver.plots_flank import has_two_lines, line_pressure_over_z, points_over_friction, pressure_map
+from solver.plots_flank import pressure_map
+from solver.plots_lines import has_lines, has_path_points, line_pressure_over_z, points_over_friction
 from solver.plots_stress import engagement_stress, friction_trend, tooth_stress
 from solver.plots_style import png, styled
 from solver.run_data import RunData
@@ -38,10 +39,10 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
         yield "04_stress_of_teeth", tooth_stress
     if several:
         yield "05_stress_over_friction", friction_trend
-    if helical and has_two_lines(run):
+    if helical and has_lines(run):
         yield "06_pressure_along_lines", line_pressure_over_z
-    if helical and several and has_two_lines(run):
-        yield "07_points_A_to_D", points_over_friction
+    if helical and several and has_lines(run) and has_path_points(run):
+        yield "07_points_over_friction", points_over_friction
     yield "08_load_sharing", load_sharing
     yield "09_transmission_error", transmission_error
     yield "10_hertz", hertz_comparison

@@ -15,7 +15,7 @@ from solver.fields import poly_data
 from solver.flank_field import Patch, flank_field, flank_patch
 from solver.gear_position import PositionResult
 from solver.gear_surfaces import Polygons, all_teeth, place, placed_teeth
-from solver.plots_style import PINION_BODY, PRESSURE_MAP, WHEEL_BODY
+from solver.plots_style import OVER, PINION_BODY, PRESSURE_MAP, WHEEL_BODY
 from solver.run_data import RunData
 
 Image = NDArray[np.uint8]
@@ -120,8 +120,8 @@ def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> 
     mesh = poly_data(surface)
     mesh["values"] = values.ravel()
     scene.add_mesh(
-        mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, show_scalar_bar=False,
-        smooth_shading=True, interpolate_before_map=True, **LIGHT,
+        mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, above_color=OVER,
+        show_scalar_bar=False, smooth_shading=True, interpolate_before_map=True, **LIGHT,
     )  # fmt: skip
 
 

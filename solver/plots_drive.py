@@ -12,16 +12,21 @@ from meshes.data import Floats
 from meshes.flank import contact_lines
 from solver.engagement import engagements, largest_peak
 from solver.estimated_errors import plus_minus
-from solver.estimates import hertz_estimate
+from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors
+from solver.mesh_facts import cells_across
 from solver.overview import paper_estimate
+from solver.plain_text import signed
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet, signed
+from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet
+from solver.plots_teeth import compares_yang
 from solver.results import FrictionRow, friction_rows, loss_percent
 from solver.run_data import RunData
+from solver.scene_warnings import FEWEST_CELLS
 
 YANG_PRINTS = 1788.0
 """Yang et al. 2022, Table 4 [MPa]; their Eq. 4 gives it neither with nor without their factors."""
+HERTZ = "#c98a1b"
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 PINION_ANGLE = "pinion rotation φ [°]"
 
@@ -75,6 +80,9 @@ def transmission_error(run: RunData) -> Figure:
     see += "."
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
+    missed = missed_peaks(1e3 * np.array([each[low].result.transmission_error for each in run.positions]))
+    text = f"{len(run.positions)} positions; between them the extremes may lie up to {missed:.2f} µm further apart"
+    axes.set_title(text, fontsize=9, loc="left")
     for index, colour in enumerate(friction_colours(run.frictions)):
         x, y = _closed(run, np.array([1e3 * each[index].result.transmission_error for each in run.positions]))
         axes.plot(
@@ -82,12 +90,30 @@ def transmission_error(run: RunData) -> Figure:
             y,
             color=colour,
             marker=".",
-            markersize=4,
+            markersize=5,
             label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]} µm)",
         )
     axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
+
+
+def missed_peaks(values: Floats) -> float:
+    """By how much the peak-to-peak value of a periodic curve may exceed that of its samples (n,): at the largest and at
+    the least, the straight lines through the two samples before and the two after it are continued to where they
+    meet; that is a corner's height, and more than a smooth curve's."""
+    if len(values) < 5:
+        return 0.0
+    return sum(_corner(np.roll(each, 2 - int(np.argmax(each)))[:5]) for each in (values, -values))
+
+
+def _corner(y: Floats) -> float:
+    """How far above y[2], the largest of five samples, the lines through y[0], y[1] and y[3], y[4] meet."""
+    rise, fall = float(y[1] - y[0]), float(y[3] - y[4])
+    if rise + fall <= 0.0:
+        return 0.0
+    x = (y[3] - y[1] + 2.0 * fall) / (rise + fall)  # steps from y[1]: y[1] + rise x = y[3] + fall (2 − x)
+    return max(0.0, float(y[1] + rise * x - y[2])) if 0.0 <= x <= 2.0 else 0.0
 
 
 def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
@@ -172,11 +198,11 @@ def _sliding(axes: Axes, run: RunData) -> None:
     axes.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     axes.set_ylabel("specific sliding [–]")
     axes.set_ylim(bottom=max(-4.0, float(min((1.0 - v2 / v1).min(), (1.0 - v1 / v2).min())) - 0.2))
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower center")  # both curves fall towards an end of the path
 
 
 def hertz_comparison(run: RunData, index: int = 0) -> Figure:
-    """Peak pressures of all slices beside Hertz for their own line load, and the paper's estimate with its factors."""
+    """Peak pressures of all slices beside Hertz for their own line load, and beside estimates."""
     cuts = [each[index].cut for each in run.positions]
     ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "peak", "hertz"))
     start, end = run.pair.path_of_contact
@@ -187,6 +213,10 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     see += f" (μ = {run.frictions[index]:g})."
     figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+    count = cells_across(run)
+    if not count >= FEWEST_CELLS:
+        along.set_title(f"{count:.1f} elements across the contact: fewer than {FEWEST_CELLS:g}, for looking only",
+                        fontsize=9, loc="left")  # fmt: skip
     along.plot(
         ξ[inside],
         peak[inside],
@@ -218,21 +248,16 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
 
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
-    """Bars: the paper's estimates, Hertz at the pitch point, and what was computed there."""
-    estimate, factors = hertz_estimate(run.scene), LoadFactors()
+    """Bars: a study's estimates, Hertz at the pitch point, and what was computed there."""
+    estimate = hertz_estimate(run.scene)
     near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
-    named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
+    shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
     rows = [
-        ("Yang Eq. 4, $K_A K_v K_α K_β$ =\n" + named, paper_estimate(estimate, factors), "#b9bec7"),
-        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
-        ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), "#c98a1b"),
-        (
-            "Hertz at the pitch point,\nshortest line",
-            float(estimate.peak_pressure(0.0, estimate.line_lengths[0])),
-            "#c98a1b",
-        ),
-        ("computed near the\npitch line, median", float(np.median(peak[near])), PINION),
-        ("computed, largest", largest_peak(run, index)[1], PINION),
+        *(_yang_estimates(estimate) if compares_yang(run.scene) else ()),
+        ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), HERTZ),
+        ("Hertz at the pitch point,\nshortest line", shortest, HERTZ),
+        *([("computed near the\npitch line, median", float(np.median(peak[near])), PINION)] if near.any() else ()),
+        ("computed, largest", largest_peak(run, index).pressure, PINION),
     ]
     places = np.arange(len(rows))[::-1]
     axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)
@@ -242,6 +267,16 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
     axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
     axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.18 * max(row[1] for row in rows)))
     axes.grid(axis="y", visible=False)
-    if run.scene.title.startswith("Yang"):
+    if compares_yang(run.scene):
         axes.axvline(YANG_PRINTS, color=INK, linestyle="--", linewidth=1.0)
         note(axes, f"dashed: {YANG_PRINTS:.0f} MPa, as the paper prints it", 0.0, 1.05)
+
+
+def _yang_estimates(estimate: HertzEstimate) -> list[tuple[str, float, str]]:
+    """Eq. 4 of Yang et al. 2022 with and without its load factors."""
+    factors = LoadFactors()
+    named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
+    return [
+        ("Yang Eq. 4, $K_A K_v K_α K_β$ =\n" + named, paper_estimate(estimate, factors), "#b9bec7"),
+        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
+    ]

@@ -51,8 +51,9 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
         aspect=55,
         shrink=0.7,
         pad=0.015,
+        extend="max",
     )
-    bar.set_label("pressure [MPa]")
+    bar.set_label("pressure [MPa]   (blue: above, where a tip edge bears)")
     return figure
 
 

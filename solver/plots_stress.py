@@ -1,28 +1,32 @@
-"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10)."""
+"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10).
+
+Where the contact is fewer than two elements wide, peaks scatter with the way it lies in the cells. Then the pictures
+say so, show points as computed, and as a line Hertz's stress for the same loads times the median of five ratios to it:
+loads are known well, and what they do, as where a single pair bears, stays.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from meshes.data import Floats
-from solver.engagement import Engagement, crossing, engagements
+from solver.engagement import Engagement, crossing, engagement, engagements, with_hertz
 from solver.estimated_errors import plus_minus
-from solver.plots_style import FAINT, INK, TEETH, friction_colours, note, sheet, signed
+from solver.mesh_facts import cells_across
+from solver.plain_text import signed
+from solver.plots_style import FAINT, INK, TEETH, friction_colours, sheet
+from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
+from solver.scene_warnings import FEWEST_CELLS
 
 STRESS = "maximum contact stress [MPa]"
 OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
-NAMES = {
-    1: "tooth 1 (ahead, leaves the mesh)",
-    0: "tooth 2 (through the pitch point)",
-    -1: "tooth 3 (enters, near the root)",
-}
-"""The paper's three teeth as this run's tooth pairs over the pitch from φ = 0."""
+MEDIAN = 5  # positions that a running median takes where the mesh does not resolve the contact
 
 
 def engagement_stress(run: RunData) -> Figure:
@@ -30,11 +34,14 @@ def engagement_stress(run: RunData) -> Figure:
     curves = engagements(run)
     cross = _crossing_deg(curves)
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
-    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 5.6))
+    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 6.2))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
+    _zone_ends(main, run, _lowest(curves))
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    note(main, f"between the tip-edge zones, ξ = {low} to {high} mm", 0.4, 0.99)
+    about = f"between the tip-edge zones, ξ = {low} to {high} mm"
+    about += "; shaded: largest where one begins, rises further in" if _lowest(curves).at_zone_end.any() else ""
+    main.set_title("\n".join([about, *_resolved(run)]), fontsize=8, loc="left")
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -42,7 +49,7 @@ def engagement_stress(run: RunData) -> Figure:
     largest = np.nanmax(_lowest(curves).max_pressure) + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
     main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
-    main.legend(loc="lower center", bbox_to_anchor=(0.5, 0.09), ncols=4)
+    main.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
         detail.set_title(
@@ -53,35 +60,39 @@ def engagement_stress(run: RunData) -> Figure:
 
 
 def tooth_stress(run: RunData) -> Figure:
-    """Teeth 1, 2 and 3 over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
+    """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(curves)
-    figure = sheet("Contact stress of teeth 1, 2 and 3 over a pitch of pinion rotation", see, (11.6, 6.6))
-    grid = figure.subplots(2, 3, sharex=True, height_ratios=(1.5, 1.0))
-    for column, tooth in enumerate(NAMES):
+    see = _see_teeth(run, curves)
+    figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", see, (11.6, 6.6))
+    teeth = shown_teeth(run, curves)
+    grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
+    for column, tooth in enumerate(teeth):
         top, below = grid[0, column], grid[1, column]
         members = [c.tooth == tooth for c in curves]
         _curves(top, run, curves, members, tooth)
-        _change(below, run, curves, members, tooth)
-        top.set_title(NAMES[tooth], fontsize=10)
+        _change(below, run, smoothed(run, curves), members, tooth)
+        top.set_title(long_name(run, tooth), fontsize=10)
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
     grid[0, 0].legend(loc="best")
+    for sentence in _resolved(run):
+        figure.supxlabel(sentence, fontsize=9, x=0.01, ha="left")
     return figure
 
 
 def friction_trend(run: RunData) -> Figure:
-    """Average and maximum contact stress of teeth 1, 2, 3 over μ, and their changes (Fig. 10)."""
+    """Average and maximum contact stress of the teeth over μ, and their changes (Fig. 10)."""
     curves = sorted(engagements(run), key=lambda c: c.friction)
-    found, μ = trends(curves), [c.friction for c in curves]
-    changes = ", ".join(f"tooth {2 - t.tooth} {signed(100 * (t.largest[-1] / t.largest[0] - 1))} %" for t in found)
+    found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
+    each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
+    changes = ", ".join(f"{name} {signed(change)} %" for name, change in each)
     see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
     figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
-    for trend, colour, marker in zip(found, TEETH, "osD"):
+    for trend, colour, marker in zip(found, TEETH, "osD^"):
         for column, values in enumerate((trend.average, trend.largest)):
-            grid[0, column].plot(μ, values, color=colour, marker=marker, label=NAMES[trend.tooth])
+            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
             grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
     for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
         grid[0, column].set_title(title, fontsize=10)
@@ -99,9 +110,58 @@ def _curves(
     axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
 ) -> None:
     """Maximum pressure over rotation; over the pinion's own φ where one tooth is picked out."""
-    for curve, here, colour in zip(curves, members, friction_colours(run.frictions)):
-        x, y = _shown(run, curve, here, tooth)
-        axes.plot(x, y, color=colour, marker=".", markersize=3.0, label=f"μ = {curve.friction:g}")
+    coarse, lines = few_cells_across(run), smoothed(run, curves)
+    for curve, line, here, colour in zip(curves, lines, members, friction_colours(run.frictions)):
+        label = f"μ = {curve.friction:g}"
+        points = {"linestyle": "", "alpha": 0.45} if coarse else {"label": label}
+        axes.plot(*_shown(run, curve, here, tooth), color=colour, marker=".", markersize=4.0 - (not coarse), **points)
+        if coarse:
+            axes.plot(*_shown(run, line, here, tooth), color=colour, label=label)
+
+
+def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
+    """The curves themselves; where the mesh does not resolve the contact, their maximum pressures by Hertz's."""
+    if not few_cells_across(run):
+        return list(curves)
+    exact = with_hertz(run)
+    hertz = [engagement(exact, run.frictions.index(c.friction), run.inner_path).max_pressure for c in curves]
+    return [replace(c, max_pressure=own * running_median(c.max_pressure / own)) for c, own in zip(curves, hertz)]
+
+
+def few_cells_across(run: RunData) -> bool:
+    """Whether the mesh does not resolve the contact."""
+    return not cells_across(run) >= FEWEST_CELLS
+
+
+def _resolved(run: RunData) -> list[str]:
+    """What is to be said where it does not."""
+    if not few_cells_across(run):
+        return []
+    return [
+        f"Only {cells_across(run):.1f} elements across the contact: points as computed; lines: Hertz for the same loads"
+        f" times the median of {MEDIAN} ratios to it."
+    ]
+
+
+def running_median(values: Floats) -> Floats:
+    """Of `MEDIAN` values (n,) about each, fewer at the ends; NaN stays."""
+    known = np.flatnonzero(np.isfinite(values))
+    reach, found = MEDIAN // 2, np.full(len(values), np.nan)
+    for place, index in enumerate(known):
+        span = min(reach, place, len(known) - 1 - place)  # as many on either side: an end keeps its own value
+        found[index] = np.median(values[known[place - span : place + span + 1]])
+    return found
+
+
+def _zone_ends(axes: Axes, run: RunData, curve: Engagement) -> None:
+    """Shades the rotations at which the maximum lies where a tip-edge zone begins."""
+    step = np.degrees(run.pitch) / len(run.positions)
+    there = curve.at_zone_end.astype(float)
+    there = running_median(there) if few_cells_across(run) else there
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], (there > 0.5).astype(int), [0]])))
+    for first, last in edges.reshape(-1, 2):
+        low, high = np.degrees(curve.angle[first]) - 0.5 * step, np.degrees(curve.angle[last - 1]) + 0.5 * step
+        axes.axvspan(low, high, color=FAINT, alpha=0.13, linewidth=0.0)
 
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
@@ -125,12 +185,6 @@ def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> 
     _, first, second = np.intersect1d(key[here], np.round(lowest.angle, 9), return_indices=True)
     mine = np.flatnonzero(here)[first]
     return curve.angle[mine], curve.max_pressure[mine] / lowest.max_pressure[second] - 1.0
-
-
-def present(curves: Sequence[Engagement]) -> list[int]:
-    """Which of the three teeth have a contact stress in this pitch."""
-    pressures = [(c.tooth, pressure) for c in curves for pressure in (c.max_pressure, c.mean_pressure)]
-    return [t for t in NAMES if all(np.isfinite(pressure[tooth == t]).any() for tooth, pressure in pressures)]
 
 
 def _lowest(curves: Sequence[Engagement]) -> Engagement:
@@ -160,16 +214,16 @@ def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: floa
 
 def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
     """Marks the rotations at which the next tooth pair comes to the same place, and names the teeth."""
-    low, high = np.degrees(curve.angle[0]), np.degrees(curve.angle[-1])
+    low, high = np.degrees(curve.angle[np.isfinite(curve.max_pressure)][[0, -1]])
     pitch = np.degrees(run.pitch)
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
         if low < k * pitch < high:
             axes.axvline(k * pitch, color=FAINT, linestyle=":", linewidth=1.0)
-    for tooth in NAMES:
+    for tooth in shown_teeth(run, [curve]):
         left, right = max(low, tooth * pitch), min(high, (tooth + 1) * pitch)
-        if right - left > 0.3 * pitch:
+        if right - left > 0.35 * pitch:
             across = axes.get_xaxis_transform()
-            axes.text(0.5 * (left + right), 0.03, f"tooth {2 - tooth}", transform=across, ha="center", fontsize=9)
+            axes.text(0.5 * (left + right), 0.03, short_name(run, tooth), transform=across, ha="center", fontsize=9)
 
 
 def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
@@ -195,15 +249,15 @@ def _see_engagement(curves: Sequence[Engagement], cross: float, bar: float) -> s
     return f"{peak}; {means}; {where}."
 
 
-def _see_teeth(curves: Sequence[Engagement]) -> str:
+def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
     if len(curves) == 1:
         return f"One friction coefficient, μ = {curves[0].friction:g}."
     lowest, highest = _lowest(curves), _highest(curves)
     parts = []
-    for tooth in present(curves):
+    for tooth in shown_teeth(run, curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
         low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
-        parts.append(f"tooth {2 - tooth} {low} to {high} %")
+        parts.append(f"{short_name(run, tooth)} {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
 
 
@@ -216,13 +270,13 @@ class Trend:
     largest: Floats
 
 
-def trends(curves: Sequence[Engagement]) -> list[Trend]:
-    """Of the three teeth; the average is along the contact line, then over the positions."""
+def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
+    """Of these teeth; the average is along the contact line, then over the positions."""
     return [
         Trend(
             tooth,
             np.array([np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]),
             np.array([np.nanmax(c.max_pressure[c.tooth == tooth]) for c in curves]),
         )
-        for tooth in present(curves)
+        for tooth in teeth
     ]

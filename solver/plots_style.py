@@ -12,21 +12,24 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.textpath import TextPath
 
 from meshes.files import write_bytes
 
 PINION, WHEEL = "#1f5fa8", "#c0392b"
 """Curves that belong to the pinion and to the wheel."""
 PINION_BODY, WHEEL_BODY = "#7d9cc4", "#cf8a7f"
-TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b")
-"""The paper's teeth 1, 2, 3."""
+TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b", "#2d6fb0")
+"""Tooth pairs, the one ahead first."""
 INK, FAINT = "#222222", "#8a8f98"
-CHARACTER = 0.0700
-"""Mean width [inch] of a character of 10 points."""
+OVER = "#1f6fd0"
+"""Beyond the upper end of a colour scale."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
-)
+).with_extremes(over=OVER)
 """Sequential, from bare flank to the largest pressure; its lightness falls all the way."""
+FRICTION_MAP = LinearSegmentedColormap.from_list("evolvent_friction", ["#d97706", "#c2386b", "#6d3fa0", "#16213d"])
+"""One colour per coefficient; also the lightest stands out from white by three to one."""
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
@@ -63,8 +66,8 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
     )  # fmt: skip
-    fitting = (size[0] - 0.3) / (CHARACTER * max(1, len(see)))
-    see_size = 10.0 * min(1.0, fitting)
+    width = TextPath((0.0, 0.0), see, size=10.0).get_extents().width / 72.0 if see else 0.0
+    see_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
     figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
     return figure
 
@@ -72,17 +75,12 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
 def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
     """One colour per coefficient, darker with more friction."""
     ranks = np.argsort(np.argsort(frictions)) / max(1, len(frictions) - 1)
-    return [tuple(matplotlib.colormaps["viridis_r"](0.08 + 0.87 * rank)) for rank in ranks]
+    return [tuple(FRICTION_MAP(rank)) for rank in ranks]
 
 
 def dot_size(count: int) -> float:
     """Markers for a cloud of `count` points."""
     return 3.0 if count > 400 else 7.0
-
-
-def signed(value: float, digits: int = 1) -> str:
-    """A number with its sign, a true minus."""
-    return f"{value:+.{digits}f}".replace("-", "−")
 
 
 def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:

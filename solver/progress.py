@@ -15,7 +15,7 @@ from rich.progress import Progress as Bars
 from rich.text import Text
 
 MESHING, CONDENSING, POSITIONS, CYCLES = "meshing", "condensing", "positions", "cycles of wear"
-ERROR_BARS, OUTPUT = "error bars", "tables and pictures"
+ERROR_BARS, DEFORMATION, OUTPUT = "error bars", "deformation", "tables and pictures"
 TENTHS = 10
 
 

@@ -15,12 +15,13 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
+from solver.mesh_facts import MeshFacts
 from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
+from solver.run_warnings import warnings_of
 from solver.scene import GEARS
 from solver.skips import Skipped
 
@@ -46,16 +47,6 @@ class Timings:
     """Tables, fields and pictures."""
     total: float = 0.0
     """The whole run; of a resumed one since it was resumed."""
-
-
-@dataclass(frozen=True)
-class MeshFacts:
-    """What the meshes are worth."""
-
-    min_scaled_jacobian: float
-    """Smallest scaled Jacobian of the cells of both sectors; 1 is a cube, 0 a cell that is folded."""
-    cells_across_contact_width: float
-    """Elements across the width 2b of the contact as it was found, in the median."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +101,12 @@ class PositionRow:
     """On the wheel's shaft."""
     transmission_error_um: float
     """r_b1 φ_1 − r_b2 φ_2: by how much the wheel lags behind the pinion, along the path of contact."""
+    mesh_stiffness_N_per_mm_um: float
+    """Slope of the force over the deflection along the line of action, over the face width: the tangent at this load,
+    without friction."""
+    secant_stiffness_N_per_mm_um: float
+    """Force over face width and transmission error, in which modifications of the flanks count as deflection; null
+    where a flank has a chart."""
     max_pressure_MPa: float
     """The largest of the teeth's."""
     tip_edge: bool
@@ -137,13 +134,16 @@ class FrictionRow:
     """Largest contact pressure of a tooth's whole engagement between the tip-edge zones."""
     max_pressure_angle_deg: float
     """The tooth's rotation where it occurs; 0 is the pitch point at mid-face."""
+    max_pressure_at_zone_end: bool
+    """Whether it lies where a tip-edge zone begins, so that its size is a matter of where that is."""
     mean_pressure_MPa: float
     """Mean over the engagement of the mean pressure between the tip-edge zones."""
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangential force at the base circle over face width and transmission error, mean of the pitch: a secant, which
-    modifications of the flanks soften; null where a flank has a chart."""
+    """Tangent, mean of the pitch: c_γ of ISO 6336-1."""
+    secant_stiffness_N_per_mm_um: float
+    """Secant, mean of the pitch; null where a flank has a chart."""
     loss_percent: float
     """Friction work of the pitch, of the input."""
     crossing_deg: float
@@ -173,6 +173,8 @@ class Summary(RunFacts):
     """Of this file's form, docs/summary.schema.json: larger where a key is gone or means something else."""
     scene: Mapping[str, object]
     """The scene with all its defaults, docs/scene.md."""
+    warnings: tuple[str, ...]
+    """What makes figures doubtful, a sentence each."""
     estimated_error: ErrorBars
     """How error bars were estimated."""
     frictions: tuple[FrictionRow, ...]
@@ -196,6 +198,8 @@ def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
         torque_pinion_Nm=1e-3 * width * result.torques[0],
         torque_gear_Nm=1e-3 * width * result.torques[1],
         transmission_error_um=1e3 * result.transmission_error,
+        mesh_stiffness_N_per_mm_um=mesh_stiffness(run, solved),
+        secant_stiffness_N_per_mm_um=secant_stiffness(run, solved),
         max_pressure_MPa=float(np.nanmax([tooth.max_pressure_MPa for tooth in teeth])),
         tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
         loss_percent=loss_percent(solved),
@@ -213,7 +217,7 @@ def loss_percent(solved: SolvedPosition) -> float:
 
 def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
     length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
-    return ToothRow(tooth.tooth, tooth.force * run.width, peak, length, tooth.edge_pressure)
+    return ToothRow(tooth.tooth, tooth.force * run.width, peak.pressure, length, tooth.edge_pressure)
 
 
 def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
@@ -232,9 +236,11 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         friction=curve.friction,
         max_pressure_MPa=float(curve.max_pressure[top]),
         max_pressure_angle_deg=math.degrees(curve.angle[top]),
+        max_pressure_at_zone_end=bool(curve.at_zone_end[top]),
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
-        mesh_stiffness_N_per_mm_um=float(np.mean(mesh_stiffness(run, index))),
+        mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
+        secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
         balance_error=pitch_imbalance(results),
@@ -242,15 +248,19 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     )
 
 
-def mesh_stiffness(run: RunData, index: int) -> Floats:
-    """T_1/(r_b1 b) over the transmission error at each position (k,) [N/(mm·µm)]; c_γ of ISO 6336-1 is their mean. NaN
-    where a flank has a chart: what is worn off it is part of the transmission error, and gives way to nothing."""
+def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
+    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction, see mesh_stiffness.py;
+    its mean over the pitch is c_γ of ISO 6336-1. F: torque over base radius and face width, δ: transmission error."""
+    return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
+
+
+def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
+    """T_1/(r_b1 b) over the transmission error [N/(mm·µm)], in which modifications of the flanks count as deflection;
+    NaN where a flank has a chart, as there is no telling how much of the error is missing material."""
     if any(getattr(run.scene, name).flank_csv is not None for name in GEARS):
-        return np.full(len(run.positions), np.nan)
-    results = [each[index].result for each in run.positions]
-    force = np.array([result.torques[0] for result in results]) / run.pair.pinion.base_radius
-    error = 1e3 * np.array([result.transmission_error for result in results])
-    return np.asarray(force * run.width / run.pair.face_width / error)
+        return math.nan
+    force = run.width * solved.result.torques[0] / run.pair.pinion.base_radius / run.pair.face_width
+    return force / (1e3 * solved.result.transmission_error)
 
 
 def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
@@ -259,6 +269,7 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
         **vars(facts),
         schema_version=SCHEMA_VERSION,
         scene=run.scene.model_dump(mode="json"),
+        warnings=warnings_of(run, facts.mesh),
         estimated_error=ErrorBars(run.errors.method, run.errors.missing or None),
         frictions=tuple(friction_rows(run)),
         positions=tuple(position_rows(run)),

@@ -11,13 +11,14 @@ from mpi4py import MPI
 from solver import compat
 from solver.archive import Archive
 from solver.companion import companion_of
+from solver.deformation import deformation_of
 from solver.parallel import on_first
-from solver.progress import ERROR_BARS, OUTPUT, Progress
+from solver.progress import DEFORMATION, ERROR_BARS, OUTPUT, Progress
 from solver.run_checks import check_folder, others
 from solver.run_folder import RunFolder
 from solver.run_lock import locked
 from solver.run_log import logged
-from solver.run_output import peak_memory_MB, write_output
+from solver.run_output import Companions, peak_memory_MB, write_output
 from solver.run_start import continued, kept_start
 from solver.run_sweep import pitch_of, sweep_scene
 from solver.run_wear import wear_scene, write_wear
@@ -70,9 +71,14 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
         if wanted_output(scene).error_bars:
             progress.stage(ERROR_BARS)
             companion = companion_of(scene, archive, pitch, comm)
+        deformation = None
+        if wanted_output(scene).deformation:
+            progress.stage(DEFORMATION)
+            deformation = deformation_of(scene, archive, comm)
         progress.stage(OUTPUT)
         memory = comm.allreduce(peak_memory_MB())
-        on_first(comm, lambda: write_output(scene, archive, sweep, companion, comm.size, begin, memory, log))
+        more = Companions(companion, deformation)
+        on_first(comm, lambda: write_output(scene, archive, sweep, more, comm.size, begin, memory, log))
         if scene.wear is not None:
             on_first(comm, lambda: write_wear(scene, out, log))
         on_first(comm, RunFolder(out).remove_parts)

@@ -8,24 +8,25 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from meshes.errors import ResultError
 from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
 from solver.companion import Companion
+from solver.deformation import Deformation
 from solver.draw import Drawn, draw
 from solver.error_bars import with_errors
 from solver.fields import write_fields
 from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
-from solver.results import MeshFacts, RunFacts, Timings, write_tables
+from solver.mesh_facts import MeshFacts, cells_across
+from solver.results import RunFacts, Timings, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
 from solver.run_start import Meshes, keep_scene
+from solver.run_warnings import warnings_of
 from solver.scene import Scene
 from solver.skips import skipped, wanted_output
 
@@ -55,6 +56,14 @@ class Sweep:
     timings: Timings
 
 
+@dataclass(frozen=True)
+class Companions:
+    """What was solved beside a run: its coarse companion and the insides of its teeth, None where not asked for."""
+
+    coarse: Companion | None
+    deformation: Deformation | None
+
+
 def timings_of(preparation: Preparation) -> Timings:
     """What preparing took."""
     parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
@@ -62,7 +71,7 @@ def timings_of(preparation: Preparation) -> Timings:
 
 
 def write_output(
-    scene: Scene, archive: Archive, sweep: Sweep, companion: Companion | None, ranks: int, begin: float, memory: float,
+    scene: Scene, archive: Archive, sweep: Sweep, more: Companions, ranks: int, begin: float, memory: float,
     log: RunLog,
 ) -> None:  # fmt: skip
     """The tables, which say that the run is complete; then fields and pictures, whose failing costs nothing else.
@@ -71,6 +80,7 @@ def write_output(
     """
     started = time.perf_counter()
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
+    companion = more.coarse
     data = with_errors(data, archive, companion)
     keep_scene(scene, archive.files)  # a resumed run may ask for other output
 
@@ -82,7 +92,13 @@ def write_output(
 
     write(started)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
+    if more.deformation is not None:
+        from solver.deformed_fields import write_deformed  # VTK takes a second
+
+        log.info("fields: %s", write_deformed(data, more.deformation, archive.files))
     write(started)  # with the time that pictures took
+    for sentence in warnings_of(data, mesh_facts(data, sweep.meshes)):
+        log.warning(sentence)
     log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
 
 
@@ -124,18 +140,16 @@ def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory
         ranks=ranks,
         dofs=sum(mesh.points.shape[0] * mesh.dimension for mesh in meshes),
         cells=sum(len(mesh.cells) for mesh in meshes),
-        mesh=MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), _cells_across(data)),
+        mesh=mesh_facts(data, meshes),
         skipped=skipped(data.scene),
         timings_s=timings,
         peak_memory_MB=memory,
     )
 
 
-def _cells_across(data: RunData) -> float:
-    """Median over all slices of the fitted contact width 2b over the mean length of a profile element."""
-    widths = np.concatenate([2.0 * solved.cut.half_width for each in data.positions for solved in each])
-    arc = np.unique(np.round(data.flank.roll_length**2 / (2.0 * data.pair.pinion.base_radius), 7))
-    return float(np.nanmedian(widths) * ((len(arc) - 1) / 2) / np.ptp(arc))
+def mesh_facts(data: RunData, meshes: Meshes) -> MeshFacts:
+    """Of a run's meshes."""
+    return MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), cells_across(data))
 
 
 def certify(results: Iterable[PositionResult]) -> None:

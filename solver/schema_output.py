@@ -15,8 +15,20 @@ class Output(Section):
     pictures: bool = key("draw the PNG pictures", "true or false", default=True)
     animation: bool = key("draw the animation", "true or false", default=True)
     fields: bool = key("write the fields for ParaView", "true or false", default=True)
+    deformation: bool = key(
+        "also write displacement and stress of the teeth in contact for ParaView, at the first friction coefficient; "
+        "both gears are condensed once more",
+        "true or false",
+        default=False,
+    )
     error_bars: bool = key(
         "solve a coarse companion too, for error bars of the engineering figures", "true or false", default=True
+    )
+    compare: Literal["yang2022"] | None = key(
+        "a published study whose figures stand beside the results, and whose names its teeth and points have",
+        '"yang2022"',
+        "delete the key for results by themselves",
+        default=None,
     )
 
 

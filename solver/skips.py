@@ -231,4 +231,6 @@ def wanted_output(scene: Scene) -> Output:
         animation=asked.animation or drawn,
         fields=asked.fields or "fields" in off,
         error_bars=asked.error_bars or "error-bars" in off,
+        compare=asked.compare,
+        deformation=asked.deformation,
     )

@@ -33,6 +33,7 @@ from solver.skips import is_plane
 from solver.surface import Surface, surface_of
 
 PEAK_TO_PEAK = 1.6e-3  # [mm] of the made-up transmission error
+STIFFNESS = 3e5  # [N/mm] along the line of action, over the whole face
 LAST_ROW = 0.3  # [mm of ξ] beside a tip edge that count as bearing on it
 WINDOW = 0.6  # [mm of arc] on either side of a contact line
 NO_STATE = SweepState((0.0, 0.0), ())
@@ -97,11 +98,13 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
     parts = [contact_points(stand, flank, tooth, line, friction) for tooth in teeth]
     points = ContactPoints.joined(parts)
     tooth, node, traction = (np.concatenate(c) for c in zip(*(nodal(stand, flank, t, line, friction) for t in teeth)))
+    no_rows, no_forces = np.zeros((0, 2), dtype=np.int64), np.zeros((0, d))
     torque = estimate.pinion_torque / (pair.face_width if d == 2 else 1.0)
     loss = float(np.sum(points.weights[:, None] * points.traction[:, 1:] * points.rate[:, 1:]))
     return PositionResult(
         stand, friction, (torque, pair.ratio * (torque - loss)), points, tooth, node, flank.weights()[node], traction,
-        5, 1e-9, 0.1,
+        5, 1e-9, STIFFNESS / (1.0 if d == 3 else pair.face_width),
+        no_rows, no_rows, no_forces, no_forces, 0.1,
     )  # fmt: skip
 
 

@@ -80,9 +80,11 @@ def test_maximum_pressure_is_hertz_at_the_smallest_radius(run: RunData) -> None:
 def test_largest_peak(run: RunData) -> None:
     """Problem: Hertz pressure with even load. Exact: the engagement's largest pressure, where the flanks are most
     curved: where a line enters the tip-edge zone towards the pinion's root."""
-    ξ, peak = largest_peak(run, 0)
-    assert peak == np.nanmax(engagement(run, 0).max_pressure)
-    assert ξ == pytest.approx(run.inner_path[0], abs=0.02)
+    top, curve = largest_peak(run, 0), engagement(run, 0)
+    assert top.pressure == np.nanmax(curve.max_pressure)
+    assert top.ξ == pytest.approx(run.inner_path[0], abs=0.02)
+    assert top.at_zone_end and curve.at_zone_end[int(np.nanargmax(curve.max_pressure))]
+    assert not curve.at_zone_end[curve.angle > 0.2].any()  # there all of a line is past the zone
 
 
 def test_maximum_does_not_jump_from_position_to_position(run: RunData) -> None:
@@ -94,10 +96,10 @@ def test_maximum_does_not_jump_from_position_to_position(run: RunData) -> None:
     assert np.abs(np.diff(np.log(curve.max_pressure[entering]))).max() < 0.03
 
 
-def test_maximum_scatters_no_more_than_the_fits(run: RunData) -> None:
-    """Problem: fitted peaks 4 % too high and too low by turns, as coarse meshes leave them. Exact: the maximum of a
-    line is within these 4 % of that of the even peaks, also where the line is continued to the tip-edge zone;
-    continuing the peaks themselves would multiply what they are off by."""
+def test_maximum_scatters_less_than_the_fits(run: RunData) -> None:
+    """Problem: fitted peaks 4 % too high and too low by turns, as coarse meshes leave them. Exact: slices pooled with
+    their neighbours are even but for the ends of a line, where 1.6 % are left; the maximum of a line of four slices and
+    more is within these of that of the even peaks, also where the line is continued to the tip-edge zone."""
 
     def scattered(solved: SolvedPosition) -> SolvedPosition:
         turns = 1.0 + 0.04 * (-1.0) ** np.arange(len(solved.cut.peak))
@@ -105,9 +107,9 @@ def test_maximum_scatters_no_more_than_the_fits(run: RunData) -> None:
 
     positions = tuple(tuple(scattered(solved) for solved in each) for each in run.positions)
     even, uneven = (engagement(each, 0).max_pressure for each in (run, replace(run, positions=positions)))
-    known = np.isfinite(even)
+    known = np.isfinite(even) & (engagement(run, 0).contact_length > 5.0)
     assert known.sum() > 0.8 * len(known)
-    np.testing.assert_allclose(uneven[known], even[known], rtol=0.0401)
+    np.testing.assert_allclose(uneven[known], even[known], rtol=0.016)
 
 
 def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
@@ -122,7 +124,7 @@ def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
     ones, peak = np.ones(6), np.where(edge, np.nan, 1.03 * hertz)
     cut = Slices(np.zeros(6, dtype=int), ones, ξ, ones, load, peak, peak, ones, hertz, edge)
     exact = 1.03 * line_peak_pressure(500.0, run.pair.relative_curvature_radius(-5.0), 115e3)
-    assert line_peak(run.pair, cut, 0, (-5.0, 6.0)) == pytest.approx(float(exact), rel=2e-3)
+    assert line_peak(run.pair, cut, 0, (-5.0, 6.0)).pressure == pytest.approx(float(exact), rel=2e-3)
     assert peak[2] < 0.97 * exact
 
 
@@ -160,12 +162,13 @@ def test_ends_where_the_force_is_zero(step: float) -> None:
 
 def _loaded(angle: np.ndarray, force: np.ndarray) -> Engagement:
     zero = np.zeros(len(angle))
-    return Engagement(0.0, angle, zero.astype(int), zero.astype(int), force, zero, zero, zero, zero)
+    return Engagement(0.0, angle, zero.astype(int), zero.astype(int), force, zero, zero, zero > 0.0, zero, zero)
 
 
 def _curve(friction: float, angle: np.ndarray, pressure: np.ndarray) -> Engagement:
     zero = np.zeros(len(angle))
-    return Engagement(friction, angle, zero.astype(int), zero.astype(int), zero, zero, pressure, pressure, zero)
+    none = zero.astype(int)
+    return Engagement(friction, angle, none, none, zero, zero, pressure, zero > 0.0, pressure, zero)
 
 
 def test_crossing_finds_where_friction_turns_from_harm_to_relief() -> None:

@@ -92,12 +92,12 @@ def test_a_settled_state_stays(bent: GearModel) -> None:
     """Problem: deflected flanks that have settled, searched once more. Exact: the same torque of the pinion but for
     what the tolerance leaves, a hundredth of what the first searches changed; the rotation moves by half at most."""
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.0], None)
-    contact, found = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
-    further, again = settled(bent, contact, found, 0.0, None, 0.01)
-    cases = (shared.contact, shared.smooth), (contact, found), (further, again)
+    first = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
+    again = settled(bent, first.contact, first.found, 0.0, None, 0.01)
+    cases = (shared.contact, shared.smooth), (first.contact, first.found), (again.contact, again.found)
     before, settled_, after = (float(np.sum(c.spins[0][:, 0] * state.force[:, 0])) for c, state in cases)
     assert abs(after - settled_) < 0.01 * abs(settled_ - before)
-    assert abs(float(again.motion[0])) < 0.5 * abs(float(found.motion[0]))
+    assert abs(float(again.found.motion[0])) < 0.5 * abs(float(first.found.motion[0]))
 
 
 def test_unsettled_flanks_are_said(bent: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,8 +113,8 @@ def test_displacements_turn_with_their_gears(bent: GearModel) -> None:
     same on each gear, so that nothing slips beside the velocity of deflected points; between flanks as made that
     velocity has no part of the displacement, and what is remembered turns with the wheel alone."""
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.1], None)
-    contact, found = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
-    for own, state, stays in ((contact, found, True), (shared.contact, shared.smooth, False)):
+    first = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
+    for own, state, stays in ((first.contact, first.found, True), (shared.contact, shared.smooth, False)):
         memory = remembered(bent, own, state)
         turned = replace(memory, stand=replace(memory.stand, angle=memory.stand.angle - 0.02))
         now, then = (recalled(own, [each])[0].jump for each in (replace(memory, stand=own.stand), turned))

@@ -17,7 +17,7 @@ import jsonschema
 import pytest
 import pyvista
 
-from evidence.outputs import ARRAYS, FILES, SECTIONS, described
+from evidence.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
 from evidence.pages import ROOT
 from solver.cli import main
 from solver.results import PositionRow, ToothRow
@@ -34,7 +34,8 @@ WEARS = ("--set", "wear.cycles=1e4", "--set", "wear.pinion_mm2_per_N=1e-10")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two positions with friction, with fields."""
     folder = tmp_path_factory.mktemp("outputs") / "out"
-    assert main(["run", *HE, "--set", "contact.friction=[0.0,0.1]", "--quiet", "--out", str(folder)]) == 0
+    more = "--set", "output.deformation=true", "--set", "contact.friction=[0.0,0.1]"
+    assert main(["run", *HE, *more, "--quiet", "--out", str(folder)]) == 0
     return folder
 
 
@@ -140,6 +141,8 @@ def test_arrays_for_paraview(out: Path) -> None:
     found = {re.sub(r"mu=[\d.]+", "mu=...", name) for name in flanks.point_data}
     assert found == {name for name, _ in ARRAYS}
     assert list(pyvista.read(out / "fields" / "gears_0000.vtp").point_data) == []
+    deformed = pyvista.read(out / "fields" / "deformed_0000.vtu")
+    assert {*deformed.point_data, *deformed.cell_data} == {name for name, _ in DEFORMED}
 
 
 def test_every_class_has_a_section() -> None:

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
 from synthetic_run import synthetic_run
 from test_results import store
 
+from solver.cli import Exit, main
 from solver.display import off_screen
+from solver.engagement import engagement, engagements
+from solver.plain_text import signed
 from solver.plots import figures, pictures
-from solver.plots_flank import at_point, envelope, paper_points, paper_position
-from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, signed, styled
+from solver.plots_drive import line_load, missed_peaks
+from solver.plots_flank import envelope, pressure_map
+from solver.plots_lines import at_point, path_points
+from solver.plots_stress import engagement_stress, few_cells_across, running_median, smoothed
+from solver.plots_style import PRESSURE_MAP, friction_colours, sheet, styled
+from solver.plots_yang import paper_points, paper_position
 from solver.results import friction_rows
 from solver.run_data import RunData
 from solver.run_plot import plot_folder
@@ -66,6 +75,18 @@ def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
         assert picture.size[0] > 1500
 
 
+def test_plot_draws_what_a_run_did_not(tmp_path: Path) -> None:
+    """A run without pictures, drawn afterwards: all figures and the pair are there; no animation, which was not asked
+    for."""
+    silent = synthetic_run("contact.friction=0.1", "output.pictures=false", "output.animation=false")
+    store(silent, tmp_path)
+    assert main(["plot", str(tmp_path)]) == Exit.BAD_INPUT  # not finished
+    (tmp_path / "summary.json").touch()
+    assert main(["plot", str(tmp_path)]) == Exit.DONE
+    names = {path.name for path in (tmp_path / "pictures").iterdir()}
+    assert "01_loaded_pair.png" in names and "10_hertz.png" in names and "animation.gif" not in names
+
+
 def test_scene_can_switch_pictures_off() -> None:
     """With both switched off nothing is drawn."""
     silent = synthetic_run("contact.friction=0.1", "output.pictures=false", "output.animation=false")
@@ -110,6 +131,101 @@ def test_envelope_is_hertz_over_the_path(run: RunData) -> None:
     np.testing.assert_allclose(mean * np.sqrt(radius) / np.mean(mean * np.sqrt(radius)), 1.0, atol=0.03)
 
 
+def texts_of(run: RunData) -> dict[str, str]:
+    """All that is written in each figure."""
+    with styled():
+        return {name: " ".join(text.get_text() for text in draw(run).findobj(Text)) for name, draw in figures(run)}
+
+
+def test_a_study_is_shown_where_it_is_asked_for(run: RunData) -> None:
+    """Yang's estimates, teeth and points are in the pictures of a scene that compares with them, and in no other: there
+    tooth pairs have their numbers of teeth.csv, and points the names of ISO 21771."""
+    compared = texts_of(run)
+    assert "Yang Eq. 4" in compared["10_hertz"] and "1788" in compared["10_hertz"]
+    assert "tooth 2" in compared["06_pressure_along_lines"] and "tooth 3 (enters" in compared["04_stress_of_teeth"]
+    output = run.scene.output.model_copy(update={"compare": None})
+    plain = texts_of(replace(run, scene=run.scene.model_copy(update={"output": output, "title": "a pair"})))
+    assert plain.keys() == compared.keys()
+    for name, text in plain.items():
+        assert not any(word in text for word in ("Yang", "1788", "tooth 1", "tooth 2", "tooth 3")), name
+    assert "pair 0 (at the pitch point, φ = 0)" in plain["04_stress_of_teeth"]
+    assert "pair −1" in plain["06_pressure_along_lines"]
+    assert "points of the path of contact" in plain["07_points_over_friction"]
+
+
+def test_points_of_the_path() -> None:
+    """He's pair: A and E at the tips, ε_α p_bt apart, C the pitch point; from B to D a single pair bears, so that they
+    are (2 − ε_α) p_bt apart. Zhang's pair, whose contact ratio is above 2, has no single pair contact."""
+    pair = synthetic_run(file="demos/he2022.toml").pair
+    at, pitch = dict(path_points(pair)), pair.pinion.transverse_base_pitch
+    assert list(at) == ["A", "B", "C", "D", "E"] and at["C"] == 0.0
+    assert at["E"] - at["A"] == pytest.approx(1.7547 * pitch, rel=1e-4)
+    assert at["D"] - at["B"] == pytest.approx((2.0 - 1.7547) * pitch, rel=1e-3)
+    assert [name for name, _ in path_points(synthetic_run(file="demos/zhang2023.toml").pair)] == ["A", "C", "E"]
+
+
+def test_labels_are_not_clipped_nor_crossed(run: RunData) -> None:
+    """In the map of the envelope every contour's label lies within its axes; what is above the scale has a colour of
+    its own, which the bar shows. In 03 no word lies on the line at 0; in 12 the legend of sliding meets neither
+    curve."""
+    with styled():
+        figure = pressure_map(run)
+        FigureCanvasAgg(figure).draw()
+        inside = figure.axes[0].get_window_extent()
+        labels = [text.get_window_extent() for text in figure.axes[0].texts]
+        assert labels and all(inside.x0 < box.x0 and box.x1 < inside.x1 for box in labels)
+        assert figure.axes[-1]._colorbar.extend == "max"
+        assert tuple(PRESSURE_MAP(2.0)) != tuple(PRESSURE_MAP(1.0))
+        figure = engagement_stress(run)
+        FigureCanvasAgg(figure).draw()
+        main, x = figure.axes[0], figure.axes[0].transData.transform((0.0, 0.0))[0]
+        area = main.get_window_extent()
+        boxes = [text.get_window_extent() for text in main.findobj(Text) if text.get_text()]
+        assert not any(box.x0 < x < box.x1 and area.y0 < box.y0 and box.y1 < area.y1 for box in boxes)
+        figure = line_load(run)
+        FigureCanvasAgg(figure).draw()
+        lower = figure.axes[1]
+        box = lower.get_legend().get_window_extent()
+        for line in lower.lines[:2]:
+            assert not any(box.contains(*point) for point in lower.transData.transform(line.get_xydata()))
+
+
+def test_median_where_the_contact_is_not_resolved(run: RunData) -> None:
+    """Problem: quick, with 1.7 elements across: points and their median are drawn, and said. Exact: of a constant with
+    every third point lifted that constant, but for the ends; of a straight line itself; NaN stays NaN."""
+    assert few_cells_across(run)
+    with styled():
+        words = " ".join(text.get_text() for text in engagement_stress(run).findobj(Text))
+    assert "elements across the contact: points as computed; lines: Hertz for the same loads" in words
+    line = np.arange(12.0)
+    assert not running_median(np.where(line % 3 == 1, 100.0, 0.0))[2:-2].any()
+    holes = running_median(np.concatenate([[np.nan], line, [np.nan]]))
+    np.testing.assert_array_equal(holes[1:-1], line)
+    assert np.isnan(holes[[0, -1]]).all()
+
+
+def test_a_single_pair_is_not_smoothed_away() -> None:
+    """Problem: a spur pair at quick, whose load is twice as high while a single pair bears, at one of four positions,
+    with Hertz's pressure. Exact: smoothing leaves that curve as it is; a plain running median would halve its peak."""
+    pair = synthetic_run("sweep.positions=4", file="demos/he2022.toml")
+    assert few_cells_across(pair)
+    curve, line = engagement(pair, 0), smoothed(pair, engagements(pair))[0]
+    known = np.isfinite(curve.max_pressure)
+    np.testing.assert_allclose(line.max_pressure[known], curve.max_pressure[known], rtol=0.03)
+    assert np.nanmax(running_median(curve.max_pressure)) < 0.9 * np.nanmax(curve.max_pressure)
+
+
+def test_extremes_between_positions() -> None:
+    """Exact: of a sawtooth with corners halfway between samples, half a step's rise and fall is missed at each end;
+    where samples meet the corners nothing is, and of a sine hardly anything."""
+    x = np.arange(20) / 20.0
+    for shift, missed in ((0.5, 0.05), (0.0, 0.0)):
+        wave = 1.0 - np.abs(2.0 * ((x + shift / 20.0) % 1.0) - 1.0)  # corners 0 and 1
+        assert missed_peaks(wave) == pytest.approx(2.0 * missed, abs=1e-12)
+    assert missed_peaks(np.sin(2.0 * np.pi * (x + 0.013))) < 0.2
+    assert missed_peaks(x[:4]) == 0.0
+
+
 def test_points_lie_where_the_paper_says(run: RunData) -> None:
     """A, B, C on the line through the pitch circle: below, at, above it; D on the line near the root. All on the flank
     and under pressure."""
@@ -125,10 +241,14 @@ def test_points_lie_where_the_paper_says(run: RunData) -> None:
 
 
 def test_colours() -> None:
-    """The pressure map's lightness falls all the way, so it also reads in grey; more friction is darker; true minus."""
+    """The pressure map's lightness falls all the way, so it also reads in grey; more friction is darker, and the least
+    stands out from white by three to one (WCAG 2.1, non-text contrast); true minus."""
     grey = PRESSURE_MAP(np.linspace(0.0, 1.0, 200))[:, :3] @ [0.299, 0.587, 0.114]
     assert np.all(np.diff(grey) < 1e-3)
     light, dark = (sum(to_rgb(colour)) for colour in friction_colours([0.05, 0.3]))
     assert light > dark
+    for colour in friction_colours(np.linspace(0.0, 0.3, 7).tolist()):
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+        assert 1.05 / (float(np.dot(linear, [0.2126, 0.7152, 0.0722])) + 0.05) > 3.0
     assert signed(-1.25, 2) == "−1.25"
     assert sheet("t", "x" * 400).texts[1].get_fontsize() < 8.0

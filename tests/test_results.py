@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_run import PEAK_TO_PEAK, synthetic_run
+from synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
 from solver.archive import Archive
 from solver.gear_sweep import SweepState, SweptPosition
-from solver.results import MeshFacts, RunFacts, Timings, friction_rows, position_rows, summary, write_tables
+from solver.mesh_facts import MeshFacts
+from solver.results import RunFacts, Timings, friction_rows, position_rows, summary, write_tables
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
 
@@ -78,16 +79,30 @@ def test_friction_rows(run: RunData) -> None:
     assert np.isnan(smooth.crossing_deg)
 
 
+def test_stiffness_of_the_face(run: RunData) -> None:
+    """Exact: tangents of 3e5 N/mm as made up, over a face of 16.9 mm, in 2D per mm already; the secant T_1/(r_b1 b)
+    over the mean of 1/error."""
+    wanted = 1e-3 * STIFFNESS / 16.9
+    assert friction_rows(run)[0].mesh_stiffness_N_per_mm_um == pytest.approx(wanted)
+    assert position_rows(run)[0].mesh_stiffness_N_per_mm_um == pytest.approx(wanted)
+    plane = synthetic_run(file="demos/he2022.toml")
+    assert friction_rows(plane)[0].mesh_stiffness_N_per_mm_um == pytest.approx(1e-3 * STIFFNESS / 20.0)
+    errors = [row.transmission_error_um for row in position_rows(plane)]
+    wanted = 170e3 / plane.pair.pinion.base_radius / 20.0 * np.mean(1.0 / np.array(errors))
+    assert friction_rows(plane)[0].secant_stiffness_N_per_mm_um == pytest.approx(wanted)
+
+
 def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -> None:
     """The same results of a pair with a charted pinion: what is missing of the flank is part of the transmission error
-    but no deflection, so that no mesh stiffness is given, and JSON has null; without the chart it is a number."""
+    but no deflection, so that no secant is given, and JSON has null; the tangent is there all the same."""
     pinion = run.scene.pinion.model_copy(update={"flank_csv": "worn.csv"})
     charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
-    assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(run))
-    assert all(np.isnan(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
+    assert all(np.isfinite(row.secant_stiffness_N_per_mm_um) for row in friction_rows(run))
+    assert all(np.isnan(row.secant_stiffness_N_per_mm_um) for row in friction_rows(charted))
+    assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
     write_tables(RunFolder(tmp_path), charted, FACTS)
     text = (tmp_path / "summary.json").read_text(encoding="utf-8")
-    assert json.loads(text)["frictions"][0]["mesh_stiffness_N_per_mm_um"] is None
+    assert json.loads(text)["frictions"][0]["secant_stiffness_N_per_mm_um"] is None
 
 
 def test_plane_run_is_reported_for_the_whole_width() -> None:

@@ -7,13 +7,17 @@ from functools import cache
 import numpy as np
 import pytest
 from gear_cases import helical_scene, model_of, spur_scene
+from mpi4py import MPI
 from synthetic_run import synthetic_run
 
 from meshes.data import Floats
 from meshes.parameters import GearPair
+from solver.companion import solved_run
 from solver.flank_chart import FlankChart
 from solver.hertz import line_pressure
 from solver.run_data import RunData
+from solver.run_sweep import pitch_of
+from solver.sectors import gear_mesh
 from wear.flank_grid import FlankGrid, line_arc
 from wear.observed import Contacts, Depths, PointPassage, pitch_point_depth, radius_at, roll_distance_at, sliding
 from wear.report import WornPair
@@ -44,7 +48,21 @@ def test_point_a_at_half_load() -> None:
     assert point.pressure.max() == pytest.approx(425.0, rel=2e-3)
     assert np.degrees(point.lasts) == pytest.approx(0.334, rel=0.02)
     assert point.sliding[-1] == pytest.approx(0.0625, rel=0.02)
-    assert np.abs(point.pressure - point.hertz).max() < 0.12 * 425.0  # a ridge is interpolated, its rims are steep
+    inner = point.hertz > 0.7 * 425.0  # averages reach half a cell over the rims, which are steep
+    np.testing.assert_allclose(point.pressure[inner], point.hertz[inner], atol=0.02 * 425.0)
+
+
+def test_a_point_sees_no_spikes() -> None:
+    """Problem: He's pair solved at standard, a point between the pitch point and the tip. Exact: the pressure rises to
+    Hertz' and falls again, so that all its ups and downs come to twice the largest, and the force is Hertz' for the own
+    load; single quadrature points beside the contact's rim make that up to four times, and the largest 19 % higher."""
+    scene = spur_scene("mesh.level=standard", "sweep.positions=20", "contact.friction=0")
+    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
+    assert run is not None
+    point = PointPassage.of(run, A)
+    assert point.pressure.max() == pytest.approx(point.hertz.max(), rel=0.05)
+    assert np.abs(np.diff(point.pressure)).sum() < 2.05 * point.pressure.max()
+    assert point.pressure.sum() == pytest.approx(point.hertz.sum(), rel=0.01)
 
 
 def test_contacts_over_the_profile() -> None:

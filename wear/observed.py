@@ -10,6 +10,7 @@ whatever its width; the product of the largest stress and the sliding distance (
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,8 @@ from scipy.integrate import cumulative_trapezoid
 from meshes.data import Floats
 from meshes.parameters import GearPair
 from solver.engagement import engagement
-from solver.gear_points import ContactPoints
+from solver.flank_field import flank_field
+from solver.gear_position import PositionResult
 from solver.hertz import line_half_width, line_peak_pressure
 from solver.material import joint_modulus
 from solver.run_data import RunData
@@ -26,6 +28,8 @@ from wear.flank_grid import FlankGrid, line_arc
 from wear.passage import passage
 from wear.report import WornPair
 
+Ridge = Callable[[RunData, PositionResult, int, Floats], Floats]
+"""Pressure (n,) [MPa] of a tooth pair at a position, at distances (n,) [mm] from the contact line."""
 WIDER = 1.6  # times as long as Hertz' width lasts is a point watched
 
 
@@ -147,10 +151,13 @@ def pitch_point_depth(run: RunData, gear: int, coefficient: float) -> float:
 @dataclass(frozen=True)
 class PointPassage:
     """A point of the pinion's flank while the contact goes over it, entries (n,): own rotation [rad] of the tooth, 0 at
-    the pitch point; pressure, hertz: p for the own load [MPa]; sliding: distance so far [mm]."""
+    the pitch point; bears: bool; pressure: averaged about the nodes, which keeps the force, while that of single
+    quadrature points goes up and down beside the rim of the contact, wherever that lies in a cell; hertz: p for the
+    own load [MPa]; sliding: distance so far [mm]."""
 
     radius: float
     rotation: Floats
+    bears: np.ndarray
     pressure: Floats
     hertz: Floats
     sliding: Floats
@@ -166,35 +173,42 @@ class PointPassage:
         lasts = b / (pair.pitch_point_roll_lengths[0] + float(ξ))  # half of it; the line moves by ρ over the flank
         rotation = float(ξ) / base + WIDER * lasts * np.linspace(-1.0, 1.0, count)
         s = line_arc(pair, 0, ξ) - line_arc(pair, 0, base * rotation)
-        p = _ridges(run, rotation, s)
-        speed = (1.0 + 1.0 / pair.ratio) * base * np.abs(rotation) * (p > 0.0)
+        bears = _between(run, rotation, s, _ridge) > 0.0
+        speed = (1.0 + 1.0 / pair.ratio) * base * np.abs(rotation) * bears
         hertz = line_peak_pressure(load, R, modulus) * np.sqrt(np.maximum(0.0, 1.0 - (s / b) ** 2))
-        return PointPassage(radius, rotation, p, hertz, cumulative_trapezoid(speed, rotation, initial=0.0))
+        p = _between(run, rotation, s, _averaged)
+        return PointPassage(radius, rotation, bears, p, hertz, cumulative_trapezoid(speed, rotation, initial=0.0))
 
     @property
     def lasts(self) -> float:
         """Rotation [rad] over which it bears."""
-        return float(np.ptp(self.rotation[self.pressure > 0.0])) if (self.pressure > 0.0).any() else 0.0
+        return float(np.ptp(self.rotation[self.bears])) if self.bears.any() else 0.0
 
 
-def _ridges(run: RunData, rotation: Floats, s: Floats) -> Floats:
+def _between(run: RunData, rotation: Floats, s: Floats, ridge: Ridge) -> Floats:
     """(n,) pressure [MPa] at distances s (n,) across the contact line when a tooth stands at `rotation` (n,)."""
     stands = sorted(
-        (float(each[0].result.stand.angle + tooth * run.pitch), each[0].result.contact, int(tooth))
-        for each in run.positions
+        (float(each[0].result.stand.angle + tooth * run.pitch), k, int(tooth))
+        for k, each in enumerate(run.positions)
         for tooth in np.unique(each[0].result.contact.tooth)
     )
     angles = np.array([angle for angle, *_ in stands])
-    table = np.array([_ridge(contact, tooth, s) for _, contact, tooth in stands])
+    table = np.array([ridge(run, run.positions[k][0].result, tooth, s) for _, k, tooth in stands])
     k = np.clip(np.searchsorted(angles, rotation) - 1, 0, len(angles) - 2)
     t = np.clip((rotation - angles[k]) / (angles[k + 1] - angles[k]), 0.0, 1.0)
     column = np.arange(len(rotation))
     return np.asarray((1.0 - t) * table[k, column] + t * table[k + 1, column])
 
 
-def _ridge(contact: ContactPoints, tooth: int, s: Floats) -> Floats:
-    """(n,) pressure [MPa] of a tooth at distances s (n,) from the contact line; each point bears over its weight, so
-    that the pressure ends half the outermost weights beyond the outermost points."""
+def _averaged(run: RunData, result: PositionResult, tooth: int, s: Floats) -> Floats:
+    """(n,) pressure [MPa] of a tooth at distances s (n,) from the contact line, from averages about the nodes."""
+    return flank_field(run, result, tooth).at(s[:, None], np.zeros(1))[:, 0]
+
+
+def _ridge(_: RunData, result: PositionResult, tooth: int, s: Floats) -> Floats:
+    """The same from the quadrature points; each bears over its weight, so that the pressure ends half the outermost
+    weights beyond the outermost points."""
+    contact = result.contact
     own = np.flatnonzero(contact.tooth == tooth)
     own = own[np.argsort(contact.across[own])]
     x, p, half = contact.across[own], contact.pressure[own], contact.weights[own] / 2.0

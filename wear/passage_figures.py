@@ -44,7 +44,7 @@ def point_in_contact(point: PointPassage) -> Figure:
     figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
     left, right = figure.subplots(1, 2)
     angle = np.degrees(point.rotation)
-    left.plot(angle, point.pressure, color=PINION, lw=2.2, label="computed")
+    left.plot(angle, point.pressure, color=PINION, lw=2.2, label="computed, averaged about nodes")
     left.plot(angle, point.hertz, label="Hertz, own load", **FORMULA)
     left.set(ylabel="contact stress [MPa]", ylim=(0.0, None))
     left.legend(loc="upper right")

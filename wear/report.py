@@ -40,8 +40,7 @@ class GearReport:
 
 @dataclass(frozen=True)
 class PairReport:
-    """The pair after some cycles; figures as in summary.json. No mesh stiffness, which is a secant there: it counts
-    wear as deflection."""
+    """The pair after some cycles; figures as in summary.json."""
 
     cycles: float
     """Revolutions of the pinion."""
@@ -53,6 +52,8 @@ class PairReport:
     """Largest contact pressure of a tooth's engagement."""
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
+    mesh_stiffness_N_per_mm_um: float
+    """Tangent, mean of the pitch."""
     loss_percent: float
     """Friction work of the pitch, of the input."""
     balance_error: float
@@ -101,7 +102,7 @@ class WornPair:
         row = friction_rows(self.run)[0]
         return PairReport(
             self.cycles, self._gear(0), self._gear(1), row.max_pressure_MPa, row.transmission_error_peak_to_peak_um,
-            row.loss_percent, row.balance_error,
+            row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
         )  # fmt: skip
 
     def _gear(self, gear: int) -> GearReport:

@@ -1,0 +1,33 @@
+"""What a scene says of its results before anything is computed: sentences that `evolvent check` ends with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from solver.resolution import elements_per_contact_width
+from solver.scene import Scene
+
+FEWEST_CELLS = 2.0
+"""Across the contact width 2b. Below, peak pressures are off by 15 % and more; with 3, by 3 % (docs/benchmark.md)."""
+FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
+
+
+def scene_warnings(scene: Scene) -> tuple[str, ...]:
+    """Of a scene, a sentence each."""
+    return tuple(_expected(scene))
+
+
+def _expected(scene: Scene) -> Iterator[str]:
+    count = elements_per_contact_width(scene)
+    if count < FEWEST_CELLS:
+        yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
+    if scene.mesh.shape == "tetrahedron":
+        yield (
+            "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
+            "falls to 1e-3 and below, and those of order 1 bend too little; hexahedra of order 2 are the better choice."
+        )
+
+
+def few_cells() -> str:
+    """What fewer cells than `FEWEST_CELLS` mean."""
+    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for looking only: {FINER}."

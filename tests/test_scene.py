@@ -55,14 +55,10 @@ def test_errors_travel_between_ranks() -> None:
     assert (str(copy), copy.problems, copy.exit_status) == (str(caught.value), caught.value.problems, 2)
 
 
-@pytest.mark.parametrize("content", [None, b"\xff\xfe\x00"], ids=["missing file", "not text"])
-def test_unreadable_file(tmp_path: Path, content: bytes | None) -> None:
+def test_missing_file(tmp_path: Path) -> None:
     """A file that cannot be read is named with its path."""
-    path = tmp_path / "scene.toml"
-    if content is not None:
-        path.write_bytes(content)
     with pytest.raises(SceneError, match=r"scene\.toml: scene file: found .*; remedy: check the path"):
-        load_scene(path)
+        load_scene(tmp_path / "scene.toml")
 
 
 @pytest.mark.parametrize("name", ["yang2022", "he2022", "zhang2023"])
@@ -228,9 +224,12 @@ def test_wear_is_foretold() -> None:
 
 
 def test_docs_list_every_key() -> None:
-    """docs/scene.md has one row a key, with its default."""
+    """docs/scene.md has one row a key, with its meaning and what is allowed."""
     docs = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
     for name, field in keys_of(Scene).items():
         row = re.search(rf"^\| `{re.escape(name)}` \|(.*)\|$", docs, re.MULTILINE)
         assert row is not None, f"docs/scene.md does not list {name}"
-        assert str(field.description) in row[1], f"docs/scene.md says something else of {name}"
+        words = field.json_schema_extra
+        assert isinstance(words, dict)
+        allowed = "a list of the names below" if name == "skip.off" else words["allowed"]
+        assert f" {field.description} | {allowed} |" in row[1], f"docs/scene.md says something else of {name}"

@@ -26,6 +26,8 @@ class Section(BaseModel):
 
 LONGEST = 1e6
 """Diameters and distances [mm]: 1000 teeth of module 50 have 71 m."""
+LEAST_HELIX = 1e-3
+"""Degrees: over a face of 20 mm, 0.3 µm; less is a spur gear."""
 LENGTH = "a number above 0 up to 1e6, in mm"
 
 
@@ -44,7 +46,7 @@ class Pair(Section):
     )
     helix_angle_deg: float = key(
         "helix angle β at the reference circle, 0 for spur gears",
-        "a number from 0 to 45, in degrees",
+        f"0, or a number from {LEAST_HELIX:g} to 45, in degrees",
         "give it without a sign and say the direction with pinion.hand",
         default=0.0,
         ge=0,
@@ -65,6 +67,15 @@ class Pair(Section):
         ge=-1000,
         le=1000,
     )
+
+
+    @field_validator("helix_angle_deg")
+    @classmethod
+    def _helical_or_spur(cls, value: float) -> float:
+        if 0.0 < value < LEAST_HELIX:
+            allowed = f"0, or a number from {LEAST_HELIX:g} to 45, in degrees"
+            raise scene_problem(Problem("", shown(value), allowed, "give 0 for spur gears"))
+        return value
 
 
 ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}

@@ -70,6 +70,13 @@ def check_diameters(gear: GearParameters) -> None:
     )
     largest = root - 2.0 * SMALLEST_RIM * gear.normal_module
     require(
+        largest > 0.0,
+        "root_diameter",
+        root,
+        f"above {2.0 * SMALLEST_RIM * gear.normal_module:.6g} mm (a rim of one module under the root)",
+        "Raise it: there is no room for a bore.",
+    )
+    require(
         bore <= largest,
         "bore_diameter",
         bore,

@@ -317,6 +317,7 @@ def _details(error: Exception) -> str:
 
 
 def _leave(message: str, status: Exit) -> typer.Exit:
+    message = message.encode(errors="backslashreplace").decode()  # names of files may have bytes that are no text
     typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
     return typer.Exit(int(status))
 

@@ -82,7 +82,7 @@ def shown(value: Any) -> str:
     if isinstance(value, str):
         return _short(json.dumps(value[:LONGEST_TEXT], ensure_ascii=False))
     if isinstance(value, int) and value.bit_length() > LONGEST_NUMBER * 3:  # Python refuses to write 5000 digits
-        return f"a whole number of about {round(value.bit_length() * math.log10(2)):,} digits"
+        return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1:,} digits"
     return _short(f"{value:.10g}" if isinstance(value, float) else str(value))
 
 

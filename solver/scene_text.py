@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from solver.scene_errors import Problem, SceneError, shown
+from solver.scene_errors import Problem, SceneError, dotted_part, shown
 from solver.text_files import UnreadableText, read_text
 
 EXAMPLE = "demos/yang2022.toml is a complete example"
@@ -62,7 +62,7 @@ def _require_shallow(values: dict[str, Any]) -> None:
         name, value, depth = waiting.pop()
         if depth > DEEPEST:
             allowed, remedy = f"tables and lists up to {DEEPEST} deep", "see docs/scene.md for the keys"
-            raise SceneError([Problem(shown(name), f"values nested more than {DEEPEST} deep", allowed, remedy)])
+            raise SceneError([Problem(dotted_part(name), f"values nested more than {DEEPEST} deep", allowed, remedy)])
         inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         waiting += [(name, each, depth + 1) for each in inner if isinstance(each, (dict, list))]
 

@@ -69,7 +69,8 @@ def _lines(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """The header, and the lines below it with their numbers. Raises TableError."""
     try:
         lines = read_text(path, "CSV", LARGEST_FILE).splitlines()
-        numbered = [(n, row) for n, row in enumerate(csv.reader(lines, strict=True), 1) if any(row) and row[0][:1] != "#"]
+        rows = enumerate(csv.reader(lines, strict=True), 1)
+        numbered = [(n, row) for n, row in rows if any(row) and row[0][:1] != "#"]
     except UnreadableText as error:
         raise TableError(path, error.allowed, error.found, error.remedy) from error
     except csv.Error as error:

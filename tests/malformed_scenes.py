@@ -225,7 +225,7 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
     ),
     "bore of a point": (YANG, ["pinion.bore_diameter_mm=1e-9"], "pinion.bore_diameter_mm", "1e-09", "the bore larger"),
     "no bore": (YANG, ["pinion.bore_diameter_mm=0"], "pinion.bore_diameter_mm", "0", "delete the key"),
-    "root of a point": (YANG, ["pinion.root_diameter_mm=1e-300"], "pinion.root_diameter_mm", "1e-300", "room for a bore"),
+    "root of a point": (YANG, ["pinion.root_diameter_mm=1e-300"], "pinion.root_diameter_mm", "1e-300", "no room for"),
     "helix of a hair": (HE, ["pair.helix_angle_deg=1e-30"], "pair.helix_angle_deg", "1e-30", "give 0 for spur gears"),
     "relief of a metre": (YANG, ["pinion.tip_relief_um=1e6"], "pinion.tip_relief_um", "1000000", "give a number from"),
     "relief that adds": (YANG, ["pinion.tip_relief_um=-5"], "pinion.tip_relief_um", "-5", "give a number from"),
@@ -270,7 +270,7 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
     "time for a number": (YANG, ["load.torque_Nm=07:32:00"], "load.torque_Nm", "07:32:00", "give the torque"),
     "chart without a name": (YANG, ['pinion.flank_csv=""'], "pinion.flank_csv", '""', "delete the key"),
     "chart with a NUL": (YANG, ['pinion.flank_csv="a\\u0000.csv"'], "pinion.flank_csv", "NUL", "check the path"),
-    "chart that is not there": (YANG, ["pinion.flank_csv=no/such.csv"], "pinion.flank_csv", "No such file", "check the"),
+    "chart that is not there": (YANG, ["pinion.flank_csv=no/such.csv"], "pinion.flank_csv", "No such file", "check"),
     "chart that is a folder": (YANG, ['pinion.flank_csv="/"'], "pinion.flank_csv", "Is a directory", "check the path"),
     "chart with a long name": (
         YANG, [f'pinion.flank_csv="{"a" * 900}"'], "pinion.flank_csv", "name too long", "check the path",

@@ -132,7 +132,7 @@ def test_unsupported(case: str) -> None:
 
 def test_keys_are_not_dumped() -> None:
     """The message about an unknown key names one key, not all that there are."""
-    with pytest.raises(ValueError, match="did you mean pinion.profile_shift") as caught:
+    with pytest.raises(ValueError, match=r"did you mean pinion\.profile_shift") as caught:
         scene_from_text(YANG, ["pinion.proffile_shift=0.3"])
     assert "face_width" not in str(caught.value) and "addendum" not in str(caught.value)
 

@@ -23,7 +23,17 @@ from mpi4py import MPI
 
 from meshes.errors import EvolventError
 from meshes.files import require_writable
-from solver.options import UsageError, given_number, given_path, usage_message
+from solver.options import (
+    Force,
+    LevelOption,
+    NoSkip,
+    Overrides,
+    SceneFile,
+    UsageError,
+    given_number,
+    given_path,
+    usage_message,
+)  # fmt: skip
 from solver.scene_errors import SceneError
 from solver.stopping import stoppable
 
@@ -62,24 +72,6 @@ Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything 
     rich_markup_mode=None,  # examples keep their lines
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-SceneFile = Annotated[
-    Path,
-    typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.", parser=given_path),
-]
-Overrides = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
-]
-NoSkip = Annotated[
-    list[str] | None,
-    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
-]
-LevelOption = Annotated[
-    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
-]
-Force = Annotated[bool, typer.Option("--force", help="Go on where the machine seems to have too little memory.")]
-
 
 @app.command(
     epilog="""\b

@@ -1,11 +1,11 @@
-"""What is wrong with the options and arguments of a command, said like what is wrong with a scene."""
+"""Options that commands share, and what is wrong with options and arguments, said like what is wrong with a scene."""
 
 from __future__ import annotations
 
 import difflib
 import re
 from pathlib import Path
-from typing import Any, cast
+from typing import Annotated, Any, cast
 
 import typer
 
@@ -78,3 +78,20 @@ def given_number(text: str) -> float:
     except ValueError:
         raise typer.BadParameter(f"{shown(text)}, no number") from None
 
+
+SceneFile = Annotated[
+    Path,
+    typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.", parser=given_path),
+]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
+]
+NoSkip = Annotated[
+    list[str] | None,
+    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
+]
+LevelOption = Annotated[
+    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
+]
+Force = Annotated[bool, typer.Option("--force", help="Go on where the machine seems to have too little memory.")]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import Run
 from gear_cases import ROOT, helical_scene, spur_scene
 
 from meshes.section import section_mesh
@@ -225,3 +226,22 @@ def test_check_stays_small(settings: list[str]) -> None:
     status, kilobytes = done.stdout.splitlines()[-1].split()
     assert status in ("0", "2") and "Traceback" not in done.stderr
     assert int(kilobytes) < 200e3
+
+
+def test_too_much_relief(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A relief deeper than the fine layers below the flank would fold them: the key is named, not the folded cells."""
+    out = tmp_path / "pair.msh"
+    settings = ["--level", "quick", "--set", "wheel.tip_relief_um=400"]
+    assert main(["mesh", str(ROOT / "demos/he2022.toml"), "--out", str(out), *settings]) == 2
+    said = capsys.readouterr().err
+    assert "wheel.tip_relief_um: found 400" in said and "; remedy: lower it" in said
+    assert not out.exists()
+
+
+def test_two_ranks_refuse_once(run_script: Run) -> None:
+    """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
+    code = "import sys; from solver.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"
+    done = run_script("-c", code, *arguments, ranks=2)
+    assert done.returncode == 2 and done.stderr.count("mesh.level: found") == 1
+    assert "on 2 ranks" in done.stderr and "Traceback" not in done.stderr

@@ -16,7 +16,7 @@ from solver.scene import Scene
 from solver.scene_errors import Problem, SceneError, shown
 from solver.schema import FEWEST_ELEMENTS, Level
 from solver.schema_output import Skipping
-from solver.skips import contact_teeth, is_plane, skips
+from solver.skips import contact_teeth, is_plane, pitches, skips
 
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
 MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
@@ -24,6 +24,8 @@ DENSE_COPIES = 1.65
 """Of a run, by dimension, and of its dense matrices. Against what 25 runs of 0.2 to 23 GB took (Yang's pair of both
 orders and shapes up to 829,020 degrees of freedom, He's in 3D; docs/benchmark.md): 12 % less to 35 % more, from 2 GB on
 12 % less to 19 % more."""
+NUMBERS_KEPT = 6
+"""Of a result, over the degrees of freedom of the pinion's loaded flank: 3 plane, 5 in space."""
 MEGABYTES_PER_MESHED_DOF = 6e-4
 """Of `evolvent mesh`, which keeps both sectors and checks their cells: tetrahedra; hexahedra want 4e-4."""
 Need = Callable[[Scene, int], float]
@@ -83,7 +85,18 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
         for size in sizes
     )
     gears = first + second if ranks > 1 else max(first, second + _square_megabytes(pinion.flank))
-    return ranks * MEGABYTES_BASE[dimension] + gears
+    return ranks * MEGABYTES_BASE[dimension] + gears + results_megabytes(scene)
+
+
+def result_count(scene: Scene) -> int:
+    """Positions solved and kept: of all pitches, at all friction coefficients, at all reports of wear."""
+    pairs = 1 if scene.wear is None else 1 + len(scene.wear.reports)
+    return pairs * pitches(scene) * scene.sweep.positions * len(scene.contact.friction)
+
+
+def results_megabytes(scene: Scene) -> float:
+    """Of all results, which are together in memory when tables and pictures are made."""
+    return 8e-6 * NUMBERS_KEPT * sector_sizes(scene)[0].flank * result_count(scene)
 
 
 def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
@@ -111,11 +124,16 @@ def room_problem(scene: Scene, needed: Need, processes: int = 1) -> Problem | No
     there, wanted = machine_megabytes(), needed(scene, processes)
     if wanted <= there:
         return None
+    allowed = f"what fits into {gigabytes(there)}, the memory of this machine or container"
+    if needed is memory_megabytes and (kept := results_megabytes(scene)) > 0.5 * wanted:
+        count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
+        found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
+        remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
+        return Problem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
     dofs, ranks = sum(size.dofs for size in sector_sizes(scene)), f" on {processes} ranks" if processes > 1 else ""
     needs = f"{counted(dofs)} degrees of freedom that want about {gigabytes(wanted)}{ranks}"
     found = f"{shown(getattr(scene.mesh, name))}, {needs}"
-    allowed = f"what fits into {gigabytes(there)}, the memory of this machine or container"
     return Problem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
 
 

@@ -30,6 +30,8 @@ MEGABYTES_PER_MESHED_DOF = 6e-4
 """Of `evolvent mesh`, which keeps both sectors and checks their cells: tetrahedra; hexahedra want 4e-4."""
 Need = Callable[[Scene, int], float]
 """Memory [MB] that a command needs for a scene on so many ranks of a machine."""
+MOST_DOUBLINGS = 60
+"""Of the torque, when one is looked for with which a mesh fits."""
 LEVELS: tuple[Level, ...] = ("fine", "standard", "quick")
 
 
@@ -166,7 +168,13 @@ def _remedy(scene: Scene, needed: Need, processes: int, there: float) -> str:
     for words, other in _coarser(scene):
         if (wanted := needed(other, processes)) <= there:
             return f"take {words} ({gigabytes(wanted)})"
-    return "no mesh of these gears fits: raise the torque or take narrower gears, or a machine with more memory"
+    for doublings in range(1, MOST_DOUBLINGS):
+        torque = scene.load.torque_Nm * 2.0**doublings
+        load = scene.load.model_copy(update={"torque_Nm": torque})
+        other = _meshed(scene, level="quick", elements_per_contact_width=None).model_copy(update={"load": load})
+        if needed(other, processes) <= there:
+            return f"no mesh fits: the contact is too narrow. From about {torque:.4g} N·m on --level quick does"
+    return "no mesh fits: take narrower gears, or a machine with more memory"
 
 
 def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:

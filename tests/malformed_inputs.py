@@ -179,7 +179,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     ),
     "mesh: too large": (
         ["mesh", SCENE, "--out", "{folder}/a.msh", "--set", "load.torque_Nm=1e-4", "--set", "wheel.face_width_mm=19"],
-        "mesh.level", "degrees of freedom", "raise the torque",
+        "mesh.level", "degrees of freedom", "N·m on --level quick does",
     ),
     # plot
     "plot: nothing": (["plot"], "DIR", "nothing", "where a run has put its results"),

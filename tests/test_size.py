@@ -30,9 +30,10 @@ def yang(*settings: str) -> Scene:
     return load_scene(ROOT / "demos/yang2022.toml", settings)
 
 
-@pytest.mark.parametrize("long_way", [False, True])
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("shape", ["hexahedron", "tetrahedron"])
+@pytest.mark.parametrize(
+    ("shape", "order", "long_way"),
+    [("hexahedron", 1, False), ("hexahedron", 2, False), ("hexahedron", 2, True), ("tetrahedron", 1, False)],
+)
 @pytest.mark.parametrize("make", [spur_scene, helical_scene])
 def test_sizes_of_meshes(make: Callable[..., Scene], shape: str, order: int, long_way: bool) -> None:
     """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
@@ -108,7 +109,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
         (["mesh.level=standard"], 2e3, "mesh.level", "take --level quick --set mesh.elements_per_contact_width=1.3"),
         (["mesh.elements_per_contact_width=12"], 25e3, "mesh.elements_per_contact_width", "per_contact_width=3."),
         (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
-        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "no mesh of these gears fits: raise the torque"),
+        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "no mesh fits: the contact is too narrow. From about 104.9 N·m on --level quick does"),
     ],
 )  # fmt: skip
 def test_what_fits_is_named(

@@ -24,6 +24,9 @@ DENSE_COPIES = 1.65
 """Of a run, by dimension, and of its dense matrices. Against what 25 runs of 0.2 to 23 GB took (Yang's pair of both
 orders and shapes up to 829,020 degrees of freedom, He's in 3D; docs/benchmark.md): 12 % less to 35 % more, from 2 GB on
 12 % less to 19 % more."""
+MOST_MODES, SQUARES_PER_TOOTH = 300, 6
+"""In which teeth feel one another (200 in Yang's pair at quick), and square matrices of them for each tooth that is
+looked at (`solver.coupling`): little, but for hundreds of teeth where far ones are not skipped."""
 NUMBERS_KEPT = 6
 """Of a result, over the degrees of freedom of the pinion's loaded flank: 3 plane, 5 in space."""
 MEGABYTES_PER_MESHED_DOF = 6e-4
@@ -87,7 +90,10 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
         for size in sizes
     )
     gears = first + second if ranks > 1 else max(first, second + _square_megabytes(pinion.flank))
-    return ranks * MEGABYTES_BASE[dimension] + gears + results_megabytes(scene)
+    far = 0 if skips(scene, "far-teeth") else 2 * len(contact_teeth(scene))
+    modes = min(MOST_MODES, max(size.cuts for size in sizes))
+    ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
+    return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
 
 
 def result_count(scene: Scene) -> int:

@@ -109,7 +109,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
         (["mesh.level=standard"], 2e3, "mesh.level", "take --level quick --set mesh.elements_per_contact_width=1.3"),
         (["mesh.elements_per_contact_width=12"], 25e3, "mesh.elements_per_contact_width", "per_contact_width=3."),
         (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
-        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "no mesh fits: the contact is too narrow. From about 104.9 N·m on --level quick does"),
+        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 104.9 N·m on --level quick does"),
     ],
 )  # fmt: skip
 def test_what_fits_is_named(

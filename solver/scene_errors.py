@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 import re
@@ -15,6 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from meshes.errors import InputError
+from solver.nearest_key import nearest_key
 from solver.not_supported import not_supported
 
 NOTHING = "nothing"
@@ -22,8 +22,6 @@ MOST = 20
 """Problems that are told at once."""
 LONGEST_NUMBER = 40
 """Digits of a whole number that are shown."""
-NEAR, NEARLY_THE_SAME = 0.7, 0.85
-"""How alike keys are (`difflib`) for the one to be meant by the other; where the other may be something unsupported."""
 LONGEST_TEXT = 60
 """Characters of a value or of a key that are shown."""
 
@@ -140,31 +138,22 @@ def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> P
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
     allowed = f"{place} that docs/scene.md lists"
     words = not_supported(name)
-    similar = _similar(name, parents, model, NEARLY_THE_SAME if words else NEAR)
+    similar = _similar(name, parents, model, strict=bool(words))
     if words and not similar:
         return Problem(dotted(path), found, f"{allowed}; {words}", "delete it")
     remedy = f"did you mean {similar}? Else delete it" if similar else "delete it, or see docs/scene.md"
     return Problem(dotted(path), found, allowed, remedy)
 
 
-def _similar(name: str, parents: list[str], model: type[BaseModel], near: float) -> str:
-    """The key that was meant, looked for in its own section first, then everywhere; empty if there is none."""
-    if len(name) > LONGEST_TEXT:
-        return ""
+def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
+    """The key that was meant; empty if there is none."""
     section = section_of(_declaration(parents, model)) if parents else model
     assert section is not None
     prefix = f"{dotted(parents)}." if parents else ""
-    here = {_stem(key): prefix + key for key in reversed(section.model_fields)}
-    everywhere = {_stem(key.rsplit(".", 1)[-1]): key for key in reversed([*model.model_fields, *keys_of(model)])}
-    for known in (here, everywhere):
-        if match := difflib.get_close_matches(_stem(name), known, n=1, cutoff=near):
-            return known[match[0]]
-    return ""
-
-
-def _stem(name: str) -> str:
-    """A key without its unit, in small letters."""
-    return re.sub(r"_(mm|um|deg|Nm|GPa|m|mm2_per_N|Pa|MPa|N)$", "", name).lower()
+    here = {prefix + key: field.description or "" for key, field in section.model_fields.items()}
+    sections = {key: "" for key in model.model_fields}
+    everywhere = sections | {key: field.description or "" for key, field in keys_of(model).items()}
+    return nearest_key(name, here, everywhere, strict)
 
 
 def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> Problem:

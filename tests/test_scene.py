@@ -38,6 +38,22 @@ def test_enough_malformed() -> None:
     assert len(MALFORMED) >= 45
 
 
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("pair.center_distance_mm", "pair.centre_distance_mm"), ("load.torque", "load.torque_Nm"),
+        ("contact.mu", "contact.friction"), ("pinion.z", "pinion.teeth"), ("pinion.module", "pair.normal_module_mm"),
+        ("wheel.width", "wheel.face_width_mm"), ("wheel.x", "wheel.profile_shift"), ("pair.beta", "pair.helix_angle_deg"),
+        ("material.youngs_modulus", "material.E_GPa"), ("pinion.bore", "pinion.bore_diameter_mm"),
+        ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"), ("mesh.cells", "mesh.shape"),
+    ],
+)  # fmt: skip
+def test_the_key_that_was_meant(written: str, meant: str) -> None:
+    """Found by its spelling, by its symbol, or by what it means."""
+    with pytest.raises(SceneError, match=re.escape(f"did you mean {meant}?")):
+        scene_from_text(YANG, [f"{written}=1"])
+
+
 def test_all_errors_at_once() -> None:
     """Independent errors are all named, each in its own line, with the file's name."""
     with pytest.raises(SceneError) as caught:

@@ -43,9 +43,10 @@ def test_enough_malformed() -> None:
     [
         ("pair.center_distance_mm", "pair.centre_distance_mm"), ("load.torque", "load.torque_Nm"),
         ("contact.mu", "contact.friction"), ("pinion.z", "pinion.teeth"), ("pinion.module", "pair.normal_module_mm"),
-        ("wheel.width", "wheel.face_width_mm"), ("wheel.x", "wheel.profile_shift"), ("pair.beta", "pair.helix_angle_deg"),
-        ("material.youngs_modulus", "material.E_GPa"), ("pinion.bore", "pinion.bore_diameter_mm"),
-        ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"), ("mesh.cells", "mesh.shape"),
+        ("wheel.width", "wheel.face_width_mm"), ("wheel.x", "wheel.profile_shift"), ("mesh.cells", "mesh.shape"),
+        ("pair.beta", "pair.helix_angle_deg"), ("material.youngs_modulus", "material.E_GPa"),
+        ("pinion.bore", "pinion.bore_diameter_mm"),
+        ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
     ],
 )  # fmt: skip
 def test_the_key_that_was_meant(written: str, meant: str) -> None:

@@ -155,6 +155,11 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
         ["run", "\udcff.toml", "--out", "{folder}/out"], "scene file", "No such file", "check the path",
     ),
     "run: scene is a table": (["run", "{record}", "--out", "{folder}/out"], "scene file", "no TOML", "mend that line"),
+    "run: resume and overwrite": (
+        ["run", SCENE, "--out", "{folder}/out", "--resume", "--overwrite"], "--overwrite", "--resume and --overwrite",
+        "one of them",
+    ),
+    "run: no PETSc options": (["run", SCENE, "--petsc-options"], "--petsc-options", "nothing", "a value behind"),
     # check
     "check: no scene": (["check"], "SCENE.toml", "nothing", "the scene file"),
     "check: empty scene": (["check", ""], "SCENE.toml", "an empty text", "the scene file"),
@@ -181,6 +186,8 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
         ["mesh", SCENE, "--out", "{folder}/a.msh", "--set", "load.torque_Nm=1e-4", "--set", "wheel.face_width_mm=19"],
         "mesh.level", "degrees of freedom", "N·m on --level quick does",
     ),
+    "mesh: a folder": (["mesh", SCENE, "--out", "{folder}"], "--out", "{folder}", ".msh"),
+    "mesh: over a file": (["mesh", SCENE, "--out", SCENE], "--out", "scene.toml", "ends in .msh"),
     # plot
     "plot: nothing": (["plot"], "DIR", "nothing", "where a run has put its results"),
     "plot: empty": (["plot", ""], "DIR", "an empty text", "where a run has put its results"),

@@ -86,7 +86,7 @@ def _values(draw: Draw, plane: bool, helical: bool, order: int) -> Table:
         "material": _materials(draw),
         "mesh": _mesh(draw, plane, order),
         "contact": {"friction": _frictions(draw)},
-        "load": {"torque_Nm": 1e-12, "on": draw.one_of("pinion", "wheel")},
+        "load": {"torque_Nm": 1e-3 * module**3, "on": draw.one_of("pinion", "wheel")},
         "sweep": {"positions": draw.one_of(6, 12, 20, 40)},
         "output": QUIET,
         "title": "random scene",

@@ -23,7 +23,7 @@ MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
 DENSE_COPIES = 1.65
 """Of a run, by dimension, and of its dense matrices. Against what 25 runs of 0.2 to 23 GB took (Yang's pair of both
 orders and shapes up to 829,020 degrees of freedom, He's in 3D; docs/benchmark.md): 12 % less to 35 % more, from 2 GB on
-12 % less to 19 % more."""
+12 % less to 20 % more."""
 MOST_MODES, SQUARES_PER_TOOTH = 300, 6
 """In which teeth feel one another (200 in Yang's pair at quick), and square matrices of them for each tooth that is
 looked at (`solver.coupling`): little, but for hundreds of teeth where far ones are not skipped."""

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-3
 """In normal modules: shifts, diameters and centre distances printed to three or four digits may miss by this much."""
+SMALLEST_BORE = 0.01
+"""Of the root diameter: a gear held at a point turns under any torque, and its cells there collapse."""
 SMALLEST_RIM = 1.0
 """In normal modules: a thinner ring between bore and root is an error of input, not a gear body."""
 
@@ -68,11 +70,25 @@ def check_diameters(gear: GearParameters) -> None:
     )
     largest = root - 2.0 * SMALLEST_RIM * gear.normal_module
     require(
+        largest > 0.0,
+        "root_diameter",
+        root,
+        f"above {2.0 * SMALLEST_RIM * gear.normal_module:.6g} mm (a rim of one module under the root)",
+        "Raise it: there is no room for a bore.",
+    )
+    require(
         bore <= largest,
         "bore_diameter",
         bore,
         f"up to {largest:.6g} mm (a rim of one module under the root)",
         "Make the bore smaller.",
+    )
+    require(
+        bore >= SMALLEST_BORE * root,
+        "bore_diameter",
+        bore,
+        f"from {SMALLEST_BORE * root:.6g} mm on (a hundredth of the root diameter)",
+        "Make the bore larger: there the gear is held.",
     )
     require(
         gear.transverse_thickness(tip) > 0.0,

@@ -7,6 +7,7 @@ fails says so and ends the run on all ranks.
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import os
 import sys
@@ -24,6 +25,17 @@ from meshes.errors import EvolventError
 from meshes.files import require_writable
 from solver import __version__
 from solver.cache import keep_fonts
+from solver.options import (
+    Force,
+    LevelOption,
+    NoSkip,
+    Overrides,
+    SceneFile,
+    UsageError,
+    given_number,
+    given_path,
+    usage_message,
+)  # fmt: skip
 from solver.scene_errors import SceneError
 from solver.stopping import stoppable
 
@@ -72,18 +84,6 @@ def _version(wanted: bool) -> None:
 Version = Annotated[
     bool, typer.Option("--version", is_eager=True, callback=_version, help="Print the version.")
 ]
-SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.")]
-Overrides = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Override a key of the scene; may be repeated."),
-]
-NoSkip = Annotated[
-    list[str] | None,
-    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
-]
-LevelOption = Annotated[
-    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
-]
 
 
 @app.callback()
@@ -99,10 +99,13 @@ Examples:
 )
 def run(
     scene: SceneFile,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.", parser=given_path)
+    ],
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
+    force: Force = False,
     resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")] = False,
@@ -120,6 +123,7 @@ def run(
         _require(not (resume and overwrite), f"--overwrite: {found}; remedy: --resume keeps what --overwrite removes")
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
+        _require_room(loaded, "run", force)
         from solver.run import run_scene
         from solver.run_output import whereabouts
 
@@ -146,10 +150,11 @@ def check(
 @app.command(epilog="\b\nExample:\n  evolvent mesh demos/yang2022.toml --out pair.msh --level quick")
 def mesh(
     scene: SceneFile,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.", parser=given_path)],
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
+    force: Force = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.msh.")] = False,
 ) -> None:
     """Write the mesh of both sectors for gmsh.
@@ -163,6 +168,7 @@ def mesh(
         there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
         _require(overwrite or not (out.exists() or out.is_symlink()), there)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
+        _require_room(loaded, "mesh", force)
         if MPI.COMM_WORLD.rank > 0:
             return
         from meshes.gmsh_io import write_msh
@@ -179,7 +185,11 @@ def mesh(
 
 
 @app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")
-def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a run has put its results.")]) -> None:
+def plot(
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Where a run has put its results.", parser=given_path)
+    ],
+) -> None:
     """Draw the pictures of a finished run again."""
     with reported():
         found = "no summary.json in it" if directory.is_dir() else "no such directory"
@@ -203,11 +213,13 @@ def plot(directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where a 
 def wear_coefficient(
     records: Annotated[
         list[Path], typer.Argument(metavar="RECORD.csv...", help="Columns sliding_distance_m (or _mm, _km) and "
-                                   "depth_um (or _mm).")
+                                   "depth_um (or _mm).", parser=given_path)
     ],
-    force: Annotated[float, typer.Option("--force-N", help="Normal force on the pin.")],
-    diameter: Annotated[float, typer.Option("--pin-diameter-mm", help="Diameter of the pin.")],
-    run_in: Annotated[float, typer.Option("--run-in-m", help="Sliding distance that is left out.")] = 0.0,
+    force: Annotated[float, typer.Option("--force-N", help="Normal force on the pin.", parser=given_number)],
+    diameter: Annotated[float, typer.Option("--pin-diameter-mm", help="Diameter of the pin.", parser=given_number)],
+    run_in: Annotated[
+        float, typer.Option("--run-in-m", help="Sliding distance that is left out.", parser=given_number)
+    ] = 0.0,
 ) -> None:  # fmt: skip
     """Archard's K/H from pin-on-disc records, with its spread."""
     with reported():
@@ -236,13 +248,27 @@ def info() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
+    if arguments is None:
+        _write_whatever_the_terminal_shows()
     with _silent_unless_first():
         keep_fonts()
         try:
-            app(args=None if arguments is None else list(arguments), prog_name="evolvent")
+            given = None if arguments is None else list(arguments)
+            status = app(args=given, prog_name="evolvent", standalone_mode=False)
+        except UsageError as error:
+            return _leave(usage_message(error), Exit.BAD_INPUT).exit_code
+        except typer.Abort:
+            return Exit.FAILED
         except SystemExit as leave:
             return leave.code if isinstance(leave.code, int) else Exit.FAILED
-    return Exit.DONE
+    return status if isinstance(status, int) else Exit.DONE
+
+
+def _write_whatever_the_terminal_shows() -> None:
+    """Greek letters on a terminal without them come out as question marks, not as an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 @contextlib.contextmanager
@@ -275,7 +301,7 @@ def _load(path: Path, level: str | None, settings: Sequence[str] | None, no_skip
     result: Scene | SceneError | None = None
     if MPI.COMM_WORLD.rank == 0:
         try:
-            overrides = [*(settings or ()), *([f"mesh.level={level}"] if level else ())]
+            overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
             overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
@@ -285,6 +311,14 @@ def _load(path: Path, level: str | None, settings: Sequence[str] | None, no_skip
     if isinstance(result, SceneError):
         raise result
     return result
+
+
+def _require_room(scene: Scene, command: str, force: bool) -> None:
+    """Raises SceneError where the machine has too little memory for the command, unless it is forced."""
+    from solver.size import memory_megabytes, mesh_megabytes, require_room
+
+    if not force:
+        require_room(scene, memory_megabytes if command == "run" else mesh_megabytes, MPI.COMM_WORLD)
 
 
 def _require(holds: bool, message: str) -> None:
@@ -299,6 +333,7 @@ def _details(error: Exception) -> str:
 
 
 def _leave(message: str, status: Exit) -> typer.Exit:
+    message = message.encode(errors="backslashreplace").decode()  # names of files may have bytes that are no text
     typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
     return typer.Exit(int(status))
 

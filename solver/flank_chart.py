@@ -27,6 +27,7 @@ DIAMETER, HEIGHT = Column("diameter", (("mm", 1.0),)), Column("z", (("mm", 1.0),
 DEPTH = Column("depth")
 SAME = 1e-6  # mm: diameters or heights that are one
 DEEPEST = 0.1  # modules: more is no flank any more, or other units
+WIDEST = 1.5  # tip diameters: a chart beyond is of another gear
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,10 @@ class FlankChart:
         are no grid."""
         try:
             state = path.stat()
-        except OSError as error:
-            raise TableError(f"{path}: wanted a CSV file that can be read, found {error.strerror}") from error
+        except (OSError, ValueError) as error:  # ValueError: the path has a NUL
+            found = error.strerror if isinstance(error, OSError) else "a path with a NUL character"
+            remedy = "check the path; where a scene names it, it starts from the scene's folder"
+            raise TableError(_shown(path), "a readable CSV file", str(found), remedy) from error
         return _read(path, state.st_mtime_ns, state.st_size)
 
     @staticmethod
@@ -58,11 +61,9 @@ class FlankChart:
         np.add.at(count, (row, column), 1)
         if len(diameters) < 2 or not (count == 1).all():
             k, m = np.argwhere(count != 1)[0] if (count != 1).any() else (0, 0)
-            raise TableError(
-                f"{path}: wanted every diameter once at every height, and two diameters at least, found "
-                f"{count[k, m]} lines for diameter {diameters[k]:g} mm, z {heights[m]:g} mm, and {len(diameters)} "
-                "diameters; fill gaps and leave out repeated points"
-            )
+            found = f"{count[k, m]} lines for diameter {diameters[k]:g} mm, z {heights[m]:g} mm, and {len(diameters)}"
+            allowed = "every diameter once at every height, and two diameters at least"
+            raise TableError(path, allowed, f"{found} diameters", "fill gaps and leave out repeated points")
         depth = np.zeros(count.shape)
         depth[row, column] = h
         return FlankChart(diameters, heights, depth)
@@ -73,29 +74,30 @@ class FlankChart:
         return bool(np.ptp(self.depth, axis=1).max() > 0.0)
 
     def checked(self, path: Path, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
-        """Itself, if it covers the diameters `active` [mm] of a gear's contact, and is of its size. Raises
-        TableError."""
+        """The chart from the base circle on, if it covers the diameters `active` [mm] of a gear's contact, and is of
+        its size. Raises TableError."""
         low, high = active
         slack = 0.02 * (high - low)
         if self.diameters[0] > low + slack or self.diameters[-1] < high - slack:
-            raise TableError(
-                f"{path}: wanted diameters over the whole active flank, {low:.4g} to {high:.4g} mm, found "
-                f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm; measure further, or mind diameter, not radius"
-            )
+            wanted = f"diameters over the whole active flank, {low:.4g} to {high:.4g} mm"
+            found = f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm"
+            raise TableError(path, wanted, found, "measure further, or mind diameter, not radius")
+        if not (self.diameters[0] > 0.0 and self.diameters[-1] <= WIDEST * gear.tip_diameter):
+            wanted = f"diameters above 0 up to {WIDEST * gear.tip_diameter:.4g} mm, for a tip of {gear.tip_diameter:g}"
+            found = f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm"
+            raise TableError(path, wanted, found, "mind the unit, and which gear the chart is of")
         half = gear.face_width / 2.0
         reach = max(float(np.abs(self.heights).max()) - half, 0.0)
         if len(self.heights) > 1 and (reach > half or np.ptp(self.heights) < half):
-            raise TableError(
-                f"{path}: wanted heights z from mid-face over a face width of {gear.face_width:g} mm, found "
-                f"{self.heights[0]:g} to {self.heights[-1]:g} mm; mind that z is 0 at mid-face, and mm"
-            )
+            wanted = f"heights z from mid-face over a face width of {gear.face_width:g} mm"
+            found = f"{self.heights[0]:g} to {self.heights[-1]:g} mm"
+            raise TableError(path, wanted, found, "mind that z is 0 at mid-face, and mm")
         largest = float(np.abs(self.depth).max())
         if largest > DEEPEST * gear.normal_module:
-            raise TableError(
-                f"{path}: wanted depths of at most {DEEPEST:g} normal modules, {1e3 * DEEPEST * gear.normal_module:g} "
-                f"µm, found {1e3 * largest:.4g} µm; is the column's unit right?"
-            )
-        return self
+            wanted = f"depths of at most {DEEPEST:g} normal modules, {1e3 * DEEPEST * gear.normal_module:g} µm"
+            raise TableError(path, wanted, f"{1e3 * largest:.4g} µm", "is the column's unit right?")
+        first = max(0, np.count_nonzero(self.diameters <= gear.base_diameter) - 1)
+        return FlankChart(self.diameters[first:], self.heights, self.depth[first:])
 
     def arcs(self, gear: GearParameters) -> Floats:
         """Involute's length (k,) [mm] from a gear's base circle to the diameters."""
@@ -135,3 +137,8 @@ def _levels(values: Floats) -> tuple[Floats, np.ndarray]:
     which = np.empty(len(values), dtype=np.int64)
     which[order] = np.cumsum(new)
     return values[order][np.concatenate([[True], new[1:]])], which
+
+
+def _shown(path: Path) -> str:
+    """A path in a message, whatever its characters."""
+    return str(path) if str(path).isprintable() else ascii(str(path))

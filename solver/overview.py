@@ -10,12 +10,14 @@ from typing import NamedTuple
 from meshes.parameters import GearPair, GearParameters
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors, yang_estimate
+from solver.machine import machine_megabytes
 from solver.plain_text import fixed
-from solver.resolution import elements_per_contact_width, memory_megabytes, sector_resolutions, sector_size
+from solver.resolution import elements_per_contact_width, sector_resolutions
 from solver.scene import GEARS, Scene
 from solver.scene_gears import working_angle_of
 from solver.scene_warnings import scene_warnings
 from solver.schema_wear import Wear
+from solver.size import counted, gigabytes, memory_megabytes, room_problem, sector_sizes
 from solver.skips import is_plane, pitches, skipped, switched_off, touching_teeth
 
 HANDS = {1: "right", -1: "left"}
@@ -39,7 +41,7 @@ def overview(scene: Scene) -> str:
         table("Pair", _pair_rows(pair)),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
-        table("Mesh and cost (estimate)", _cost_rows(scene), GEARS),
+        table("Mesh and cost (estimate)", _cost_rows(scene), GEARS) + _room_line(scene),
         _skip_lines(scene),
         *_warning_lines(scene),
     ]
@@ -207,21 +209,27 @@ def _wear_rows(wear: Wear, estimate: HertzEstimate) -> list[Row]:
 
 
 def _cost_rows(scene: Scene) -> list[Row]:
-    gears, sectors, plane = scene.gear_pair().gears, sector_resolutions(scene), is_plane(scene)
-    sizes = [sector_size(gear, sector, scene.mesh.order, plane) for gear, sector in zip(gears, sectors, strict=True)]
-    layers = tuple("plane" if plane else str(sector.face_elements) for sector in sectors)
+    sectors, plane = sector_resolutions(scene), is_plane(scene)
+    layers = tuple("plane" if plane else counted(sector.face_elements) for sector in sectors)
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
         _one("elements across the contact width 2b", "", "", 1, elements_per_contact_width(scene)),
-        Row("elements along the loaded flank", "", "", tuple(str(sector.profile_elements) for sector in sectors)),
+        Row("elements along the loaded flank", "", "", tuple(counted(sector.profile_elements) for sector in sectors)),
         Row("layers over the face width", "", "", layers),
-        Row("degrees of freedom of a sector", "", "", tuple(f"{size.dofs:,}" for size in sizes)),
-        _one("largest memory of a run on one rank, estimated", "", "MB", 0, memory_megabytes(*sizes)),
+        Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
+        Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
+        Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
         Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
+
+
+def _room_line(scene: Scene) -> str:
+    """What `run` will refuse, if it does."""
+    problem = room_problem(scene, memory_megabytes)
+    return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
 
 
 def _positions_name(scene: Scene) -> str:

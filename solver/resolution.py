@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.integrate import trapezoid
 from meshes.data import Floats
 from meshes.parameters import GearParameters
 from meshes.root_band import LONGEST
-from meshes.section import SectorResolution, section_mesh
+from meshes.section import SectorResolution
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.skips import is_plane, skips
 
@@ -44,10 +44,6 @@ spur pair at quick, standard and fine, against 12 and 16: 0.04, 0.05, 0.09 % wit
 4; 0.29, 0.40, 0.72 % with 2 and 4. In space the rows of the rim cost most: the cut faces are condensed densely."""
 FORE_LAND = 1.2
 """The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
-
-
-MEGABYTES_BASE, MEGABYTES_PER_DOF, DENSE_COPIES = 500.0, 8e-3, 1.7
-"""Measured on the Yang pair: 3.3 GB at quick and 11.0 GB at standard, which the estimate meets within a fifth."""
 
 
 def elements_per_contact_width(scene: Scene) -> float:
@@ -139,36 +135,3 @@ def _flank_start(gear: GearParameters, width: _ContactWidth) -> float:
     land = FORE_LAND * float(width.at_roll_length(np.array(active))) / 2
     square = active**2 - 2 * gear.base_radius * land  # arc s = ρ²/2r_b
     return max(gear.root_form_diameter, 2 * math.hypot(gear.base_radius, math.sqrt(max(0.0, square))))
-
-
-@dataclass(frozen=True)
-class SectorSize:
-    """Degrees of freedom of a sector, or of its plane section: all, of the loaded flank, of both cut faces."""
-
-    dofs: int
-    flank: int
-    cuts: int
-
-
-def sector_size(gear: GearParameters, resolution: SectorResolution, order: int, plane: bool) -> SectorSize:
-    """Counted on the section's mesh, order 1 or 2; cutting hexahedra into tetrahedra adds no node."""
-    section = section_mesh(gear, resolution)
-    nodes, cells = len(section.points), len(section.cells)
-    if order == 1:  # without holes: corners − edges + cells = 1, and second-order nodes = corners + edges + cells
-        nodes = 1 + (nodes - 1) // 2 - cells
-    flank, cut = (order * len(section.edges[name]) + 1 for name in ("flank", "cut_low"))
-    levels = 2 if plane else 3 * (order * resolution.face_elements + 1)
-    return SectorSize(levels * nodes, levels * flank, levels * 2 * cut)
-
-
-def memory_megabytes(pinion: SectorSize, wheel: SectorSize) -> float:
-    """Largest memory [MB] of a run on one rank: one sector's elimination beside the other's finished compliance."""
-    first, second = (
-        MEGABYTES_PER_DOF * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts)
-        for size in (pinion, wheel)
-    )
-    return MEGABYTES_BASE + max(first, second + _square_megabytes(pinion.flank))
-
-
-def _square_megabytes(rows: int) -> float:
-    return 8e-6 * rows**2

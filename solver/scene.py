@@ -7,13 +7,13 @@ computed or written.
 from __future__ import annotations
 
 import json
-import re
-import tomllib
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
 from meshes.parameters import GearPair
 from solver.estimates import hertz_estimate
@@ -21,6 +21,7 @@ from solver.flank_chart import DEEPEST, FlankChart
 from solver.material import Material
 from solver.scene_errors import Problem, SceneError, problems_of, scene_problem, section_of, shown
 from solver.scene_gears import ImpossibleGears, make_pair
+from solver.scene_text import nested_values, scene_text
 from solver.schema import Contact, Gear, Load, Materials, Mesh, Pair, Section, Sweep, key
 from solver.schema_output import Output, Skipping
 from solver.schema_wear import Wear
@@ -28,11 +29,13 @@ from solver.tables import TableError
 
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
 
-EXAMPLE = "demos/yang2022.toml is a complete example"
 GearName = Literal["pinion", "wheel"]
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 WIDEST_CONTACT = 0.2
 """Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
+NARROWEST_CONTACT = 1e-5
+"""Smallest Hertz half-width [mm]: a hundred times what a mesh takes for one point (`meshes.section.WELD`), and thirty
+atoms of iron."""
 LARGEST_DEFLECTION = 0.1
 """Largest deflection of a tooth pair in modules, estimated with one pair carrying all: of 112 random scenes below
 it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel stays far below."""
@@ -74,24 +77,36 @@ class Scene(Section):
         return self
 
     @model_validator(mode="after")
+    def _contact_has_a_width(self) -> Self:
+        unit = hertz_estimate(self.model_copy(update={"load": self.load.model_copy(update={"torque_Nm": 1.0})}))
+        half_width = float(unit.half_width(0.0)) * math.sqrt(self.load.torque_Nm)
+        if not half_width >= NARROWEST_CONTACT:
+            least = (NARROWEST_CONTACT / float(unit.half_width(0.0))) ** 2
+            found = f"{shown(self.load.torque_Nm)} (Hertz half-width {half_width:.3g} mm)"
+            allowed = f"from {least:.3g} N·m on for these gears, a half-width of {NARROWEST_CONTACT:g} mm"
+            remedy = "raise the torque, or check that it is in N·m and material.E_GPa in GPa"
+            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+        return self
+
+    @model_validator(mode="after")
     def _strain_is_small(self) -> Self:
         estimate = hertz_estimate(self)
         half_width, radius = float(estimate.half_width(0.0)), float(estimate.pair.relative_curvature_radius(0.0))
         if half_width > WIDEST_CONTACT * radius:
             most = self.load.torque_Nm * (WIDEST_CONTACT * radius / half_width) ** 2
-            size = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
-            found = f"{shown(self.load.torque_Nm)} ({size})"
-            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
-            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
-            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+            raise self._too_loaded(f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm", most)
         deflection = estimate.tooth_deflection(*self.materials()) / self.pair.normal_module_mm
         if deflection > LARGEST_DEFLECTION:
             most = self.load.torque_Nm * LARGEST_DEFLECTION / deflection
-            found = f"{shown(self.load.torque_Nm)} (teeth bend by about {deflection:.2g} modules)"
-            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
-            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
-            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+            raise self._too_loaded(f"teeth bend by about {deflection:.2g} modules", most)
         return self
+
+    def _too_loaded(self, why: str, most: float) -> PydanticCustomError:
+        """The torque is too large; `most` [N·m] is allowed."""
+        found = f"{shown(self.load.torque_Nm)} ({why})"
+        allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
+        remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
+        return scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
 
     @model_validator(mode="after")
     def _flanks_are_charted(self) -> Self:
@@ -99,8 +114,8 @@ class Scene(Section):
             try:
                 self.flank_chart(name)
             except TableError as error:
-                allowed, remedy = "a chart of the whole flank (docs/scene.md)", "mend the file or delete the key"
-                raise scene_problem(Problem(f"{name}.flank_csv", str(error), allowed, remedy)) from error
+                found, remedy = f"{error.place}: {error.found}", f"{error.remedy}; or delete the key"
+                raise scene_problem(Problem(f"{name}.flank_csv", found, error.wanted, remedy)) from error
         return self
 
     @model_validator(mode="after")
@@ -218,13 +233,7 @@ def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
     overrides: "key=value" with a dotted key and a TOML value, as `--set` takes them. Raises SceneError.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        found = error.strerror if isinstance(error, OSError) else "bytes that are no UTF-8 text"
-        remedy = f"check the path {path}; {EXAMPLE}"
-        raise SceneError([Problem("scene file", str(found), "a readable TOML file", remedy)], str(path)) from error
-    return scene_from_text(text, overrides, str(path), path.parent)
+    return scene_from_text(scene_text(path), overrides, str(path), path.parent)
 
 
 def scene_from_text(
@@ -233,17 +242,7 @@ def scene_from_text(
     """A scene from TOML text; see load_scene. folder: where the files that the text names are looked for; those of
     overrides are looked for where the program runs."""
     try:
-        values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        remedy = f'mend that line; texts stand in "quotes", every key only once; {EXAMPLE}'
-        raise SceneError([Problem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)], source) from error
-    for section in (values.get("pinion"), values.get("wheel")):
-        if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
-            section["flank_csv"] = str(folder / section["flank_csv"])
-    try:
-        for override in overrides:
-            _apply(values, override)
-        return scene_from_values(values)
+        return scene_from_values(nested_values(text, overrides, folder))
     except SceneError as error:
         raise SceneError(error.problems, source) from error.__cause__
 
@@ -254,33 +253,3 @@ def scene_from_values(values: Mapping[str, Any]) -> Scene:
         return Scene.model_validate(dict(values))
     except ValidationError as error:
         raise SceneError(problems_of(error, Scene)) from error
-
-
-def _apply(values: dict[str, Any], override: str) -> None:
-    """Put one "section.key=value" into the nested values."""
-    name, equals, text = override.partition("=")
-    names = [part.strip() for part in name.split(".")]
-    if not equals or not all(names):
-        remedy = "write for example --set load.torque_Nm=300"
-        raise SceneError([Problem("--set", shown(override), "section.key=value", remedy)])
-    table = values
-    for depth, part in enumerate(names[:-1]):
-        inner = table.setdefault(part, {})
-        if not isinstance(inner, dict):
-            found = f"a key below {'.'.join(names[: depth + 1])}, which has the value {shown(inner)}"
-            raise SceneError([Problem(name, found, "section.key=value", "see docs/scene.md for the keys")])
-        table = inner
-    table[names[-1]] = _parsed(name, text.strip())
-
-
-def _parsed(name: str, text: str) -> Any:
-    try:
-        parsed = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
-        parsed = {}
-    if list(parsed) == ["value"]:
-        return parsed["value"]
-    if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
-        return text
-    remedy = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
-    raise SceneError([Problem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])

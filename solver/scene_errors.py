@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import json
+import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,8 +14,16 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from meshes.errors import InputError
+from solver.nearest_key import nearest_key
+from solver.not_supported import not_supported
 
 NOTHING = "nothing"
+MOST = 20
+"""Problems that are told at once."""
+LONGEST_NUMBER = 40
+"""Digits of a whole number that are shown."""
+LONGEST_TEXT = 60
+"""Characters of a value or of a key that are shown."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +60,13 @@ def scene_problem(problem: Problem) -> PydanticCustomError:
 
 
 def problems_of(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
-    """All problems of a failed validation, in the words of the schema `model`."""
-    return [_problem(details, model) for details in error.errors(include_url=False)]
+    """The problems of a failed validation, in the words of the schema `model`: all, or the first `MOST`."""
+    details = error.errors(include_url=False)
+    problems = [_problem(each, model) for each in details[:MOST]]
+    if len(details) > MOST:
+        more, remedy = len(details) - MOST, "mend these first; is this a scene file at all?"
+        problems.append(Problem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
+    return problems
 
 
 def shown(value: Any) -> str:
@@ -60,15 +74,17 @@ def shown(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, dict):
-        return "a section with keys " + (", ".join(map(str, value)) or "(none)")
+        return _short("a section with keys " + (", ".join(map(dotted_part, value)) or "(none)"))
     if isinstance(value, (list, tuple)):
-        return _short("[" + ", ".join(shown(item) for item in value) + "]")
+        return _short("[" + ", ".join(shown(item) for item in value[:MOST]) + "]")
     if isinstance(value, str):
-        return _short(json.dumps(value, ensure_ascii=False))
+        return _short(json.dumps(value[:LONGEST_TEXT], ensure_ascii=False))
+    if isinstance(value, int) and value.bit_length() > LONGEST_NUMBER * 3:  # Python refuses to write 5000 digits
+        return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1:,} digits"
     return _short(f"{value:.10g}" if isinstance(value, float) else str(value))
 
 
-def _short(text: str, limit: int = 60) -> str:
+def _short(text: str, limit: int = LONGEST_TEXT) -> str:
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
@@ -93,8 +109,13 @@ def dotted(path: Iterable[str | int]) -> str:
     """["contact", "friction", 2] -> "contact.friction[2]"."""
     text = ""
     for part in path:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+        text += f"[{part}]" if isinstance(part, int) else f".{dotted_part(part)}" if text else dotted_part(part)
     return text
+
+
+def dotted_part(name: str) -> str:
+    """A key as TOML has it: bare, dotted, or in quotes; shortened."""
+    return _short(name if re.fullmatch(r"[A-Za-z0-9_.\[\]-]+", name) else json.dumps(name, ensure_ascii=False))
 
 
 def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
@@ -110,17 +131,29 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
 
 
 def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> Problem:
-    """An unknown key or section: what was meant is looked for in its own section first, then everywhere."""
+    """An unknown key or section: the nearest one is named, or that nothing like it is supported."""
     name, parents = str(path[-1]), [str(part) for part in path[:-1]]
+    kind = "section" if isinstance(value, dict) else "key"
+    found = f"an unknown {kind}, {shown(value)}"
+    place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
+    allowed = f"{place} that docs/scene.md lists"
+    words = not_supported(name)
+    similar = _similar(name, parents, model, strict=bool(words))
+    if words and not similar:
+        return Problem(dotted(path), found, f"{allowed}; {words}", "delete it")
+    remedy = f"did you mean {similar}? Else delete it" if similar else "delete it, or see docs/scene.md"
+    return Problem(dotted(path), found, allowed, remedy)
+
+
+def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
+    """The key that was meant; empty if there is none."""
     section = section_of(_declaration(parents, model)) if parents else model
     assert section is not None
-    here, prefix = list(section.model_fields), f"{dotted(parents)}." if parents else ""
-    similar = [prefix + match for match in difflib.get_close_matches(name, here, n=1, cutoff=0.7)]
-    everywhere = {key.rsplit(".", 1)[-1]: key for key in [*keys_of(model), *model.model_fields]}
-    similar += [everywhere[match] for match in difflib.get_close_matches(name, everywhere, n=1, cutoff=0.7)]
-    remedy = f"did you mean {similar[0]}? Else delete it" if similar else "delete it, or see docs/scene.md"
-    what = f"an unknown {'section' if isinstance(value, dict) else 'key'}, {shown(value)}"
-    return Problem(dotted(path), what, ", ".join(prefix + key for key in here), remedy)
+    prefix = f"{dotted(parents)}." if parents else ""
+    here = {prefix + key: field.description or "" for key, field in section.model_fields.items()}
+    sections = {key: "" for key in model.model_fields}
+    everywhere = sections | {key: field.description or "" for key, field in keys_of(model).items()}
+    return nearest_key(name, here, everywhere, strict)
 
 
 def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> Problem:

@@ -24,6 +24,13 @@ class Section(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
+LONGEST = 1e6
+"""Diameters and distances [mm]: 1000 teeth of module 50 have 71 m."""
+LEAST_HELIX = 1e-3
+"""Degrees: over a face of 20 mm, 0.3 µm; less is a spur gear."""
+LENGTH = "a number above 0 up to 1e6, in mm"
+
+
 class Pair(Section):
     """[pair]: what both gears share."""
 
@@ -39,7 +46,7 @@ class Pair(Section):
     )
     helix_angle_deg: float = key(
         "helix angle β at the reference circle, 0 for spur gears",
-        "a number from 0 to 45, in degrees",
+        f"0, or a number from {LEAST_HELIX:g} to 45, in degrees",
         "give it without a sign and say the direction with pinion.hand",
         default=0.0,
         ge=0,
@@ -47,10 +54,11 @@ class Pair(Section):
     )
     centre_distance_mm: float | None = key(
         "centre distance a; by default that of zero backlash",
-        "a number above 0, in mm",
+        LENGTH,
         "delete the key for the centre distance without backlash",
         default=None,
         gt=0,
+        le=LONGEST,
     )
     misalignment_um: float = key(
         "opening of the flanks over the face width by misalignment in the plane of action, positive: open at z > 0",
@@ -59,6 +67,15 @@ class Pair(Section):
         ge=-1000,
         le=1000,
     )
+
+
+    @field_validator("helix_angle_deg")
+    @classmethod
+    def _helical_or_spur(cls, value: float) -> float:
+        if 0.0 < value < LEAST_HELIX:
+            allowed = f"0, or a number from {LEAST_HELIX:g} to 45, in degrees"
+            raise scene_problem(Problem("", shown(value), allowed, "give 0 for spur gears"))
+        return value
 
 
 ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}
@@ -74,7 +91,7 @@ class Gear(Section):
         "profile shift coefficient x, times m_n", "a number from -2 to 2", default=0.0, ge=-2, le=2
     )
     tip_diameter_mm: float | None = key(
-        "tip diameter d_a; else from addendum_coefficient", "a number above 0, in mm", default=None, gt=0
+        "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     addendum_coefficient: float | None = key(
         "addendum h_a*, d_a = d + 2 m_n (h_a* + x − Δy), Δy ≥ 0 the tip shortening; 1 if there is no tip_diameter_mm",
@@ -84,7 +101,7 @@ class Gear(Section):
         le=3,
     )
     root_diameter_mm: float | None = key(
-        "root diameter d_f; else from dedendum_coefficient", "a number above 0, in mm", default=None, gt=0
+        "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     dedendum_coefficient: float | None = key(
         "dedendum h_f*, d_f = d − 2 m_n (h_f* − x); 1.25 if there is no root_diameter_mm",
@@ -95,10 +112,11 @@ class Gear(Section):
     )
     rack_tip_radius_mm: float | None = key(
         "tip radius of the generating rack in its normal section; 0.38 m_n, or the full round if that is less",
-        "a number from 0, in mm",
+        "a number from 0 to 1e6, in mm",
         "delete the key for the default",
         default=None,
         ge=0,
+        le=LONGEST,
     )
     hand: Literal["right", "left"] | None = key(
         "direction of the helix; the pinion's is right by default, the wheel's the other one",
@@ -108,10 +126,11 @@ class Gear(Section):
     )
     bore_diameter_mm: float | None = key(
         "diameter of the bore, where the gear sits rigidly on its shaft; half of the root diameter by default",
-        "a number above 0, in mm",
+        LENGTH,
         "delete the key for the default",
         default=None,
         gt=0,
+        le=LONGEST,
     )
     tip_relief_um: float = key(
         "tip relief: material taken off the flank at the tip",
@@ -122,10 +141,11 @@ class Gear(Section):
     )
     tip_relief_start_diameter_mm: float | None = key(
         "diameter at which the tip relief starts; d_a − m_n by default",
-        "a number above 0, in mm",
+        LENGTH,
         "delete the key for the default",
         default=None,
         gt=0,
+        le=LONGEST,
     )
     tip_relief_form: Literal["linear", "parabolic"] = key(
         "how the tip relief grows with the roll distance", '"linear" or "parabolic"', default="linear"
@@ -138,12 +158,13 @@ class Gear(Section):
         le=500,
     )
     flank_csv: str | None = key(
-        "chart of the loaded flank as measured or worn, what is missing of the designed one; read from the scene's "
-        "folder",
+        "chart of the loaded flank as measured or worn, what is missing of the designed one; looked for in the "
+        "scene's folder, or, where --set names it, in the folder where the program runs",
         "the name of a CSV file with diameter_mm, depth_um and perhaps z_mm",
         "delete the key for flanks as designed",
         default=None,
         min_length=1,
+        max_length=1000,
     )
 
     @model_validator(mode="after")
@@ -187,6 +208,14 @@ class Materials(Section):
 
 
 Level = Literal["quick", "standard", "fine"]
+FEWEST_ELEMENTS = 0.5
+
+
+def _whole(value: Any) -> int:
+    """A whole number as it is; to Python true and 2.0 equal 1 and 2."""
+    if type(value) is not int:
+        raise ValueError
+    return value
 
 
 class Mesh(Section):
@@ -197,14 +226,16 @@ class Mesh(Section):
     )
     elements_per_contact_width: float | None = key(
         "elements across the Hertz width 2b; quick 1.7, standard 3, fine 6 by default",
-        "a number from 0.5 to 24",
+        f"a number from {FEWEST_ELEMENTS:g} to 24",
         "delete the key for the level's own",
         default=None,
-        ge=0.5,
+        ge=FEWEST_ELEMENTS,
         le=24,
     )
     shape: Literal["hexahedron", "tetrahedron"] = key("cells", '"hexahedron" or "tetrahedron"', default="hexahedron")
-    order: Literal[1, 2] = key("order of the cells and of the displacement", "1 or 2", default=2)
+    order: Annotated[Literal[1, 2], BeforeValidator(_whole)] = key(
+        "order of the cells and of the displacement", "1 or 2", default=2
+    )
 
 
 def as_tuple(value: Any) -> Any:
@@ -213,6 +244,7 @@ def as_tuple(value: Any) -> Any:
 
 
 Coefficient = Annotated[float, Field(ge=0, le=1)]
+MOST_COEFFICIENTS = 50
 
 
 class Contact(Section):
@@ -220,15 +252,16 @@ class Contact(Section):
 
     friction: Annotated[tuple[Coefficient, ...], BeforeValidator(as_tuple)] = key(
         "Coulomb friction coefficient μ, or a list that is computed one after the other",
-        "a number from 0 to 1, or a list of different ones",
+        f"a number from 0 to 1, or a list of up to {MOST_COEFFICIENTS} different ones",
         "0 is frictionless, lubricated steel gears 0.03 to 0.12, dry steel up to 0.3",
         default=(0.0,),
+        max_length=MOST_COEFFICIENTS,
     )
 
     @field_validator("friction")
     @classmethod
     def _different(cls, values: tuple[float, ...]) -> tuple[float, ...]:
-        allowed = "a number from 0 to 1, or a list of different ones"
+        allowed = f"a number from 0 to 1, or a list of up to {MOST_COEFFICIENTS} different ones"
         if not values:
             raise scene_problem(Problem("", "an empty list", allowed, "give at least one; 0 is frictionless"))
         twice = sorted({value for value in values if values.count(value) > 1})

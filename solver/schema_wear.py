@@ -25,7 +25,10 @@ def _coefficient(gear: str) -> Any:
     )
 
 
-Cycles = Annotated[float, Field(gt=0, le=1e13)]
+Cycles = Annotated[float, Field(ge=1, le=1e13)]
+MOST_REPORTS = 100
+SHORTEST_BLOCK = 1e-4
+"""Of wear.cycles."""
 
 
 def _points(value: Any) -> Any:
@@ -36,13 +39,14 @@ def _points(value: Any) -> Any:
 class Wear(Section):
     """[wear]: Archard's wear of both flanks. Without this section nothing wears."""
 
-    cycles: Cycles = key("revolutions of the pinion", "a number above 0 up to 1e13")
+    cycles: Cycles = key("revolutions of the pinion", "a number from 1 to 1e13")
     pinion_mm2_per_N: float = _coefficient("pinion")
     wheel_mm2_per_N: float = _coefficient("wheel")
     report_at_cycles: Annotated[tuple[Cycles, ...] | None, BeforeValidator(_points)] = key(
         "after which cycles the worn pair is written out, besides the last; by default at each quarter",
-        "a list of rising numbers above 0 and below wear.cycles",
+        f"a list of up to {MOST_REPORTS} rising numbers from 1 on and below wear.cycles",
         default=None,
+        max_length=MOST_REPORTS,
     )
     tolerance: float = key(
         "share of a block's worn volume that may be taken off in the wrong place", "a number from 0.001 to 0.5",
@@ -54,11 +58,12 @@ class Wear(Section):
     )  # fmt: skip
     first_block_cycles: Cycles | None = key(
         "length of the first block of cycles; the shortest there is. A hundredth of wear.cycles by default",
-        "a number above 0 up to wear.cycles", "delete the key for the default", default=None,
+        f"a number from {SHORTEST_BLOCK:g} wear.cycles up to wear.cycles", "delete the key for the default",
+        default=None,
     )  # fmt: skip
     refresh_um: float | None = key(
         "wear that the meshes may lack: beyond it they follow, and the gears are condensed anew. 5e-3 m_n by default",
-        "a number above 0, in µm", "delete the key for the default", default=None, gt=0,
+        "a number from 0.001 to 1000, in µm", "delete the key for the default", default=None, ge=1e-3, le=1e3,
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -77,12 +82,14 @@ class Wear(Section):
     def _reports_in_order(self) -> Self:
         points = self.report_at_cycles or ()
         if any(a >= b for a, b in zip(points, (*points[1:], self.cycles))):
-            allowed = f"rising numbers above 0 and below wear.cycles, {self.cycles:g}"
+            allowed = f"rising numbers from 1 on and below wear.cycles, {self.cycles:g}"
             remedy = "sort them and leave out repeated ones and the last"
             raise scene_problem(Problem("report_at_cycles", shown(points), allowed, remedy))
-        if self.first_block_cycles is not None and self.first_block_cycles > self.cycles:
-            allowed, remedy = f"at most wear.cycles, {self.cycles:g}", "give a shorter block"
-            raise scene_problem(Problem("first_block_cycles", shown(self.first_block_cycles), allowed, remedy))
+        first, least = self.first_block_cycles, SHORTEST_BLOCK * self.cycles
+        if first is not None and not least <= first <= self.cycles:
+            allowed = f"from {least:g} to wear.cycles, {self.cycles:g}"
+            remedy = "give a shorter block" if first > self.cycles else "give a longer one: there would be too many"
+            raise scene_problem(Problem("first_block_cycles", shown(first), allowed, remedy))
         return self
 
     @property

@@ -11,10 +11,28 @@ import numpy as np
 
 from meshes.data import Floats
 from meshes.errors import InputError
+from solver.text_files import UnreadableText, read_text
+
+LARGEST_FILE = 20
+"""Megabytes of a table."""
+LONGEST_FOUND = 60
+"""Characters that are shown of what was found."""
+LARGEST_NUMBER = 1e15
+"""mm, a billion km: beyond it squares and sums go wrong."""
 
 
 class TableError(InputError):
-    """Measured numbers that cannot be used as they are; the message names file, line and column."""
+    """Measured numbers that cannot be used as they are.
+
+    place: file, line and column; wanted, found, remedy: phrases without a full stop.
+    """
+
+    def __init__(self, place: object, wanted: str, found: str, remedy: str) -> None:
+        super().__init__(f"{place}: found {found}; allowed: {wanted}; remedy: {remedy}")
+        self.place, self.wanted, self.found, self.remedy = str(place), wanted, found, remedy
+
+    def __reduce__(self) -> tuple[type[TableError], tuple[str, str, str, str]]:
+        return TableError, (self.place, self.wanted, self.found, self.remedy)
 
 
 @dataclass(frozen=True)
@@ -38,7 +56,7 @@ def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
     """
     header, numbered = _lines(path)
     places = [_place(path, header, column) for column in wanted]
-    values = [[_number(path, n, header, row, at) * factor for at, factor in places] for n, row in numbered]
+    values = [[_number(path, n, header, row, *place) for place in places] for n, row in numbered]
     return list(np.array(values).T)
 
 
@@ -50,12 +68,16 @@ def has_column(path: Path, wanted: Column) -> bool:
 def _lines(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """The header, and the lines below it with their numbers. Raises TableError."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise TableError(f"{path}: wanted a CSV file that can be read, found {error}") from error
-    numbered = [(n, row) for n, row in enumerate(csv.reader(text.splitlines()), 1) if any(row) and row[0][:1] != "#"]
+        lines = read_text(path, "CSV", LARGEST_FILE).splitlines()
+        rows = enumerate(csv.reader(lines, strict=True), 1)
+        numbered = [(n, row) for n, row in rows if any(row) and row[0][:1] != "#"]
+    except UnreadableText as error:
+        raise TableError(path, error.allowed, error.found, error.remedy) from error
+    except csv.Error as error:
+        raise TableError(path, "a CSV file of numbers", f"no CSV: {error}", "save the table as CSV again") from error
     if len(numbered) < 2:
-        raise TableError(f"{path}: wanted a header and lines of numbers, found {len(numbered)} lines with anything")
+        remedy = "name quantity and unit of each column in the first line, and put the numbers below"
+        raise TableError(path, "a header and lines of numbers", f"{len(numbered)} lines with anything", remedy)
     return [cell.strip() for cell in numbered[0][1]], numbered[1:]
 
 
@@ -63,25 +85,25 @@ def _place(path: Path, header: list[str], column: Column) -> tuple[int, float]:
     known = column.headers
     found = [(at, known[name]) for at, name in enumerate(header) if name in known]
     if len(found) != 1:
-        raise TableError(
-            f"{path}: wanted one column named {' or '.join(column.headers)}, found {', '.join(header) or 'no header'}; "
-            "name quantity and unit in the first line"
-        )
+        names = ", ".join(header)[:LONGEST_FOUND] or "no header"
+        remedy = "name quantity and unit in the first line, separated by commas"
+        raise TableError(path, f"one column named {' or '.join(known)}", names, remedy)
     return found[0]
 
 
-def _number(path: Path, line: int, header: list[str], row: list[str], at: int) -> float:
+def _number(path: Path, line: int, header: list[str], row: list[str], at: int, factor: float) -> float:
+    """A cell's number times its unit's factor."""
     if len(row) != len(header):
-        raise TableError(f"{path}, line {line}: wanted {len(header)} cells, found {len(row)}")
+        remedy = "separate columns by commas, and write decimals with a point"
+        raise TableError(f"{path}, line {line}", f"{len(header)} cells a line", f"{len(row)} cells", remedy)
     try:
-        value = float(row[at])
+        value = float(row[at]) if "_" not in row[at] else np.nan  # Python takes 1_000 for a thousand
     except ValueError:
         value = np.nan
-    if not np.isfinite(value):
-        raise TableError(
-            f"{path}, line {line}, {header[at]}: wanted a number, found {row[at]!r}; leave out lines without one"
-        )
-    return value
+    if not abs(value * factor) <= LARGEST_NUMBER:
+        found, wanted = repr(row[at][:LONGEST_FOUND]), f"a number of at most {LARGEST_NUMBER / factor:g}"
+        raise TableError(f"{path}, line {line}, {header[at]}", wanted, found, "leave out lines without one")
+    return value * factor
 
 
 def require_ascending(path: Path, name: str, values: Floats) -> None:
@@ -89,7 +111,6 @@ def require_ascending(path: Path, name: str, values: Floats) -> None:
     falls = np.flatnonzero(np.diff(values) <= 0.0)
     if len(falls):
         at = int(falls[0])
-        raise TableError(
-            f"{path}: wanted {name} that rises from line to line, found {values[at]:g} mm and then "
-            f"{values[at + 1]:g} mm; sort the lines and leave out repeated ones"
-        )
+        found = f"{values[at]:g} mm and then {values[at + 1]:g} mm"
+        remedy = "sort the lines and leave out repeated ones"
+        raise TableError(path, f"{name} that rises from line to line", found, remedy)

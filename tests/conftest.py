@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from solver import compat
-
 ROOT = Path(__file__).resolve().parents[1]
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _quiet() -> None:
+    from solver import compat  # starts MPI: pytest itself must not, or its workers take themselves for ranks
+
     compat.silence_logs()
 
 

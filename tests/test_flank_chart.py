@@ -87,16 +87,16 @@ FIRST = chart(1e-4).text().splitlines()[1]
 WRONG = {
     "gap": (changed(FIRST + "\n", ""), "0 lines for diameter 144 mm, z -10 mm"),
     "repeated": (changed(FIRST, f"{FIRST}\n{FIRST}"), "2 lines for diameter 144 mm"),
-    "no number": (changed(FIRST, FIRST.replace(".000000000,", "x,", 1)), "wanted a number"),
-    "NaN": (changed(FIRST, "144,-10,nan"), "wanted a number, found 'nan'"),
-    "short line": (changed(FIRST, "144,-10"), "wanted 3 cells, found 2"),
-    "no depth": (changed("depth_um", "depth"), "wanted one column named depth_um or depth_mm"),
+    "no number": (changed(FIRST, FIRST.replace(".000000000,", "x,", 1)), "a number of at most"),
+    "NaN": (changed(FIRST, "144,-10,nan"), "'nan'; allowed: a number"),
+    "short line": (changed(FIRST, "144,-10"), "2 cells; allowed: 3 cells"),
+    "no depth": (changed("depth_um", "depth"), "one column named depth_um or depth_mm"),
     "µm called mm": (changed("depth_um", "depth_mm"), "is the column's unit right?"),
     "radius": (FlankChart(DIAMETERS / 2, np.zeros(1), np.zeros((25, 1))).text(), "not radius"),
     "half the flank": (FlankChart(DIAMETERS[:12], np.zeros(1), np.zeros((12, 1))).text(), "over the whole active"),
     "z in µm": (FlankChart(DIAMETERS, np.array([-1e4, 1e4]), np.zeros((25, 2))).text(), "over a face width"),
     "one side": (FlankChart(DIAMETERS, np.array([8.0, 9.0]), np.zeros((25, 2))).text(), "over a face width"),
-    "empty": ("", "wanted a header and lines of numbers"),
+    "empty": ("", "a header and lines of numbers"),
 }
 
 

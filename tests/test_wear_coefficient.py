@@ -53,16 +53,16 @@ def test_spread(tmp_path: Path) -> None:
 
 
 BAD = {
-    "gap": ("sliding_distance_m,depth_um\n0,0\n1000,\n2000,2\n", r"line 3, depth_um: wanted a number, found ''"),
-    "nan": ("sliding_distance_m,depth_um\n0,0\n1000,nan\n", "line 3, depth_um: wanted a number, found 'nan'"),
+    "gap": ("sliding_distance_m,depth_um\n0,0\n1000,\n2000,2\n", r"line 3, depth_um: found ''; allowed: a number"),
+    "nan": ("sliding_distance_m,depth_um\n0,0\n1000,nan\n", "line 3, depth_um: found 'nan'; allowed: a number"),
     "word": ("sliding_distance_m,depth_um\n0,0\n1000,deep\n", "found 'deep'"),
-    "short line": ("sliding_distance_m,depth_um\n0,0\n1000\n", "line 3: wanted 2 cells, found 1"),
+    "short line": ("sliding_distance_m,depth_um\n0,0\n1000\n", "line 3: found 1 cells; allowed: 2 cells"),
     "unsorted": ("sliding_distance_m,depth_um\n0,0\n2000,2\n1000,1\n3000,3\n4000,4\n", "rises from line to line"),
-    "no unit": ("sliding_distance,depth\n0,0\n1,1\n", "wanted one column named sliding_distance_mm or"),
-    "unknown unit": ("sliding_distance_mi,depth_um\n0,0\n1,1\n", "wanted one column named sliding_distance_mm or"),
-    "twice": ("sliding_distance_m,depth_um,depth_um\n0,0,0\n1,1,1\n", "wanted one column named depth_um or depth_mm"),
-    "empty": ("", "wanted a header and lines of numbers"),
-    "too few": ("sliding_distance_m,depth_um\n0,0\n1000,1\n", "wanted at least 5 lines from 0 m on, found 2"),
+    "no unit": ("sliding_distance,depth\n0,0\n1,1\n", "one column named sliding_distance_mm or"),
+    "unknown unit": ("sliding_distance_mi,depth_um\n0,0\n1,1\n", "one column named sliding_distance_mm or"),
+    "twice": ("sliding_distance_m,depth_um,depth_um\n0,0,0\n1,1,1\n", "one column named depth_um or depth_mm"),
+    "empty": ("", "a header and lines of numbers"),
+    "too few": ("sliding_distance_m,depth_um\n0,0\n1000,1\n", "found 2; allowed: at least 5 lines from 0 m on"),
     "grows thinner": ("sliding_distance_m,depth_um\n0,5\n1000,4\n2000,3\n3000,2\n4000,1\n", "is the record's depth"),
     "metres as millimetres": (
         "sliding_distance_mm,depth_mm\n" + "".join(f"{s},{s / 4.0}\n" for s in range(6)), "are its units",
@@ -94,12 +94,12 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_no_file(tmp_path: Path) -> None:
     """A record that is not there is named."""
-    with pytest.raises(TableError, match=r"none\.csv: wanted a CSV file that can be read"):
+    with pytest.raises(TableError, match=r"none\.csv: found No such file or directory; allowed: a readable CSV file"):
         Record.read(tmp_path / "none.csv")
 
 
-@pytest.mark.parametrize("wrong", [(0.0, 6.0), (500.0, float("nan"))])
+@pytest.mark.parametrize("wrong", [(0.0, 6.0), (500.0, float("nan")), (500.0, 1e200), (float("inf"), 6.0)])
 def test_bad_test(wrong: tuple[float, float]) -> None:
-    """Force and diameter above zero."""
-    with pytest.raises(TableError, match=r"wanted a .* above zero"):
+    """Force and diameter of a size that a test can have."""
+    with pytest.raises(TableError, match=r"found .*; allowed: a number from 1e-06 to 1e\+09 N|from 0\.001 to 10000 mm"):
         PinOnDisc(*wrong)

@@ -18,6 +18,8 @@ from solver.tables import Column, TableError, read_columns, require_ascending
 
 DISTANCE = Column("sliding_distance", (("mm", 1.0), ("m", 1e3), ("km", 1e6)))
 DEPTH = Column("depth")
+FORCES, DIAMETERS = (1e-6, 1e9), (1e-3, 1e4)
+"""On a pin [N], and of it [mm]: from the tip of a microscope to a brake."""
 CONFIDENCE = 0.95
 FEWEST = 5  # lines: fewer say nothing about the spread
 FASTEST = 1e-5
@@ -33,9 +35,12 @@ class PinOnDisc:
     diameter: float
 
     def __post_init__(self) -> None:
-        for name, value in (("force", self.force), ("pin diameter", self.diameter)):
-            if not (np.isfinite(value) and value > 0.0):
-                raise TableError(f"pin on disc: wanted a {name} above zero, found {value:g}")
+        for name, value, (low, high), unit in (
+            ("force on the pin (--force-N)", self.force, FORCES, "N"),
+            ("diameter of the pin (--pin-diameter-mm)", self.diameter, DIAMETERS, "mm"),
+        ):  # fmt: skip
+            if not low <= value <= high:
+                raise TableError(name, f"a number from {low:g} to {high:g} {unit}", f"{value:g}", f"give it in {unit}")
 
     @property
     def pressure(self) -> float:
@@ -55,14 +60,15 @@ class Record:
     def read(path: Path, run_in: float = 0.0) -> Record:
         """From a CSV file with the columns sliding_distance_mm, _m or _km and depth_um or _mm, from the distance
         `run_in` [mm] on. Raises TableError."""
+        if not run_in >= 0.0:
+            wanted, remedy = "a sliding distance from 0 m on", "give how much of the record's beginning is left out"
+            raise TableError("running in (--run-in-m)", wanted, f"{1e-3 * run_in:g} m", remedy)
         distance, depth = read_columns(path, (DISTANCE, DEPTH))
         require_ascending(path, "a sliding distance", distance)
         later = distance >= run_in
         if np.count_nonzero(later) < FEWEST:
-            raise TableError(
-                f"{path}: wanted at least {FEWEST} lines from {1e-3 * run_in:g} m on, found {np.count_nonzero(later)}; "
-                "give a longer record, or a shorter running in"
-            )
+            wanted, found = f"at least {FEWEST} lines from {1e-3 * run_in:g} m on", f"{np.count_nonzero(later)}"
+            raise TableError(path, wanted, found, "give a longer record, or a shorter running in")
         return Record(path.name, distance[later], depth[later])
 
 
@@ -79,14 +85,13 @@ class Coefficient:
 
 def coefficient(records: Sequence[Record], test: PinOnDisc) -> Coefficient:
     """Raises TableError where nothing wears, or faster than anything does."""
-    fits = [stats.linregress(r.distance, r.depth) for r in records]
+    with np.errstate(all="ignore"):  # distances too small to be squared give no slope, and that is refused
+        fits = [stats.linregress(r.distance, r.depth) for r in records]
     each = np.array([fit.slope / test.pressure for fit in fits])
-    for record, own in zip(records, each):
-        if not 0.0 < own <= FASTEST:
-            raise TableError(
-                f"{record.name}: wanted a K/H between 0 and {FASTEST:g} mm²/N, found {own:.3g}; is the record's "
-                "depth rising, and are its units, the force in N and the diameter in mm right?"
-            )
+    for record, own, fit in zip(records, each, fits):
+        if not (0.0 < own <= FASTEST and np.isfinite(fit.stderr)):
+            remedy = "is the record's depth rising, and are its units, the force in N and the diameter in mm right?"
+            raise TableError(record.name, f"a K/H between 0 and {FASTEST:g} mm²/N", f"{own:.3g}", remedy)
     if len(each) == 1:
         error, freedom = fits[0].stderr / test.pressure, len(records[0].distance) - 2
     else:

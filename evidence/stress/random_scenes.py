@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from solver.estimates import hertz_estimate
-from solver.resolution import sector_resolutions, sector_size
 from solver.scene import Scene, SceneError, scene_from_values
+from solver.size import sector_sizes
 from solver.skips import is_plane
 
 Table = dict[str, Any]
@@ -86,7 +86,7 @@ def _values(draw: Draw, plane: bool, helical: bool, order: int) -> Table:
         "material": _materials(draw),
         "mesh": _mesh(draw, plane, order),
         "contact": {"friction": _frictions(draw)},
-        "load": {"torque_Nm": 1e-12, "on": draw.one_of("pinion", "wheel")},
+        "load": {"torque_Nm": 1e-3 * module**3, "on": draw.one_of("pinion", "wheel")},
         "sweep": {"positions": draw.one_of(6, 12, 20, 40)},
         "output": QUIET,
         "title": "random scene",
@@ -157,10 +157,5 @@ def _is_stout(scene: Scene) -> bool:
 
 
 def _is_small(scene: Scene) -> bool:
-    plane, gears = is_plane(scene), scene.gear_pair().gears
-    dofs, rows = LARGEST[plane]
-    sizes = [
-        sector_size(gear, resolution, scene.mesh.order, plane)
-        for gear, resolution in zip(gears, sector_resolutions(scene), strict=True)
-    ]
-    return all(size.dofs <= dofs and size.flank + size.cuts <= rows for size in sizes)
+    dofs, rows = LARGEST[is_plane(scene)]
+    return all(size.dofs <= dofs and size.flank + size.cuts <= rows for size in sector_sizes(scene))

@@ -1,0 +1,40 @@
+"""How much memory there is for a run: the machine's, or less where a container or a batch system allows less."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+CGROUP = Path("sys/fs/cgroup")
+
+
+def machine_megabytes(root: Path = Path("/")) -> float:
+    """Memory [MB] of this machine, or the smallest limit of the control groups (Linux, versions 1 and 2) that the
+    process is in. root: where the machine's files lie; another one for tests."""
+    return min(_physical(), *_limits(root), float("inf")) / 1e6
+
+
+def _physical() -> float:
+    return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+
+
+def _limits(root: Path) -> Iterator[float]:
+    """Limits [bytes] of the process's control groups and of all groups above them; a container may see its own group
+    as the uppermost one."""
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _, controllers, group = line.split(":", 2)
+        if controllers in ("", "memory"):
+            folder = root / CGROUP / controllers
+            name = "memory.limit_in_bytes" if controllers else "memory.max"
+            own = Path(group.lstrip("/"))
+            texts = (_text(folder / part / name).strip() for part in (own, *own.parents))
+            yield from (float(text) for text in texts if text.isdigit())
+
+
+def _text(path: Path) -> str:
+    """Of a file of the kernel's, empty where there is none."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError:
+        return ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,14 @@ FACET_SHAPE = {
     "tetrahedron": "triangle",
     "hexahedron": "quadrilateral",
 }
+
+TURNED = {
+    ("triangle", 1): [0, 2, 1],
+    ("triangle", 2): [0, 2, 1, 5, 4, 3],
+    ("quadrilateral", 1): [0, 3, 2, 1],
+    ("quadrilateral", 2): [0, 3, 2, 1, 7, 6, 5, 4, 8],
+}
+"""Nodes of a plane cell in gmsh's order that make it run the other way round."""
 
 
 class MeshError(InputError):
@@ -49,3 +57,10 @@ class MeshData:
     def dimension(self) -> int:
         """Topological dimension, 2 or 3."""
         return CELL_DIMENSION[self.shape]
+
+    def turned_over(self) -> MeshData:
+        """The same mesh with the nodes of its 2D cells in the opposite sense of rotation: of a mesh that is numbered
+        clockwise, one that is numbered counter-clockwise. Raises MeshError in 3D."""
+        if self.dimension == 3:
+            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; number the cells of a 3D mesh anew")
+        return replace(self, cells=np.ascontiguousarray(self.cells[:, TURNED[self.shape, self.order]]))

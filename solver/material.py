@@ -7,23 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats
+from meshes.inputs import number
 
 
 @dataclass(frozen=True)
 class Material:
     """Isotropic elastic material; 2D bodies are in plane strain.
 
-    youngs_modulus [MPa], poissons_ratio [-]. Raises ValueError outside E > 0, −1 < ν < 0.5.
+    youngs_modulus [MPa], poissons_ratio [-]. Raises InputError outside E > 0, −1 < ν < 0.5.
     """
 
     youngs_modulus: float = 210e3
     poissons_ratio: float = 0.3
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.youngs_modulus) and self.youngs_modulus > 0.0):
-            raise ValueError(f"youngs_modulus: wanted a number > 0 [MPa], found {self.youngs_modulus!r}")
-        if not -1.0 < self.poissons_ratio < 0.5:
-            raise ValueError(f"poissons_ratio: wanted −1 < ν < 0.5, found {self.poissons_ratio!r}")
+        remedy = "give one in MPa, steel has 210e3"
+        number("youngs_modulus", self.youngs_modulus, "a finite number > 0 [MPa]", remedy, lambda E: E > 0.0)
+        remedy = "give one, steel has 0.3; 0.49 is nearly incompressible"
+        number("poissons_ratio", self.poissons_ratio, "−1 < ν < 0.5", remedy, lambda ν: -1.0 < ν < 0.5)
 
     @property
     def lame(self) -> tuple[float, float]:

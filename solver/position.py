@@ -7,14 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
+from meshes.inputs import is_index, refuse
 from solver.body import Assembled, RigidMotions
 from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part, stuck
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, contact_operator, stacked
 from solver.prepared import PreparedBody
 from solver.search import Pairing, SearchError, pair_surfaces
-from solver.statement import Contact, Placement, Problem, Side, Step
+from solver.statement import Contact, Placement, Problem, Side, Step, check_step
 from solver.surface import Surface
 
 
@@ -25,6 +26,7 @@ class ContactResult:
     points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
     (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with. slip: (q, d) [mm] of the
     first body over the second since the step before, in the first step since rest; zero where the points stick.
+    stated: the contact of the problem. facets: (q,) of the first surface. local: (q, d-1) reference points on them.
     """
 
     points: Floats
@@ -33,6 +35,9 @@ class ContactResult:
     pressure: Floats
     traction: Floats
     slip: Floats
+    stated: Contact
+    facets: Ints
+    local: Floats
 
     @property
     def force(self) -> Floats:
@@ -57,9 +62,15 @@ class Solution:
     prepared: tuple[PreparedBody, ...]
     step: Step
 
+    def body(self, index: int) -> PreparedBody:
+        """A body as it was prepared. Raises InputError for one that is not there."""
+        if not (is_index(index) and 0 <= index < len(self.prepared)):
+            refuse("solution", f"a body index below {len(self.prepared)}", index, "bodies are counted from 0")
+        return self.prepared[index]
+
     def displacement(self, body: int) -> Floats:
-        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included."""
-        return self.prepared[body].displacement(self.nodal_forces[body], self.step.load, self.motions[body])
+        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included. Raises InputError."""
+        return self.body(body).displacement(self.nodal_forces[body], self.step.load, self.motions[body])
 
 
 @dataclass(frozen=True)
@@ -75,13 +86,12 @@ def reach_of(contact: Contact, first: Surface) -> float:
 
 
 class Position:
-    """The condensed contact system of one step. Raises ValueError for a freedom that no body has, SearchError."""
+    """The condensed contact system of one step. Raises InputError for a step of another problem, SearchError."""
 
     def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step) -> None:
         self.problem, self.prepared, self.step = problem, prepared, step
         self.d = prepared[0].assembled.d
-        if any(not 0 <= i < len(prepared) for i, _ in step.freedoms):
-            raise ValueError(f"step: wanted body indices below {len(prepared)}, found {[i for i, _ in step.freedoms]}")
+        check_step(problem, step)
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
         self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
         self.pairings = [self._pairing(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
@@ -210,7 +220,8 @@ class Position:
         force = self._forces(found)
         slid = self._split(self._slid(system, found, slip))
         on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
-        contacts = tuple(_contact_result(*own) for own in zip(self.operators, self._tractions(found), slid))
+        stated = zip(self.problem.contacts, self.pairings, self.operators, self._tractions(found), slid)
+        contacts = tuple(_contact_result(*own) for own in stated)
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
         return Solution(
@@ -256,11 +267,6 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     names = [f.direction for f in rigid.freedoms] if rigid else []
     load, value = step.load * own.load, step.load * own.value
     for freedom in (f for i, f in step.freedoms if i == index):
-        if freedom.direction not in names:
-            raise ValueError(
-                f"step: wanted one of the freedoms {names} of {assembled.body.name} (body {index}), found "
-                f"{freedom.direction!r}; declare it in the body's Rigid first"
-            )
         k = names.index(freedom.direction)
         carried = step.load * float(own.shapes[:, :, k].ravel() @ assembled.load)
         load[k] = np.nan if freedom.load is None else freedom.load + carried
@@ -268,7 +274,12 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     return RigidMotions(own.shapes, load, value)
 
 
-def _contact_result(op: ContactOperator, local: Floats, slid: Floats) -> ContactResult:
+def _contact_result(
+    stated: Contact, pairing: Pairing, op: ContactOperator, local: Floats, slid: Floats
+) -> ContactResult:
     normals = op.common(np.eye(op.d)[:1].repeat(len(local), axis=0))
     slip = op.common(np.hstack([np.zeros((len(slid), 1)), slid]))
-    return ContactResult(op.points, normals, op.weights, local[:, 0], op.common(local), slip)
+    traction = op.common(local)
+    return ContactResult(
+        op.points, normals, op.weights, local[:, 0], traction, slip, stated, pairing.facet1, pairing.xi1
+    )

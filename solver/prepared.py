@@ -22,8 +22,8 @@ class PreparedBody:
 
     surfaces: one per side it takes part in. tractions: of those that carry the pressure. offsets: row at which each
     surface's functionals start. functionals: (m, N·d) what contact sees of the body, forces: (m, N·d) what it is
-    pushed by, the same for θ = 1. stiffness: K' on the free degrees of freedom. compliance: C = P K'⁻¹ Pᵀ (m, m)
-    [mm/N].
+    pushed by, the same for θ = 1. stiffness: K' on the free degrees of freedom. load: (free,) what the external loads
+    and the prescribed displacements press on them with [N]. theta: θ. compliance: C = P K'⁻¹ Pᵀ (m, m) [mm/N].
     """
 
     assembled: Assembled
@@ -33,6 +33,8 @@ class PreparedBody:
     functionals: sp.csr_matrix
     forces: sp.csr_matrix
     stiffness: sp.csr_matrix
+    load: Floats
+    theta: float
     compliance: Floats
 
     @cached_property
@@ -42,11 +44,10 @@ class PreparedBody:
 
     @cached_property
     def load_response(self) -> Floats:
-        """P K'⁻¹ f of the external loads, (m,)."""
-        load = self.assembled.load[self.assembled.free]
-        if not load.any():
-            return np.zeros(self.functionals.shape[0])
-        return self.functionals[:, self.assembled.free] @ self.factor.solve(load)
+        """P u of the external loads and prescribed displacements alone, (m,)."""
+        if not self.load.any():
+            return self.functionals @ self.assembled.prescribed
+        return self.functionals @ self._displaced(self.load, 1.0)
 
     @cached_property
     def motion_shapes(self) -> Floats:
@@ -57,10 +58,19 @@ class PreparedBody:
 
     def displacement(self, functional_forces: Floats, load: float, motion: Floats) -> Floats:
         """(N, d) from forces on the functionals (m,)."""
-        a = self.assembled
-        u = np.zeros(a.stiffness.shape[0])
-        u[a.free] = self.factor.solve((load * a.load + self.forces.T @ functional_forces)[a.free])
-        return u.reshape(-1, a.d) + a.motions.shapes @ motion
+        deformed = self.deformation(functional_forces, load).reshape(-1, self.assembled.d)
+        return deformed + self.assembled.motions.shapes @ motion
+
+    def deformation(self, functional_forces: Floats, load: float) -> Floats:
+        """(N·d,) the same without the rigid motion."""
+        pushed = (self.forces.T @ functional_forces)[self.assembled.free]
+        return self._displaced(load * self.load + pushed, load)
+
+    def _displaced(self, force: Floats, prescribed: float) -> Floats:
+        """(N·d,) under forces on the free degrees of freedom and this share of the prescribed displacements."""
+        u = prescribed * self.assembled.prescribed
+        u[self.assembled.free] = self.factor.solve(force)
+        return u
 
 
 def prepare(problem: Problem) -> tuple[PreparedBody, ...]:
@@ -89,10 +99,11 @@ def _prepared(body: Body, first: set[str], second: set[str], nitsche: Nitsche) -
     for traction in tractions.values() if θ else ():
         K = K - θ * traction.constant_term()
     free = assembled.free
+    load = (assembled.load - K @ assembled.prescribed)[free]
     K = K[free][:, free].tocsr()
     if θ == 1.0 or not tractions:
         C = compliance(K, seen[:, free], graph=assembled.stiffness[free][:, free])
     else:
         C = compliance_by_columns(Factor(K), seen[:, free], pushed[:, free])
     offsets = dict(zip(groups, np.cumsum([0] + [trace[g].shape[0] for g in groups])))
-    return PreparedBody(assembled, surfaces, tractions, offsets, seen, pushed, K, C)
+    return PreparedBody(assembled, surfaces, tractions, offsets, seen, pushed, K, load, θ, C)

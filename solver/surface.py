@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_matrix
 
-from meshes.data import FACET_SHAPE, Floats, Ints, MeshData
+from meshes.data import FACET_SHAPE, Floats, Ints, MeshData, MeshError
 from solver.facet import TURNED_OVER, area_vector, hats, monomials, reference_cell, subcell_rule
 from solver.lagrange import gmsh_permutation
 from solver.lagrange import tabulate as shape_functions
@@ -156,16 +156,11 @@ def _nodal_normals(surface: Surface) -> Floats:
 def surface_of(mesh: MeshData, group: str | Sequence[str]) -> Surface:
     """The contact surface made of one or more named facet groups, turned outwards with the cells behind the facets.
 
-    ValueError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
+    MeshError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
     """
     names = [group] if isinstance(group, str) else list(group)
-    for name in names:
-        if name not in mesh.facets:
-            raise ValueError(f"the mesh has no facet group {name!r}; it has {sorted(mesh.facets)}")
     shape, order = FACET_SHAPE[mesh.shape], mesh.order
-    found = [np.asarray(mesh.facets[name], dtype=np.int64) for name in names]
-    if sum(map(len, found)) == 0:
-        raise ValueError(f"facet group {' + '.join(names)} is empty: a contact surface needs at least one facet")
+    found = [facet_group(mesh, name, "contact surface") for name in names]
     gmsh = np.concatenate([f for f in found if len(f)])[:, gmsh_permutation(shape, order)]
     facets = _outward(mesh, gmsh, shape)
     nodes, local = np.unique(facets, return_inverse=True)
@@ -188,7 +183,7 @@ def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
 
 
 def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
-    """The one cell (f,) that has all nodes of each facet (f, k). Raises ValueError for a facet with none or two."""
+    """The one cell (f,) that has all nodes of each facet (f, k). Raises MeshError for a facet with none or two."""
     def incidence(items: Ints) -> Any:
         rows = np.repeat(np.arange(len(items)), items.shape[1])
         return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
@@ -199,8 +194,33 @@ def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
     count = np.bincount(rows, minlength=len(facets))
     if np.any(count != 1):
         bad = int(np.flatnonzero(count != 1)[0])
-        raise ValueError(f"a contact facet must have one cell behind it; facet {bad} with nodes {facets[bad].tolist()} "
-                         f"has {count[bad]}: put only boundary facets of this body into the group")
+        raise MeshError(
+            f"facets: wanted one cell behind each, as on the boundary of a body, found {count[bad]} behind facet {bad} "
+            f"with nodes {facets[bad].tolist()}; put only boundary facets of this body into the group"
+        )
     behind = np.empty(len(facets), dtype=np.int64)
     behind[rows] = columns
     return behind
+
+
+def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The facets (m, k) of a group that is there and not empty, in gmsh's node order. Raises MeshError."""
+    if group not in mesh.facets:
+        known = ", ".join(sorted(mesh.facets)) or "(the mesh has none)"
+        raise MeshError(f"{of}: wanted one of the facet groups {known}, found {group!r}; name one of these")
+    facets = np.asarray(mesh.facets[group], dtype=np.int64)
+    if not len(facets):
+        raise MeshError(f"{of}: wanted at least one facet in the group {group!r}, found it empty; put facets into it")
+    return facets
+
+
+def boundary_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The same of a group whose facets are on the boundary, each there once. Raises MeshError."""
+    facets = facet_group(mesh, group, of)
+    try:
+        cells_behind(mesh.cells, facets, len(mesh.points))
+    except MeshError as error:
+        raise MeshError(f"{of}, facet group {group!r}: {error}") from error
+    if len(np.unique(np.sort(facets, axis=1), axis=0)) < len(facets):
+        raise MeshError(f"{of}, facet group {group!r}: wanted each facet once, found some twice; leave out the copies")
+    return facets

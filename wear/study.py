@@ -16,7 +16,7 @@ import numpy as np
 
 from meshes.data import Floats, MeshData
 from meshes.lattice import Mask
-from solver.body import Body
+from solver.body import Body, Traction
 from solver.position import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
@@ -270,7 +270,7 @@ def _resting(body: Body) -> list[str]:
     """Facet groups that stay where they are when the mesh moves; a plane of symmetry is not among them."""
     rigid = [body.rigid.group] if body.rigid else []
     fixed = [s.group for s in body.supports if set(s.directions) >= set("xyz"[: body.mesh.dimension])]
-    return [*{*fixed, *(t.group for t in body.loads), *rigid}]
+    return [*{*fixed, *(t.group for t in body.loads if isinstance(t, Traction)), *rigid}]
 
 
 def _certify(state: CycleState) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,11 @@ FACET_SHAPE = {
     "tetrahedron": "triangle",
     "hexahedron": "quadrilateral",
 }
+
+def _as(value: Any, kinds: str, wanted: type) -> Any:
+    """An array of one of these kinds in the wanted type, not copied where it is; anything else as it is."""
+    return value.astype(wanted, copy=False) if isinstance(value, np.ndarray) and value.dtype.kind in kinds else value
+
 
 TURNED = {
     ("triangle", 1): [0, 2, 1],
@@ -52,6 +58,14 @@ class MeshData:
     cells: Ints
     facets: dict[str, Ints]
     volumes: dict[str, Ints]
+
+    def __post_init__(self) -> None:
+        """Arrays of numbers in the types that the solver works with; `meshes.sound` refuses all others."""
+        given = {"points": _as(self.points, "f", np.float64), "cells": _as(self.cells, "iu", np.int64)}
+        if isinstance(self.facets, dict):
+            given["facets"] = {name: _as(rows, "iu", np.int64) for name, rows in self.facets.items()}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
 
     @property
     def dimension(self) -> int:

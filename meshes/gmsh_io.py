@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import gmsh
 import numpy as np
@@ -30,6 +31,7 @@ ELEMENT_TYPES: dict[int, tuple[str, int]] = {
 }
 _TYPE_NUMBERS = {shape: number for number, shape in ELEMENT_TYPES.items()}
 _SERENDIPITY = (16, 17)
+MSH_HEADERS = (b"$MeshFormat", b"$Comments")
 
 
 class NoMeshFile(MeshError, FileNotFoundError):
@@ -56,7 +58,8 @@ def gmsh_model(name: str) -> Iterator[None]:
 
 
 def read_msh(path: Path | str) -> MeshData:
-    """Read a gmsh file: named physical volumes (surfaces in 2D), named facet groups, order 1 or 2, one cell shape.
+    """Read a gmsh file (MSH 4.1 or 2.2) with named physical volumes (surfaces in 2D) and named facet groups, order 1 or
+    2, one cell shape.
 
     Lengths are taken as mm. Elements in no physical group are left out, and so are nodes no cell uses; plane surfaces
     that are numbered clockwise are turned over. Raises MeshError, NoMeshFile where there is none.
@@ -66,18 +69,37 @@ def read_msh(path: Path | str) -> MeshData:
     if not Path(path).is_file():
         found = "a folder" if Path(path).is_dir() else "nothing"
         raise NoMeshFile(f"mesh file: wanted a gmsh file, found {found} at {path}; check the path")
-    with gmsh_model("read"):
+    _refuse_scripts(Path(path))
+    with gmsh_model("read"), TemporaryDirectory() as folder:
+        alias = Path(folder) / "mesh.msh"
+        alias.symlink_to(Path(path).resolve())  # away from a .opt file beside it, which gmsh would run
         try:
-            gmsh.merge(str(path))
+            gmsh.merge(str(alias))
         except Exception as error:
             raise MeshError(
-                f"mesh file {path}: wanted a file that gmsh can read, found that it cannot ({error}); write it by "
+                f"mesh file {path}: wanted a whole mesh in gmsh's format, found what gmsh cannot read; write it by "
                 "gmsh.write, or export it as MSH 4.1 or 2.2"
             ) from error
         try:
             return from_gmsh()
         except MeshError as error:
             raise MeshError(f"mesh file {path}: {error}") from error
+
+
+def _refuse_scripts(path: Path) -> None:
+    """Whatever is no mesh gmsh takes for a .geo script and runs, shell commands in it too. Raises MeshError."""
+    try:
+        with open(path, "rb") as file:
+            head = file.read(64).lstrip()
+    except OSError as error:
+        found = f"{path}: {error.strerror}"
+        raise NoMeshFile(f"mesh file: wanted a file that can be read, found {found}; check its rights") from error
+    if not head.startswith(MSH_HEADERS):
+        found = "an empty file" if not head else f"one that begins with {head[:16]!r}"
+        raise MeshError(
+            f'mesh file {path}: wanted a mesh in gmsh\'s MSH format, which begins with "$MeshFormat", found {found}; '
+            "open it in gmsh, mesh it and save it as .msh"
+        )
 
 
 def from_gmsh() -> MeshData:

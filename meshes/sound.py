@@ -99,7 +99,7 @@ def _check_folds(mesh: MeshData, name: str) -> None:
     bad = least <= 0.0
     if not bad.any():
         return
-    if (least < 0.0).all() and not (least_determinants(mesh.turned_over()) <= 0.0).any():
+    if mesh.dimension == 2 and (least < 0.0).all() and not (least_determinants(mesh.turned_over()) <= 0.0).any():
         raise MeshError(
             f"{name}: wanted cells numbered counter-clockwise, found all {len(bad)} the other way round; use "
             "MeshData.turned_over()"

@@ -16,8 +16,9 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import ufl
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
-from meshes.data import Floats, Ints, MeshData
+from meshes.data import Floats, Ints, MeshData, MeshError
 from meshes.errors import InputError
 from meshes.inputs import members, refuse, text
 from meshes.sound import check_mesh
@@ -193,7 +194,9 @@ def assemble(body: Body) -> Assembled:
     if body.rigid:
         motions = _coupled_motions(body, body.rigid, held)
         held[np.unique(body.mesh.facets[body.rigid.group])] = True
+        _refuse_loose_pieces(body, held)
     else:
+        _refuse_loose_pieces(body, held)
         motions = _floating_motions(points, held)
     resultant = np.einsum("ndr,nd->r", motions.shapes, load.reshape(points.shape))
     loaded = RigidMotions(motions.shapes, motions.load + resultant, motions.value)
@@ -247,6 +250,23 @@ def _coupled_motions(body: Body, rigid: Rigid, held: NDArray[np.bool_]) -> Rigid
         np.array([nan if f.load is None else f.load for f in rigid.freedoms]),
         np.array([nan if f.displacement is None else f.displacement for f in rigid.freedoms]),
     )
+
+
+def _refuse_loose_pieces(body: Body, held: NDArray[np.bool_]) -> None:
+    """A mesh in several pieces, for instance because its nodes are not welded, needs each of them held."""
+    cells, points = body.mesh.cells, body.mesh.points[:, : body.mesh.dimension]
+    links = np.ones(cells.size, dtype=np.int8), (np.repeat(cells[:, 0], cells.shape[1]), cells.ravel())
+    count, number = connected_components(sp.csr_matrix(links, shape=(len(points),) * 2), directed=False)
+    for piece in range(count) if count > 1 else ():
+        nodes = np.flatnonzero(number == piece)
+        modes = rigid_modes(points[nodes] - points[nodes].mean(axis=0))
+        stopped = (modes / np.abs(modes).max(axis=(0, 1)))[held[nodes]]
+        if not len(stopped) or np.linalg.matrix_rank(stopped, tol=1e-10) < modes.shape[2]:
+            raise MeshError(
+                f"{body.name}: wanted a mesh in one piece, or every piece held by supports, found {count} pieces, and "
+                f"that with point {nodes[0]} is not held; weld nodes that coincide (gmsh.model.mesh."
+                "removeDuplicateNodes), or make each piece a body of its own"
+            )
 
 
 def _floating_motions(points: Floats, held: NDArray[np.bool_]) -> RigidMotions:

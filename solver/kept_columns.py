@@ -42,6 +42,8 @@ class KeptColumns:
         """(f, δ) from right, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular to double
         precision."""
         b, load = np.split(right, [len(self.H)])
+        if not len(self.columns) + len(load):  # nothing touches and nothing is free
+            return b
         known = np.concatenate([self.A @ b, (load - self.H.T @ b) / self._balance])
         z, motion = np.split(lu_solve(self._factor, known, check_finite=False), [len(self.columns)])
         return np.concatenate([b - self.M @ z, motion])

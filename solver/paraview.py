@@ -3,7 +3,7 @@
     FOLDER/series.pvd           open this one in ParaView, or with pyvista.get_reader; time is the number of the step
     FOLDER/body_0_0001.vtu      a body's cells where the step places them: displacement_mm at the nodes; stress_MPa
                                 (xx, yy, zz, xy, yz, xz) and von_mises_MPa in the middle of the cells
-    FOLDER/contact_0_0001.vtu   the first surface of a contact: displacement_mm, pressure_MPa, traction_MPa (what the
+    FOLDER/contact_0_0001.vtu   the surface that carries the pressure, of the first body: displacement_mm, pressure_MPa, traction_MPa (what the
                                 first body presses on the second with) and slip_mm since the step before, at the nodes
 
 Vectors and stresses are in the common frame. Warp By Vector by displacement_mm shows the deformed bodies. What a
@@ -120,7 +120,7 @@ def _body(solution: Solution, index: int) -> Data:
 
 
 def _contact(solution: Solution, contact: ContactResult) -> Data:
-    index, group = contact.stated.first
+    index, group = contact.carrier
     surface, where = solution.prepared[index].surfaces[group], _placement(solution, index)
     hats = surface.hat_matrix(contact.facets, contact.local)
 

@@ -26,7 +26,8 @@ class ContactResult:
     points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
     (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with. slip: (q, d) [mm] of the
     first body over the second since the step before, in the first step since rest; zero where the points stick.
-    stated: the contact of the problem. facets: (q,) of the first surface. local: (q, d-1) reference points on them.
+    carrier: the surface that carries the pressure, (body, group). facets: (q,) of it. local: (q, d-1) reference points
+    on them.
     """
 
     points: Floats
@@ -35,7 +36,7 @@ class ContactResult:
     pressure: Floats
     traction: Floats
     slip: Floats
-    stated: Contact
+    carrier: Side
     facets: Ints
     local: Floats
 
@@ -220,8 +221,9 @@ class Position:
         force = self._forces(found)
         slid = self._split(self._slid(system, found, slip))
         on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
-        stated = zip(self.problem.contacts, self.pairings, self.operators, self._tractions(found), slid)
-        contacts = tuple(_contact_result(*own) for own in stated)
+        sides = [contact.first for contact in self.problem.contacts]
+        each = zip(sides, self.pairings, self.operators, self._tractions(found), slid)
+        contacts = tuple(_contact_result(*own) for own in each)
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
         return Solution(
@@ -275,11 +277,11 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
 
 
 def _contact_result(
-    stated: Contact, pairing: Pairing, op: ContactOperator, local: Floats, slid: Floats
+    carrier: Side, pairing: Pairing, op: ContactOperator, local: Floats, slid: Floats
 ) -> ContactResult:
     normals = op.common(np.eye(op.d)[:1].repeat(len(local), axis=0))
     slip = op.common(np.hstack([np.zeros((len(slid), 1)), slid]))
     traction = op.common(local)
     return ContactResult(
-        op.points, normals, op.weights, local[:, 0], traction, slip, stated, pairing.facet1, pairing.xi1
+        op.points, normals, op.weights, local[:, 0], traction, slip, carrier, pairing.facet1, pairing.xi1
     )

@@ -91,7 +91,9 @@ class Sweep:
     def solve(self, step: Step) -> Solution:
         """The next step. Raises InputError, NotConverged, SearchError."""
         check_step(self.problem, step)
-        solution, self._before = Position(self.problem, self.prepared, step).solve(self._before)
+        solution, before = Position(self.problem, self.prepared, step).solve(self._before)
+        _refuse_rigid_carrier(solution)
+        self._before = before
         self.solved += 1
         LOG.info("step %d: %s", self.solved, _line(solution))
         return solution
@@ -109,6 +111,20 @@ def sweep(problem: Problem, steps: Iterable[Step]) -> Iterator[Solution]:
         refuse("sweep", "a list of steps", steps, "write sweep(problem, [Step(0.5), Step(1.0)])")
     run = Sweep(problem)
     return (run.solve(step) for step in steps)
+
+
+def _refuse_rigid_carrier(solution: Solution) -> None:
+    """Nitsche's method takes the traction from the deformation of the surface that carries the pressure; where all of a
+    facet is held there is none, and what remains is a penalty that lets the other body through. Raises InputError."""
+    for contact in solution.contacts:
+        index, group = contact.carrier
+        body = solution.prepared[index]
+        surface, held = body.surfaces[group], body.assembled.held.reshape(-1, body.assembled.d).all(axis=1)
+        if held[surface.nodes[surface.facets[contact.facets[contact.pressure > 0.0]]]].all(axis=1).any():
+            raise InputError(
+                f"contact on {group!r} of body {index}: wanted a first surface that deforms where it is pressed on, "
+                "found facets there that a support or a rigid coupling holds; name the other surface first"
+            )
 
 
 def _line(solution: Solution) -> str:

@@ -66,9 +66,6 @@ def read_msh(path: Path | str) -> MeshData:
     """
     if not isinstance(path, str | os.PathLike):
         raise MeshError(f"mesh file: wanted the path of a gmsh file, found {shown(path)}; write read_msh('block.msh')")
-    if not Path(path).is_file():
-        found = "a folder" if Path(path).is_dir() else "nothing"
-        raise NoMeshFile(f"mesh file: wanted a gmsh file, found {found} at {path}; check the path")
     _refuse_scripts(Path(path))
     with gmsh_model("read"), TemporaryDirectory() as folder:
         alias = Path(folder) / "mesh.msh"
@@ -89,8 +86,13 @@ def read_msh(path: Path | str) -> MeshData:
 def _refuse_scripts(path: Path) -> None:
     """Whatever is no mesh gmsh takes for a .geo script and runs, shell commands in it too. Raises MeshError."""
     try:
+        if not path.is_file():
+            found = "a folder" if path.is_dir() else "nothing"
+            raise NoMeshFile(f"mesh file: wanted a gmsh file, found {found} at {path}; check the path")
         with open(path, "rb") as file:
             head = file.read(64).lstrip()
+    except NoMeshFile:
+        raise
     except OSError as error:
         found = f"{path}: {error.strerror}"
         raise NoMeshFile(f"mesh file: wanted a file that can be read, found {found}; check its rights") from error

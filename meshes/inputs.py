@@ -13,6 +13,7 @@ from meshes.errors import InputError
 
 T = TypeVar("T")
 LONGEST = 80  # characters of a value in a message
+LARGEST = 1e30  # numbers beyond have no physical meaning in any unit, and their squares overflow
 
 
 def refuse(what: str, wanted: str, found: object, remedy: str) -> NoReturn:
@@ -58,7 +59,14 @@ def number(
     """A finite number for which `allowed` holds. Raises InputError."""
     if not (is_number(value) and allowed(float(value))):
         refuse(what, wanted, value, remedy)
+    refuse_huge(what, value)
     return float(value)
+
+
+def refuse_huge(what: str, value: Any) -> None:
+    """Raises InputError for finite numbers beyond LARGEST."""
+    if np.max(np.abs(np.asarray(value, dtype=np.float64)), initial=0.0) > LARGEST:
+        refuse(what, f"numbers up to {LARGEST:g}", value, "check the unit: mm, N, MPa")
 
 
 def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy: str) -> tuple[float, ...]:
@@ -67,6 +75,7 @@ def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy:
         refuse(what, wanted, value, remedy)
     if len(value) not in lengths or not all(is_number(x) for x in value):
         refuse(what, wanted, value, remedy)
+    refuse_huge(what, value)
     return tuple(float(x) for x in value)
 
 
@@ -79,6 +88,7 @@ def array(what: str, value: Any, shapes: tuple[tuple[int, ...], ...], remedy: st
         refuse(what, wanted, value, remedy)
     if found.shape not in shapes or not all(is_number(x) for x in found.ravel()):
         refuse(what, wanted, value, remedy)
+    refuse_huge(what, value)
     return found.astype(np.float64)
 
 

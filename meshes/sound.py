@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshes.data import CELL_DIMENSION, FACET_SHAPE, Ints, MeshData, MeshError
-from meshes.inputs import is_index, kind_of, shown
+from meshes.inputs import is_index, kind_of, refuse_huge, shown
 from meshes.quality import least_determinants
 from meshes.reference import corner_count, node_count
 
@@ -53,6 +53,7 @@ def check_cells(points: Any, cells: Any, shape: Any, order: Any, name: str) -> N
             f"{name}: wanted finite coordinates, found {len(bad)} points of {len(points)} that are none, the first is "
             f"point {bad[0]}; mend the file"
         )
+    refuse_huge(f"{name}, points", points)
     _check_indices(f"{name}: cells", cells, node_count(shape, order), f"{shape} cells of order {order}", len(points))
     if not len(cells):
         raise MeshError(f"{name}: wanted at least one cell, found none; generate the mesh first")

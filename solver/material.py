@@ -14,7 +14,8 @@ from meshes.inputs import number
 class Material:
     """Isotropic elastic material; 2D bodies are in plane strain.
 
-    youngs_modulus [MPa], poissons_ratio [-]. Raises InputError outside E > 0, −1 < ν < 0.5.
+    youngs_modulus [MPa]: from 1e-12 to 1e20. poissons_ratio [-]: from −0.9999 to 0.49999, beyond which rounding makes
+    the stiffness useless. Raises InputError.
     """
 
     youngs_modulus: float = 210e3
@@ -22,9 +23,11 @@ class Material:
 
     def __post_init__(self) -> None:
         remedy = "give one in MPa, steel has 210e3"
-        number("youngs_modulus", self.youngs_modulus, "a finite number > 0 [MPa]", remedy, lambda E: E > 0.0)
-        remedy = "give one, steel has 0.3; 0.49 is nearly incompressible"
-        number("poissons_ratio", self.poissons_ratio, "−1 < ν < 0.5", remedy, lambda ν: -1.0 < ν < 0.5)
+        wanted = "a finite number > 0, from 1e-12 to 1e20 [MPa]"
+        number("youngs_modulus", self.youngs_modulus, wanted, remedy, lambda E: 1e-12 <= E <= 1e20)
+        remedy = "give one, steel has 0.3; 0.499 is nearly incompressible"
+        wanted = "−1 < ν < 0.5, from −0.9999 to 0.49999"
+        number("poissons_ratio", self.poissons_ratio, wanted, remedy, lambda ν: -0.9999 <= ν <= 0.49999)
 
     @property
     def lame(self) -> tuple[float, float]:

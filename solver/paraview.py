@@ -3,8 +3,9 @@
     FOLDER/series.pvd           open this one in ParaView, or with pyvista.get_reader; time is the number of the step
     FOLDER/body_0_0001.vtu      a body's cells where the step places them: displacement_mm at the nodes; stress_MPa
                                 (xx, yy, zz, xy, yz, xz) and von_mises_MPa in the middle of the cells
-    FOLDER/contact_0_0001.vtu   the surface that carries the pressure, of the first body: displacement_mm, pressure_MPa, traction_MPa (what the
-                                first body presses on the second with) and slip_mm since the step before, at the nodes
+    FOLDER/contact_0_0001.vtu   the surface of a contact that carries the pressure: displacement_mm, pressure_MPa,
+                                traction_MPa (what the first body presses on the second with) and slip_mm since the
+                                step before, at the nodes
 
 Vectors and stresses are in the common frame. Warp By Vector by displacement_mm shows the deformed bodies. What a
 contact has at its quadrature points is averaged about the nodes, which keeps the force; the peaks are in
@@ -50,6 +51,7 @@ def write_paraview(solutions: Solution | Iterable[Solution], folder: Path | str)
         refuse("paraview", "a Solution, or several of them", solutions, "write write_paraview(solve(problem), folder)")
     target = _folder(folder)
     path, series = target / "series.pvd", ElementTree.Element("Collection")
+    write_bytes(path, _collection(series))
     for step, solution in enumerate([solutions] if isinstance(solutions, Solution) else solutions, start=1):
         if not isinstance(solution, Solution):
             refuse("paraview", "Solutions only", solution, "give what solve and sweep return")

@@ -10,9 +10,9 @@ import scipy.sparse as sp
 
 from meshes.data import Floats
 from solver.body import Assembled, Body, assemble
-from solver.condense import Factor, compliance, compliance_by_columns
+from solver.condense import Factor, NotPositiveDefinite, compliance, compliance_by_columns
 from solver.statement import Nitsche, Problem
-from solver.surface import Surface, surface_of
+from solver.surface import Surface, refuse_edges, surface_of
 from solver.traction import NitscheTraction, nitsche_traction, trace_functionals
 
 
@@ -90,6 +90,8 @@ def _groups(problem: Problem, body: int, first: bool) -> set[str]:
 def _prepared(body: Body, first: set[str], second: set[str], nitsche: Nitsche) -> PreparedBody:
     assembled, groups, θ = assemble(body), sorted(first | second), nitsche.theta
     surfaces = {g: surface_of(body.mesh, g) for g in groups}
+    for group in sorted(first):
+        refuse_edges(surfaces[group], f"{body.name}, contact surface {group!r}")
     tractions = {g: nitsche_traction(body.mesh, body.material, surfaces[g], nitsche.safety) for g in sorted(first)}
     K = assembled.stiffness
     trace = {g: trace_functionals(surfaces[g], K.shape[0]) for g in groups}
@@ -102,8 +104,19 @@ def _prepared(body: Body, first: set[str], second: set[str], nitsche: Nitsche) -
     load = (assembled.load - K @ assembled.prescribed)[free]
     K = K[free][:, free].tocsr()
     if θ == 1.0 or not tractions:
-        C = compliance(K, seen[:, free], graph=assembled.stiffness[free][:, free])
+        C = _compliance(body, nitsche, K, seen[:, free], assembled.stiffness[free][:, free])
     else:
         C = compliance_by_columns(Factor(K), seen[:, free], pushed[:, free])
     offsets = dict(zip(groups, np.cumsum([0] + [trace[g].shape[0] for g in groups])))
     return PreparedBody(assembled, surfaces, tractions, offsets, seen, pushed, K, load, θ, C)
+
+
+def _compliance(body: Body, nitsche: Nitsche, K: sp.csr_matrix, seen: sp.csr_matrix, graph: sp.csr_matrix) -> Floats:
+    """The compliance; NotPositiveDefinite says which body, and what in a problem may have done it."""
+    try:
+        return compliance(K, seen, graph=graph)
+    except NotPositiveDefinite as error:
+        raise NotPositiveDefinite(
+            f"{body.name}: wanted a stiffness that is positive definite with Nitsche's term, found one that is not; "
+            f"give Nitsche a larger safety than {nitsche.safety:g} (2 is usual), or theta=-1, which needs none"
+        ) from error

@@ -22,6 +22,7 @@ from solver.lagrange import tabulate as shape_functions
 
 # Degree of the rule on each sub-facet for ∫ψ_j N_k: exact on plane facets (also distorted ones), ample on curved ones.
 MASS_DEGREE = 6
+EDGE = np.radians(40.0)  # between a node's normal and that of a facet there: half of an edge of 80°
 INNER_NODES = {("interval", 2): [2], ("quadrilateral", 2): [8], ("triangle", 2): [3, 4, 5]}
 """Of second-order facets in basix's order: nodes that a facet has for itself; of a triangle those of its edges."""
 
@@ -151,6 +152,22 @@ def _nodal_normals(surface: Surface) -> Floats:
     total = np.zeros_like(surface.points)
     np.add.at(total, surface.facets, surface.areas()[:, None, None] * unit)
     return total / np.linalg.norm(total, axis=1, keepdims=True)
+
+
+def refuse_edges(surface: Surface, of: str) -> None:
+    """A contact surface that goes round a sharp edge has normals there that neither face has, and wrong pressures.
+    Raises MeshError where a facet's normal is further than EDGE from that of one of its nodes."""
+    cell, every = reference_cell(surface.shape, surface.order), np.arange(len(surface.facets))
+    own = surface.area_vectors(every, np.broadcast_to(cell.nodes, (len(every), *cell.nodes.shape)))
+    own = own / np.linalg.norm(own, axis=2, keepdims=True)
+    agreement = np.einsum("mkd,mkd->mk", own, surface.normals[surface.facets])
+    facet, node = np.unravel_index(int(np.argmin(agreement)), agreement.shape)
+    if agreement[facet, node] < np.cos(EDGE):
+        place = ", ".join(f"{x:.4g}" for x in surface.points[surface.facets[facet, node]])
+        raise MeshError(
+            f"{of}: wanted a surface without sharp edges, found one at ({place}) mm; leave the faces behind its edges "
+            "out of the facet group, or give each face a contact of its own"
+        )
 
 
 def surface_of(mesh: MeshData, group: str | Sequence[str]) -> Surface:

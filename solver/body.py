@@ -222,13 +222,11 @@ def _stiffness_and_load(body: Body) -> tuple[sp.csr_matrix, Floats]:
 def _load(body: Body, mesh: Mesh, v: object) -> Floats:
     terms = []
     for load in body.loads:
-        f = compat.constant(mesh, load.vector)
+        f, degree = compat.constant(mesh, load.vector), {"quadrature_degree": 2 * body.mesh.order + 2}
         if isinstance(load, Traction):
             tags = compat.facet_tags(mesh, [body.mesh.facets[load.group]])
-            degree = {"quadrature_degree": 2 * body.mesh.order + 2}
             terms.append(ufl.inner(f, v) * ufl.Measure("ds", domain=mesh, subdomain_data=tags, metadata=degree)(1))
         else:
-            degree = {"quadrature_degree": body.mesh.order * (1 + body.mesh.dimension)}
             terms.append(ufl.inner(f, v) * ufl.Measure("dx", domain=mesh, metadata=degree))
     return np.sum([compat.assemble_array(term) for term in terms], axis=0)
 

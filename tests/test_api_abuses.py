@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import re
 
+import api_body_abuses
+import api_mesh_abuses
+import api_odd_inputs
+import api_step_abuses
 import numpy as np
 import pytest
-from api_abuses import ABUSES, FINE, Abuse, Fine
+from api_blocks import Abuse, Fine
 
 from solver.problem import EvolventError, InputError
 
-JARGON = re.compile(r"numpy|ufunc|PETSc|UFL|matmul|tuple index|substring|max_gap|attribute|Traceback|NoneType|broadcast")
+ABUSES = [*api_mesh_abuses.ROWS, *api_body_abuses.ROWS, *api_step_abuses.ROWS]
+FINE = api_odd_inputs.ROWS
+JARGON = re.compile(
+    r"numpy|ufunc|PETSc|UFL|matmul|tuple index|substring|max_gap|attribute|Traceback|NoneType|broadcast"
+)
 
 
 @pytest.mark.parametrize("abuse", ABUSES, ids=lambda each: each.name)
@@ -34,7 +42,9 @@ def test_abuse(abuse: Abuse, tmp_path, monkeypatch):
 def test_odd_but_right(fine: Fine, tmp_path):
     """What looks odd and is right gives the exact number."""
     found, wanted = np.asarray(fine.call(tmp_path), dtype=float), np.asarray(fine.wanted, dtype=float)
-    assert np.abs(found - wanted).max(initial=0.0) <= fine.accuracy * max(np.abs(wanted).max(initial=0.0), 1e-300), found
+    assert np.abs(found - wanted).max(initial=0.0) <= fine.accuracy * max(np.abs(wanted).max(initial=0.0), 1e-300), (
+        found
+    )
 
 
 def test_enough_of_them():

@@ -25,6 +25,7 @@ import numpy as np
 
 from meshes.data import FACET_SHAPE, Floats, Ints
 from meshes.errors import InputError
+from meshes.files import write_bytes
 from meshes.inputs import refuse
 from meshes.reference import node_positions
 from solver.lagrange import gmsh_permutation
@@ -46,7 +47,7 @@ Arrays = dict[str, Floats]
 
 def write_paraview(solutions: Solution | Iterable[Solution], folder: Path | str) -> Path:
     """Writes solutions as a series, also while a sweep is going on; gives the .pvd file, which is up to date after each
-    step. Raises InputError where the folder cannot be made, OSError where a file cannot be written."""
+    step. Raises InputError where the folder cannot be made, WriteError where a file cannot be written."""
     if isinstance(solutions, str) or not isinstance(solutions, Solution | Iterable):
         refuse("paraview", "a Solution, or several of them", solutions, "write write_paraview(solve(problem), folder)")
     target = _folder(folder)
@@ -61,16 +62,6 @@ def write_paraview(solutions: Solution | Iterable[Solution], folder: Path | str)
             ElementTree.SubElement(series, "DataSet", entry | {"file": f"{file}_{step:04d}.vtu"})
         write_bytes(path, _collection(series))
     return path
-
-
-def write_bytes(path: Path, data: bytes) -> None:
-    """Writes a file under another name and renames it: a reader never sees half of it. Raises OSError."""
-    temporary = path.with_name(path.name + ".tmp")
-    try:
-        temporary.write_bytes(data)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def _folder(folder: Path | str) -> Path:

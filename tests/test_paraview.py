@@ -8,7 +8,8 @@ import pyvista
 from test_equilibrium import cylinder
 
 from meshes.blocks import box, rectangle
-from solver.paraview import vtu_bytes, write_bytes
+from meshes.files import PART, WriteError, write_bytes
+from solver.paraview import vtu_bytes
 from solver.problem import (
     Body,
     Contact,
@@ -126,13 +127,13 @@ def test_series_grows_with_the_sweep(tmp_path):
     with pytest.raises(RuntimeError, match="third"):
         write_paraview(sweep(pressed(), steps()), tmp_path)
     assert pyvista.get_reader(tmp_path / "series.pvd").time_values == [1.0, 2.0]
-    assert not list(tmp_path.glob("*.tmp"))
+    assert not list(tmp_path.glob(f"*{PART}*"))
 
 
 def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path):
-    """A folder in a file's place: an OSError, and no temporary file stays."""
+    """A folder in a file's place: an error that names it, and no temporary file stays."""
     (tmp_path / "body_0_0001.vtu").mkdir()
     (solution,) = sweep(pressed(), [Step()])
-    with pytest.raises(OSError, match="body_0_0001"):
+    with pytest.raises(WriteError, match="body_0_0001"):
         write_paraview(solution, tmp_path)
-    assert not list(tmp_path.glob("*.tmp"))
+    assert not list(tmp_path.glob(f"*{PART}*"))

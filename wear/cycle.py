@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats, Ints
+from meshes.errors import InputError
 from solver.nitsche import ContactOperator
 from solver.position import ContactResult, History, Position
 from solver.prepared import PreparedBody
@@ -78,7 +79,7 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
     Raises NotConverged, SearchError, StepsTooLong, ValueError.
     """
     if worn.ahead and not worn.cycle.travel:
-        raise ValueError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
+        raise InputError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
     before: History | None = None
     found: list[list[Rubbing]] = [[] for _ in worn.laws]
     count, steps = len(worn.cycle.steps), worn.cycle.steps if worn.cycle.travel else 2 * worn.cycle.steps
@@ -89,7 +90,7 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
             for i, result in enumerate(solution.contacts):
                 found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
     if not any(state.sliding.any() for own in found for state in own):
-        raise ValueError("wear: wanted a cycle in which something slides, found none; give it travel or moving steps")
+        raise InputError("wear: wanted a cycle in which something slides, found none; give it travel or moving steps")
     return found
 
 

@@ -201,13 +201,7 @@ def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
 
 def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
     """The one cell (f,) that has all nodes of each facet (f, k). Raises MeshError for a facet with none or two."""
-    def incidence(items: Ints) -> Any:
-        rows = np.repeat(np.arange(len(items)), items.shape[1])
-        return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
-
-    shared = (incidence(facets) @ incidence(cells).T).tocoo()
-    whole = shared.data > facets.shape[1] - 0.5
-    rows, columns = shared.row[whole], shared.col[whole]
+    rows, columns = _behind(cells, facets, n_points)
     count = np.bincount(rows, minlength=len(facets))
     if np.any(count != 1):
         bad = int(np.flatnonzero(count != 1)[0])
@@ -220,14 +214,33 @@ def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
     return behind
 
 
+def _behind(cells: Ints, facets: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """Facets and cells that have all their nodes, in pairs."""
+
+    def incidence(items: Ints) -> Any:
+        rows = np.repeat(np.arange(len(items)), items.shape[1])
+        return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
+
+    shared = (incidence(facets) @ incidence(cells).T).tocoo()
+    whole = shared.data > facets.shape[1] - 0.5
+    return shared.row[whole], shared.col[whole]
+
+
 def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
-    """The facets (m, k) of a group that is there and not empty, in gmsh's node order. Raises MeshError."""
+    """The facets (m, k) of a group that is there and not empty, each of a cell, in gmsh's node order. Raises
+    MeshError."""
     if group not in mesh.facets:
         known = ", ".join(sorted(mesh.facets)) or "(the mesh has none)"
         raise MeshError(f"{of}: wanted one of the facet groups {known}, found {group!r}; name one of these")
     facets = np.asarray(mesh.facets[group], dtype=np.int64)
     if not len(facets):
         raise MeshError(f"{of}: wanted at least one facet in the group {group!r}, found it empty; put facets into it")
+    lost = np.setdiff1d(np.arange(len(facets)), _behind(mesh.cells, facets, len(mesh.points))[0])
+    if len(lost):
+        raise MeshError(
+            f"{of}, facet group {group!r}: wanted facets of the mesh's cells, found {len(lost)} that are none, the "
+            f"first has the nodes {facets[lost[0]].tolist()}; mesh the boundary together with the body"
+        )
     return facets
 
 

@@ -52,6 +52,12 @@ SUPPORTS = (
             ("empty",),
             MeshError,
         ),
+        Abuse(
+            "support between cells",
+            lambda _: Body(group(TALL, "far", [[0, 8]]), supports=(Fixed("far"),)),
+            ("'far': wanted facets of the mesh's cells",),
+            MeshError,
+        ),
         Abuse("support without a comma", lambda _: upper(supports=(Fixed("left", "x"))), ("a tuple of Fixed", "write")),
         Abuse("names for supports", lambda _: upper(supports=("left",)), ("found 'left' in it",)),
         Abuse("text for supports", lambda _: upper(supports="left"), ("a tuple of Fixed, found 'left'",)),
@@ -129,7 +135,7 @@ LOADS = [
     Abuse(
         "traction across cells",
         lambda _: Body(group(TALL, "far", [[0, 8]]), loads=(Traction("far", (0.0, 1.0)),)),
-        ("'far'", "found 0 behind"),
+        ("'far'", "found 1 that are none, the first has the nodes \\[0, 8\\]"),
         MeshError,
     ),
     Abuse(

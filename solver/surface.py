@@ -221,9 +221,12 @@ def _behind(cells: Ints, facets: Ints, n_points: int) -> tuple[Ints, Ints]:
         rows = np.repeat(np.arange(len(items)), items.shape[1])
         return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
 
-    shared = (incidence(facets) @ incidence(cells).T).tocoo()
+    on_facets = np.zeros(n_points, dtype=bool)
+    on_facets[facets] = True
+    near = np.flatnonzero(on_facets[cells].sum(axis=1) >= facets.shape[1])
+    shared = (incidence(facets) @ incidence(cells[near]).T).tocoo()
     whole = shared.data > facets.shape[1] - 0.5
-    return shared.row[whole], shared.col[whole]
+    return shared.row[whole], near[shared.col[whole]]
 
 
 def facet_group(mesh: MeshData, group: str, of: str) -> Ints:

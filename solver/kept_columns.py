@@ -69,7 +69,7 @@ class KeptColumns:
         # a rounded factor need not be good: its iterations find out
         if B.dtype == float and s + r and np.isfinite(size) and gecon(lu, size)[0] < np.finfo(float).eps:
             raise NotConverged(
-                "a free rigid motion meets no resistance: wanted a support, or friction that sticks somewhere; "
-                "support the body, prescribe the motion, or lower the load"
+                "contact: wanted supports, or friction that sticks, against every free rigid motion, found one that "
+                "meets no resistance; support the body, prescribe the motion, or lower the load"
             )
         return lu, pivots

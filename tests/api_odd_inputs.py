@@ -28,6 +28,7 @@ from api_blocks import (
 from meshes.gmsh_io import write_msh
 from solver.problem import (
     Body,
+    BodyForce,
     Fixed,
     Freedom,
     InputError,
@@ -215,6 +216,18 @@ ROWS = [
     Fine("a face moved away", lambda _: pressures(pushed(), Step(-1.0)), 0.0),
     Fine("a body against itself", lambda _: pressures(in_one_body()), MODULUS * PUSH / 2.0),
     Fine("a body held everywhere", lambda _: pressures(hard(contact((1, "top"), (0, "bottom")))), MODULUS * PUSH),
+    Fine(
+        "weight carried by the ground",
+        lambda _: force(problem((upper(loads=(BodyForce((0.0, -3.0)),)), lower(loads=(BodyForce((0.0, -5.0)),))))),
+        [0.0, -3.0 * 2.0],
+    ),
+    Fine(
+        "friction just holds",
+        lambda _: force(
+            problem((upper(supports=(), loads=(Traction("top", (10.0, -100.0)),)), lower()), (contact(friction=0.3),))
+        ),
+        [20.0, -200.0],
+    ),
     Fine("traction on a rigid face", lambda _: force(ridden())[1], -2.0 * PRESSURE),
     Fine("traction on a rigid face, with a load", lambda _: force(ridden(-50.0))[1], -2.0 * PRESSURE - 50.0),
     Fine(

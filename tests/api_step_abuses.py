@@ -28,10 +28,12 @@ from solver.problem import (
     Freedom,
     MeshError,
     Nitsche,
+    NotConverged,
     Placement,
     Problem,
     SearchError,
     Step,
+    Traction,
     cell_stress,
     reactions,
     solve,
@@ -276,6 +278,32 @@ PHYSICS = [
         "γ below its limit",
         lambda _: solve(problem(nitsche=Nitsche(safety=0.3))),
         ("upper: wanted a stiffness", "larger safety than 0.3"),
+    ),
+    Abuse(
+        "pulled apart",
+        lambda _: solve(problem(), Step(-1.0)),
+        ("found no node in contact", "hold the motion"),
+        NotConverged,
+    ),
+    Abuse(
+        "nothing that holds it sideways",
+        lambda _: solve(problem((upper(supports=()), lower()))),
+        ("found one that meets no resistance", "support the body"),
+        NotConverged,
+    ),
+    Abuse(
+        "nothing held at all",
+        lambda _: solve(problem((upper(supports=()), lower(supports=())))),
+        ("found one that meets no resistance", "support the body"),
+        NotConverged,
+    ),
+    Abuse(
+        "pushed by more than friction holds",
+        lambda _: solve(
+            problem((upper(supports=(), loads=(Traction("top", (50.0, -100.0)),)), lower()), (contact(friction=0.3),))
+        ),
+        ("found one that meets no resistance", "lower the load"),
+        NotConverged,
     ),
     Abuse(
         "a held surface that is to carry the pressure",

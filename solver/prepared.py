@@ -117,6 +117,6 @@ def _compliance(body: Body, nitsche: Nitsche, K: sp.csr_matrix, seen: sp.csr_mat
         return compliance(K, seen, graph=graph)
     except NotPositiveDefinite as error:
         raise NotPositiveDefinite(
-            f"{body.name}: wanted a stiffness that is positive definite with Nitsche's term, found one that is not; "
+            f"{body.name}: wanted a stiffness that is positive definite with Nitsche's γ, found one that is not; "
             f"give Nitsche a larger safety than {nitsche.safety:g} (2 is usual), or theta=-1, which needs none"
         ) from error

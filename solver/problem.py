@@ -8,12 +8,18 @@ solution = solve(Problem((punch, block), (Contact((0, "face"), (1, "top"), frict
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 
-from solver.position import ContactResult, History, Position, Solution
+from solver.contact_result import ContactResult
+from solver.contact_width import CoarseContactWarning, warn_if_coarse
+from solver.position import History, Position, Solution, Where
 from solver.prepared import PreparedBody, prepare
+from solver.settled import Unsettled, settled
+from solver.small_strain import TooLarge
 from solver.statement import Contact, Nitsche, Placement, Problem, Side, Step
 
 __all__ = [
+    "CoarseContactWarning",
     "Contact",
     "ContactResult",
     "Nitsche",
@@ -24,6 +30,8 @@ __all__ = [
     "Side",
     "Solution",
     "Step",
+    "TooLarge",
+    "Unsettled",
     "prepare",
     "solve",
     "sweep",
@@ -40,5 +48,11 @@ def sweep(problem: Problem, steps: Iterable[Step]) -> Iterator[Solution]:
     prepared = prepare(problem)
     before: History | None = None
     for step in steps:
-        solution, before = Position(problem, prepared, step).solve(before)
+        _, solution, before = settled(partial(_position, prepared, step), problem, before)
+        for contact, result in zip(problem.contacts, solution.contacts):
+            warn_if_coarse(f"contact of {contact.first} with {contact.second}", result.width)
         yield solution
+
+
+def _position(prepared: tuple[PreparedBody, ...], step: Step, problem: Problem, where: Where) -> Position:
+    return Position(problem, prepared, step, where)

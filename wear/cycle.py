@@ -10,13 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from meshes.data import Floats, Ints
+from solver.contact_result import ContactResult
 from solver.nitsche import ContactOperator
-from solver.position import ContactResult, History, Position
+from solver.position import History, Position, Where
 from solver.prepared import PreparedBody
+from solver.settled import settled
 from solver.statement import Problem, Side, Step
 from wear.law import Archard, Places, StepsTooLong
 from wear.track import Track, Travel
@@ -83,8 +86,7 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
     found: list[list[Rubbing]] = [[] for _ in worn.laws]
     count, steps = len(worn.cycle.steps), worn.cycle.steps if worn.cycle.travel else 2 * worn.cycle.steps
     for number, step in enumerate(steps):
-        position = _Wearing(worn, prepared, step)
-        solution, before = position.solve(before)
+        position, solution, before = settled(partial(_Wearing, worn, prepared, step), worn.problem, before)
         if number == len(steps) - 1 if worn.cycle.travel else number >= count:
             for i, result in enumerate(solution.contacts):
                 found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
@@ -96,14 +98,22 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
 class _Wearing(Position):
     """A position between worn surfaces."""
 
-    def __init__(self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step) -> None:
+    def __init__(
+        self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step, problem: Problem, where: Where
+    ) -> None:
         self.wear = worn
-        super().__init__(worn.problem, prepared, step)
+        super().__init__(problem, prepared, step, where)
         self.places = [self._places(i) for i in range(len(self.operators))]
 
     def _places(self, index: int) -> tuple[Places, Places]:
-        pairing, (first, second) = self.pairings[index], self._sides(index)
-        return self._on(first, pairing.facet1, pairing.xi1), self._on(second, pairing.facet2, pairing.xi2)
+        """Of the points on the contact's first surface and on its second."""
+        found, (carrier, other) = self.meetings[index].pairing, self.sides[index]
+        places = {
+            carrier: self._on(carrier, found.facet1, found.xi1),
+            other: self._on(other, found.facet2, found.xi2),
+        }
+        first, second = self._sides(index)
+        return places[first], places[second]
 
     def _on(self, side: Side, facets: Ints, xi: Floats) -> Places:
         surface, track = self.prepared[side[0]].surfaces[side[1]], self.wear.tracks.get(side)

@@ -17,7 +17,7 @@ import numpy as np
 from meshes.data import Floats, MeshData
 from meshes.lattice import Mask
 from solver.body import Body
-from solver.position import reach_of
+from solver.meeting import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
 from solver.statement import Placement, Problem, Side

@@ -74,7 +74,7 @@ def met(
         found = _found(contact, placed, reach, reach)
         return Meeting(placed, placed, found, contact_operator(found, *placed, stabiliser, frames), held)
     searched = displaced(placed, where)
-    found = _found(contact, searched, reach, _depth(placed[0], reach))
+    found = _found(contact, searched, reach, reach)
     operator = contact_operator(found, *searched, stabiliser, tangent_frames(searched[0].normals))
     normals = operator.shape @ operator.frames[:, 0]
     facets, xi = found.facet1, found.xi1[:, None]
@@ -101,13 +101,11 @@ def displaced(placed: Pair, where: Places) -> Pair:
 
 
 def overlapping(pair: Pair, reach: float) -> Pairing:
-    """Where two surfaces overlap. Raises SearchError."""
-    return pair_surfaces(*pair, 0.0, _depth(pair[0], reach))
-
-
-def _depth(first: Surface, reach: float) -> float:
-    """How deep [mm] displaced surfaces may overlap to be seen: unlike a gap, an overlap is never meant."""
-    return max(reach, REACH * extent(first))
+    """Where two surfaces overlap, however deep: unlike a gap, that is never meant. Raises SearchError."""
+    try:
+        return pair_surfaces(*pair, 0.0, max(reach, REACH * extent(pair[0])))
+    except SearchError:  # a thin body's far side
+        return pair_surfaces(*pair, 0.0, reach)
 
 
 def between(pair: Pair, found: Pairing) -> Floats:

@@ -50,7 +50,7 @@ class History:
     points: tuple[Places, ...]
 
 
-Where = tuple[Places, ...] | None
+Where = tuple[Places | None, ...] | None
 """Of each contact, where its surfaces are searched; by default where `Position` says."""
 MOVED = 0.5  # of a facet: prescribed motions beyond this are gone along with before pairs are searched
 

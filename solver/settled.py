@@ -1,14 +1,17 @@
 """A step whose surfaces meet where they come to lie.
 
 Pairs of points are found as the bodies are placed, and jumps are taken along the normals there. That is right as long
-as the step moves them little: pressed by a fifth of the radius, half-spheres are off by several per cent of the peak
-pressure, and by opposite signs for a prescribed motion and for a placement in overlap; a body dragged off an edge keeps
-partners that it has left; what comes into contact from beyond `reach` has none. So every solution is looked at on its
-displaced surfaces:
+as the step moves the bodies little along their contact: one that is dragged off an edge, or turned, keeps partners that
+it has left; what comes into contact from beyond `reach` has none; and bodies that are placed in overlap are paired as
+they never meet. So every solution is looked at again:
 
-- where these overlap without pairs, the contact is searched wider, or there;
-- where gaps, normals or partners are others than the solution took them for, the step is solved again with the pairs of
-  the displaced surfaces, until the forces no longer change.
+- where its deformed surfaces overlap without pairs, the contact is searched wider;
+- where the bodies, each moved along with its surface at the contact as a rigid body, and then pulled apart until they
+  touch, have other partners, gaps or normals than those the solution is made with, the step is solved again on these.
+
+The rigid motion of a surface at its contact has all motions in it: prescribed ones, free ones and those of a part of
+the body that bends. Left out is what strains it: small strain neglects that, here as elsewhere, so that a contact that
+is pressed where it lies is solved on the undeformed shape, like Hertz'.
 """
 
 from __future__ import annotations
@@ -19,8 +22,9 @@ from typing import TypeVar
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
 from meshes.errors import ResultError
 from solver.contact_result import ContactResult
 from solver.material import joint_modulus
@@ -31,11 +35,12 @@ from solver.projection import locate
 from solver.search import SearchError
 from solver.small_strain import refuse_large
 from solver.statement import Problem
+from solver.surface import Surface
+from solver.traction import rigid_modes
 
 GAP = 2e-3  # of the depth p0 a/E* of the contact: a change of gaps that is let pass
-TILT = 0.02  # rad between the normals before and after, mean square over the force
+TILT = 0.01  # rad between the normals before and after, mean square over the force
 DRIFT = 0.01  # of the contact's width: how far from each other partners may come to lie
-CHANGE = 2e-3  # of the nodal forces, from search to search
 NEAR = 0.5  # of a facet: a place without a pair so near has not been searched
 ROUNDS = 12
 
@@ -44,13 +49,14 @@ State = tuple[Of, Solution, History]
 
 
 class Unsettled(ResultError):
-    """The surfaces meet elsewhere after each search, or overlap where no pair was found."""
+    """The surfaces meet elsewhere after each search, or overlap where there are no pairs."""
 
 
 @dataclass(frozen=True)
 class Seen:
-    """A contact on its displaced surfaces.
+    """A contact on the surfaces of its solution.
 
+    where: the surfaces, brought together; None where nothing presses.
     gap: change of the gaps over the contact's depth.
     tilt: [rad] of the normals.
     drift: of the partners, over the contact's width.
@@ -58,6 +64,7 @@ class Seen:
     wanted: [mm] the reach that would have found them, 0 where a wider one would not.
     """
 
+    where: Places | None
     gap: float
     tilt: float
     drift: float
@@ -93,7 +100,6 @@ def settled(make: Callable[[Problem, Where], Of], problem: Problem, before: Hist
 def _rounds(make: Callable[[Problem, Where], Of], problem: Problem, before: History | None) -> Iterator[State[Of]]:
     """Solutions from search to search; the last one is settled."""
     where: Where = None
-    last: Solution | None = None
     spent = 0
     for searches in range(1, ROUNDS + 1):
         position = make(problem, where)
@@ -102,53 +108,86 @@ def _rounds(make: Callable[[Problem, Where], Of], problem: Problem, before: Hist
         yield position, replace(solution, iterations=spent, searches=searches), after
         seen = [look(position, i, *own) for i, own in enumerate(zip(solution.contacts, after.points))]
         if any(own.wanted for own in seen):
-            problem, last = _widened(position, seen), None
-            continue
-        same = all(own.near for own in seen) if last is None else change(last, solution) <= CHANGE
-        if same and not any(own.missed for own in seen):
+            problem = _widened(position, seen)
+        elif all(own.near and not own.missed for own in seen):
             return
-        where, last = after.points, solution
+        else:
+            where = tuple(own.where for own in seen)
     raise Unsettled(_unsettled(position, seen))
 
 
-def change(last: Solution, now: Solution) -> float:
-    """Of the nodal forces on all bodies, as a share of them."""
-    both = [np.concatenate(solution.nodal_forces) for solution in (last, now)]
-    size = float(np.abs(both[1]).sum())
-    return float(np.abs(both[1] - both[0]).sum()) / size if size else 0.0
-
-
 def look(position: Position, index: int, result: ContactResult, places: Places) -> Seen:
-    """A contact of a solution, on surfaces whose nodes lie there. Raises SearchError where these have folded."""
+    """A contact of a solution whose surfaces' nodes have come to lie there. Raises SearchError where these have
+    folded."""
     meeting = result.meeting
-    moved = displaced(meeting.placed, places)
     first, second = (position.problem.bodies[body].material for body, _ in position.sides[index])
-    width = result.width.width if np.isfinite(result.width.width) else 0.0
-    depth = float(result.pressure.max(initial=0.0)) * 0.5 * width / joint_modulus(first, second)
-    missed, wanted = _missed(position, index, meeting, moved, GAP * depth)
     pressed = np.flatnonzero(result.pressure > 0.0)
+    width = result.width.width if len(pressed) else 0.0
+    depth = float(result.pressure.max(initial=0.0)) * 0.5 * width / joint_modulus(first, second)
+    missed, wanted = _missed(position, index, meeting, displaced(meeting.placed, places), GAP * depth)
     if not len(pressed):
-        return Seen(0.0, 0.0, 0.0, missed, wanted)
-    gap, tilt, drift = _partners(meeting, moved, pressed)
+        return Seen(None, 0.0, 0.0, 0.0, missed, wanted)
     share = (result.weights * result.pressure)[pressed]
-    tilted = float(np.sqrt(share @ tilt**2 / share.sum()))
-    return Seen(float(gap.max()) / depth, tilted, float(drift.max()) / width, missed, wanted)
+    share /= share.sum()
+    where = _together(meeting, places, pressed, share)
+    gap, tilt, drift = _partners(meeting, displaced(meeting.placed, where), pressed)
+    tilted = float(np.sqrt(share @ tilt**2))
+    return Seen(where, float(gap.max()) / depth, tilted, float(drift.max()) / width, missed, wanted)
 
 
-def _partners(meeting: Meeting, moved: Pair, pressed: np.ndarray) -> tuple[Floats, Floats, Floats]:
+def _together(meeting: Meeting, places: Places, pressed: Ints, share: Floats) -> Places:
+    """Both surfaces, moved along with their contact as rigid bodies, and apart until no pressed point overlaps. share:
+    (p,) of the force at the pressed points."""
+    found = meeting.pairing
+    moved = [
+        _carried(surface, x, facets[pressed], xi[pressed], share)
+        for surface, x, facets, xi in zip(meeting.placed, places, (found.facet1, found.facet2), (found.xi1, found.xi2))
+    ]
+    pair = displaced(meeting.placed, (moved[0], moved[1]))
+    normal = _normals(pair[0], found.facet1[pressed], found.xi1[pressed])
+    gap = _gaps(meeting, pair, pressed, normal)
+    overlap = float(-gap[np.isfinite(gap)].min(initial=0.0))
+    return moved[0], moved[1] + overlap * (share @ normal)
+
+
+def _carried(surface: Surface, places: Floats, facets: Ints, xi: Floats, share: Floats) -> Floats:
+    """The nodes (n, d) of a surface after the rigid motion that fits the displacements at the points (p,) best."""
+    points = surface.positions(facets, xi[:, None])[:, 0]
+    u = surface.evaluate(places - surface.points, facets, xi[:, None])[0][:, 0]
+    centre, weight = share @ points, np.sqrt(share)[:, None, None]
+    d = points.shape[1]
+    modes = (weight * rigid_modes(points - centre)).reshape(len(points) * d, -1)
+    motion = np.linalg.lstsq(modes, (weight[..., 0] * u).ravel(), rcond=None)[0]
+    turn = np.zeros(3)
+    turn[3 - len(motion[d:]) :] = motion[d:]
+    rotation = Rotation.from_rotvec(turn).as_matrix()[:d, :d]
+    return np.asarray(centre + motion[:d] + (surface.points - centre) @ rotation.T)
+
+
+def _partners(meeting: Meeting, moved: Pair, pressed: Ints) -> tuple[Floats, Floats, Floats]:
     """Of the points that press, on the surfaces as they have moved: change of the gap [mm] when the partner is looked
     for along the normal there, angle [rad] between the normals before and after, distance [mm] of the partners along
     the surface; (p,) each, infinite gaps where there is no partner any more."""
     found, op = meeting.pairing, meeting.operator
-    facet1, xi1, facet2, xi2 = (x[pressed] for x in (found.facet1, found.xi1, found.facet2, found.xi2))
     normal = _unit(op.shape[pressed] @ op.frames[:, 0])
-    now = _unit(moved[0].evaluate(moved[0].normals, facet1, xi1[:, None])[0][:, 0])
-    start = moved[0].positions(facet1, xi1[:, None])
-    apart = moved[1].positions(facet2, xi2[:, None])[:, 0] - start[:, 0]
-    taken = np.einsum("qa,qa->q", normal, apart)
-    _, gap, there = locate(moved[1], facet2, start, now[:, None], xi2[:, None])
-    change = np.where(there[:, 0], np.abs(gap[:, 0] - taken), np.inf)
-    return change, np.linalg.norm(now - normal, axis=1), np.linalg.norm(apart - taken[:, None] * normal, axis=1)
+    now = _normals(moved[0], found.facet1[pressed], found.xi1[pressed])
+    apart = between(moved, found)[pressed]
+    change = np.abs(_gaps(meeting, moved, pressed, now) - np.einsum("qa,qa->q", normal, apart))
+    along = apart - np.einsum("qa,qa->q", now, apart)[:, None] * now
+    return change, np.linalg.norm(now - normal, axis=1), np.linalg.norm(along, axis=1)
+
+
+def _gaps(meeting: Meeting, moved: Pair, pressed: Ints, normal: Floats) -> Floats:
+    """(p,) [mm] gaps of the points that press, along normals (p, d) on moved surfaces; infinite without a partner."""
+    found = meeting.pairing
+    start = moved[0].positions(found.facet1[pressed], found.xi1[pressed][:, None])
+    guess = found.xi2[pressed][:, None]
+    _, gap, there = locate(moved[1], found.facet2[pressed], start, normal[:, None], guess)
+    return np.where(there[:, 0], gap[:, 0], np.inf)
+
+
+def _normals(surface: Surface, facets: Ints, xi: Floats) -> Floats:
+    return _unit(surface.evaluate(surface.normals, facets, xi[:, None])[0][:, 0])
 
 
 def _unit(vectors: Floats) -> Floats:
@@ -163,7 +202,7 @@ def _missed(position: Position, index: int, meeting: Meeting, moved: Pair, toler
     if not deep.any():
         return 0.0, 0.0
     facets, xi = found.facet1[deep], found.xi1[deep]
-    normal = _unit(moved[0].evaluate(moved[0].normals, facets, xi[:, None])[0][:, 0])
+    normal = _normals(moved[0], facets, xi)
     before = np.einsum("qa,qa->q", normal, between(meeting.searched, found)[deep])
     at = meeting.placed[0].positions(facets, xi[:, None])[:, 0]
     away = cKDTree(meeting.operator.points).query(at)[0] / meeting.placed[0].size
@@ -196,6 +235,7 @@ def _unsettled(position: Position, seen: list[Seen]) -> str:
         )
     return (
         f"contact between {contact.first[1]!r} of body {contact.first[0]} and {contact.second[1]!r} of body "
-        f"{contact.second[0]}: wanted forces that change by less than {CHANGE:g} from one search on the displaced "
-        f"surfaces to the next, found more after {ROUNDS} searches; load in smaller steps"
+        f"{contact.second[0]}: wanted surfaces that meet where they were searched, found them elsewhere after {ROUNDS} "
+        f"searches (gaps off by {own.gap:.2g} of the contact's depth, normals by {own.tilt:.2g} rad, partners by "
+        f"{own.drift:.2g} of its width); load in smaller steps"
     )

@@ -75,7 +75,8 @@ def _ends(meeting: Meeting, facets: Ints) -> Floats:
     beyond = np.ones(len(surface.points), dtype=bool)
     beyond[surface.facets[facets]] = False
     rim = _rim(surface)
-    free = rim[~meeting.held[rim].all(axis=1)]
+    held = meeting.supports[0].held.any(axis=1)
+    free = rim[~held[rim].all(axis=1)]
     if not beyond.any() and not len(free):
         free = rim
     corners = surface.points[free]

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshes.data import Floats
+from solver.body import Body
 from solver.facet import area_vector
 from solver.frames import tangent_frames
 from solver.nitsche import ContactOperator, contact_operator, mass_matrix
@@ -28,6 +29,28 @@ Places = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
+class Supports:
+    """Where a body's supports hold a contact surface: planes of symmetry, as far as they cross a contact.
+
+    held: (n, d) of the nodes, in the directions of the body's frame.
+    rotation: (d, d) that turns the body's frame into the common one.
+    """
+
+    held: Bools
+    rotation: Floats
+
+    @staticmethod
+    def of(body: Body, surface: Surface, rotation: Floats) -> Supports:
+        """Of a surface of the body."""
+        d = body.mesh.dimension
+        held = np.zeros((len(body.mesh.points), d), dtype=bool)
+        for support in body.supports:
+            for letter in support.directions[:d] if support.directions == "xyz" else support.directions:
+                held[np.unique(body.mesh.facets[support.group]), "xyz".index(letter)] = True
+        return Supports(held[surface.nodes], rotation)
+
+
+@dataclass(frozen=True)
 class Meeting:
     """The pairs of one contact.
 
@@ -35,14 +58,14 @@ class Meeting:
     searched: the same where the pairs were searched.
     pairing: the pairs found there.
     operator: the contact on them.
-    held: (n1,) nodes of the first surface that a support holds: by symmetry the contact goes on beyond them.
+    supports: what holds each surface.
     """
 
     placed: Pair
     searched: Pair
     pairing: Pairing
     operator: ContactOperator
-    held: Bools
+    supports: tuple[Supports, Supports]
 
 
 def reach_of(contact: Contact, first: Surface) -> float:
@@ -61,18 +84,18 @@ def met(
     placed: Pair,
     stabiliser: Floats,
     frames: Floats,
-    held: Bools,
+    supports: tuple[Supports, Supports],
     where: Places | None,
 ) -> Meeting:
     """The pairs of a contact within a gap of `reach` [mm], searched as placed or, with `where`, on surfaces whose nodes
     lie there.
 
-    stabiliser: (n1, 2), frames: (n1, d, d) and held: (n1,) of the surface that carries the pressure, as placed.
+    stabiliser: (n1, 2) and frames: (n1, d, d) of the surface that carries the pressure, as placed.
     Raises SearchError, also where the surfaces are out of reach or have folded.
     """
     if where is None:
         found = _found(contact, placed, reach, reach)
-        return Meeting(placed, placed, found, contact_operator(found, *placed, stabiliser, frames), held)
+        return Meeting(placed, placed, found, contact_operator(found, *placed, stabiliser, frames), supports)
     searched = displaced(placed, where)
     found = _found(contact, searched, reach, reach)
     operator = contact_operator(found, *searched, stabiliser, tangent_frames(searched[0].normals))
@@ -85,7 +108,7 @@ def met(
         weights=found.weight * _stretch(searched[0], placed[0], found),
         gap=np.einsum("qa,qa->q", normals, between(placed, found)),
     )
-    return Meeting(placed, searched, found, as_placed, held)
+    return Meeting(placed, searched, found, as_placed, supports)
 
 
 def displaced(placed: Pair, where: Places) -> Pair:

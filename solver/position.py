@@ -12,7 +12,7 @@ from solver.body import Assembled, RigidMotions
 from solver.carrier import carrying
 from solver.contact_result import ContactResult
 from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part, stuck
-from solver.meeting import Meeting, Places, met, reach_of
+from solver.meeting import Meeting, Places, Supports, met, reach_of
 from solver.newton import NotConverged
 from solver.nitsche import ContactOperator, stacked
 from solver.prepared import PreparedBody
@@ -87,9 +87,12 @@ class Position:
         frames = traction.frames @ self.placements[carrier[0]].rotation.T
         placed = self._surface(carrier), self._surface(other)
         where = where or self._prescribed((carrier, other), placed)
-        body = self.prepared[carrier[0]]
-        held = body.assembled.held.reshape(-1, self.d)[placed[0].nodes].any(axis=1)
-        return met(contact, self.reaches[index], placed, traction.stabiliser, frames, held, where)
+        supports = self._supports(carrier), self._supports(other)
+        return met(contact, self.reaches[index], placed, traction.stabiliser, frames, supports, where)
+
+    def _supports(self, side: Side) -> Supports:
+        body = self.prepared[side[0]]
+        return Supports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
 
     def _prescribed(self, sides: tuple[Side, Side], placed: tuple[Surface, Surface]) -> Places | None:
         """Where the prescribed motions take the surfaces, if that is further than MOVED."""

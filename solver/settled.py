@@ -10,8 +10,8 @@ they never meet. So every solution is looked at again:
   touch, have other partners, gaps or normals than those the solution is made with, the step is solved again on these.
 
 The rigid motion of a surface at its contact has all motions in it: prescribed ones, free ones and those of a part of
-the body that bends. Left out is what strains it: small strain neglects that, here as elsewhere, so that a contact that
-is pressed where it lies is solved on the undeformed shape, like Hertz'.
+the body that bends. Left out is what strains it, and turns of the size of strains: small strain neglects them, here as
+elsewhere, so that a contact that is pressed where it lies is solved on the undeformed shape, like Hertz'.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from meshes.data import Floats, Ints
 from meshes.errors import ResultError
 from solver.contact_result import ContactResult
 from solver.material import joint_modulus
-from solver.meeting import Meeting, Pair, Places, between, displaced, extent, overlapping, reach_of
+from solver.meeting import Meeting, Pair, Places, Supports, between, displaced, extent, overlapping, reach_of
 from solver.newton import NotConverged
 from solver.position import History, Position, Solution, Where
-from solver.projection import locate
+from solver.projection import Bools, locate
 from solver.search import SearchError
 from solver.small_strain import refuse_large
 from solver.statement import Problem
@@ -39,7 +39,7 @@ from solver.surface import Surface
 from solver.traction import rigid_modes
 
 GAP = 2e-3  # of the depth p0 a/E* of the contact: a change of gaps that is let pass
-TILT = 0.01  # rad between the normals before and after, mean square over the force
+TILT = 0.01  # rad between the normals before and after, mean square over the force; turns below it are not gone along
 DRIFT = 0.01  # of the contact's width: how far from each other partners may come to lie
 NEAR = 0.5  # of a facet: a place without a pair so near has not been searched
 ROUNDS = 12
@@ -127,7 +127,7 @@ def look(position: Position, index: int, result: ContactResult, places: Places) 
     missed, wanted = _missed(position, index, meeting, displaced(meeting.placed, places), GAP * depth)
     if not len(pressed):
         return Seen(None, 0.0, 0.0, 0.0, missed, wanted)
-    share = (result.weights * result.pressure)[pressed]
+    share = np.maximum((result.weights * result.pressure)[pressed], 0.0)  # a few weights may be slightly negative
     share /= share.sum()
     where = _together(meeting, places, pressed, share)
     gap, tilt, drift = _partners(meeting, displaced(meeting.placed, where), pressed)
@@ -140,8 +140,10 @@ def _together(meeting: Meeting, places: Places, pressed: Ints, share: Floats) ->
     (p,) of the force at the pressed points."""
     found = meeting.pairing
     moved = [
-        _carried(surface, x, facets[pressed], xi[pressed], share)
-        for surface, x, facets, xi in zip(meeting.placed, places, (found.facet1, found.facet2), (found.xi1, found.xi2))
+        _carried(surface, supports, x, facets[pressed], xi[pressed], share)
+        for surface, supports, x, facets, xi in zip(
+            meeting.placed, meeting.supports, places, (found.facet1, found.facet2), (found.xi1, found.xi2)
+        )
     ]
     pair = displaced(meeting.placed, (moved[0], moved[1]))
     normal = _normals(pair[0], found.facet1[pressed], found.xi1[pressed])
@@ -150,18 +152,33 @@ def _together(meeting: Meeting, places: Places, pressed: Ints, share: Floats) ->
     return moved[0], moved[1] + overlap * (share @ normal)
 
 
-def _carried(surface: Surface, places: Floats, facets: Ints, xi: Floats, share: Floats) -> Floats:
-    """The nodes (n, d) of a surface after the rigid motion that fits the displacements at the points (p,) best."""
+def _carried(surface: Surface, supports: Supports, places: Floats, facets: Ints, xi: Floats, share: Floats) -> Floats:
+    """The nodes (n, d) of a surface after the rigid motion that fits the displacements at the points (p,) best, among
+    those that the supports there allow: a plane of symmetry allows what keeps to it."""
     points = surface.positions(facets, xi[:, None])[:, 0]
     u = surface.evaluate(places - surface.points, facets, xi[:, None])[0][:, 0]
-    centre, weight = share @ points, np.sqrt(share)[:, None, None]
-    d = points.shape[1]
-    modes = (weight * rigid_modes(points - centre)).reshape(len(points) * d, -1)
-    motion = np.linalg.lstsq(modes, (weight[..., 0] * u).ravel(), rcond=None)[0]
-    turn = np.zeros(3)
-    turn[3 - len(motion[d:]) :] = motion[d:]
-    rotation = Rotation.from_rotvec(turn).as_matrix()[:d, :d]
-    return np.asarray(centre + motion[:d] + (surface.points - centre) @ rotation.T)
+    centre, weight, d = share @ points, np.sqrt(share)[:, None], points.shape[1]
+    R = supports.rotation
+    allowed = _allowed(supports.held[surface.facets[facets]])
+    modes = (weight[..., None] * rigid_modes((points - centre) @ R)[:, :, allowed]).reshape(len(points) * d, -1)
+    motion = np.zeros(d * (d + 1) // 2)
+    motion[allowed] = np.linalg.lstsq(modes, (weight * (u @ R)).ravel(), rcond=None)[0]
+    turn = np.pad(motion[d:], (3 - len(motion[d:]), 0))
+    if np.linalg.norm(turn) <= TILT:
+        turn = np.zeros(3)
+    turned = R @ Rotation.from_rotvec(turn).as_matrix()[:d, :d] @ R.T
+    return np.asarray(centre + R @ motion[:d] + (surface.points - centre) @ turned.T)
+
+
+def _allowed(held: Bools) -> Ints:
+    """Rigid motions (r,) of a surface of which some nodes (p, k, d) are held: none along a direction that is held
+    anywhere, and turns about it only."""
+    d = held.shape[-1]
+    along = held.any(axis=(0, 1))
+    if d == 2:
+        return np.flatnonzero(np.append(~along, not along.any()))
+    about = [not np.delete(along, axis).any() for axis in range(3)]
+    return np.flatnonzero(np.concatenate([~along, about]))
 
 
 def _partners(meeting: Meeting, moved: Pair, pressed: Ints) -> tuple[Floats, Floats, Floats]:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
 from solver.contact_width import Width, width_of
 from solver.meeting import Meeting
 from solver.statement import Contact, Side
@@ -42,6 +42,16 @@ class ContactResult:
     def force(self) -> Floats:
         """Resultant (d,) on the second body [N; N/mm in 2D]."""
         return self.weights @ self.traction
+
+    @property
+    def facets(self) -> Ints:
+        """(q,) facets of the carrier's surface."""
+        return self.meeting.pairing.facet1
+
+    @property
+    def local(self) -> Floats:
+        """(q, d−1) reference points on these facets."""
+        return self.meeting.pairing.xi1
 
     @cached_property
     def width(self) -> Width:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from meshes.blocks import cylinder_2d, graded_rectangle, rectangle
-from meshes.rings import ring_sphere
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
 from solver.problem import Contact, ContactResult, Placement, Problem, Solution, Step, TooLarge, solve, sweep
@@ -57,21 +56,6 @@ def half_discs(share: float, placed: bool) -> tuple[Problem, Step]:
     return problem, Step(placements=(above, Placement(-np.eye(2), np.zeros(2))))
 
 
-def half_spheres(share: float, placed: bool) -> tuple[Problem, Step]:
-    """The same in 3D: quarters of two half-spheres, of which Hertz' contact radius is a."""
-    radius, a = 10.0, 10.0 * share
-    approach = 2.0 * a**2 / radius
-    mesh = ring_sphere(radius, 6.0, 6.0, a, a / 3.0, 1.25 * a, growth=1.9)
-    symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
-    down = Freedom("z", displacement=0.0 if placed else -approach)
-    upper = Body(mesh, supports=symmetry, rigid=Rigid("top", (down,)))
-    lower = Body(mesh, supports=(*symmetry, Fixed("top")))
-    problem = Problem((upper, lower), (Contact((0, "arc"), (1, "arc"), reach=3 * approach),))
-    turned = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])  # x and y change places, z turns over
-    above = Placement(np.eye(3), np.array([0.0, 0.0, -approach if placed else 0.0]))
-    return problem, Step(placements=(above, Placement(turned, np.zeros(3))))
-
-
 def fitted(contact: ContactResult) -> tuple[float, float]:
     """p0 and a of the ellipse that fits the pressure over the inner 70 % of the contact."""
     r = np.linalg.norm(contact.points[:, :-1], axis=1)
@@ -80,11 +64,12 @@ def fitted(contact: ContactResult) -> tuple[float, float]:
     return float(np.sqrt(top)), float(np.sqrt(-top / slope))
 
 
-@pytest.mark.parametrize(("bodies", "share"), [(half_discs, 0.05), (half_discs, 0.2), (half_spheres, 0.2)])
-def test_placed_in_overlap(bodies, share):
+@pytest.mark.parametrize("share", [0.05, 0.2])
+def test_placed_in_overlap(share):
     """Pressed by a placement in overlap and by a prescribed motion from where they touch: the same force, peak pressure
-    and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 they were 7 % apart in the peak, 10 % in the width."""
-    moved, placed = (solve(*bodies(share, by)).contacts[0] for by in (False, True))
+    and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 they were 7 % apart in the peak, 10 % in the width.
+    Half-spheres are a rung of the ladder."""
+    moved, placed = (solve(*half_discs(share, by)).contacts[0] for by in (False, True))
     assert np.linalg.norm(placed.force) == pytest.approx(np.linalg.norm(moved.force), rel=5e-3)
     assert fitted(placed) == pytest.approx(fitted(moved), rel=5e-3)
 

@@ -1,10 +1,10 @@
 """Which of the two surfaces of a contact carries the pressure.
 
-Nitsche's method takes the traction from one body, and the stabiliser γ with it: γ is some E/h of that body. Where this
-is much the stiffer one, γ is large against the stiffness of the contact, and rounding of the jump, multiplied by γ,
-hides the equilibrium: from a ratio of the moduli of some 1e4 on no residual of 1e-10 can be reached. From the softer
-body the ratio does not count. So the first surface, which the user names, carries the pressure up to STIFFER, and
-beyond that the softer one.
+Nitsche's method takes the traction from one body, and the stabiliser γ with it: γ is some E/h of that body. Where
+this is much the stiffer one, γ is large against the stiffness of the contact, and rounding of the jump, multiplied by
+γ, hides the equilibrium: from a ratio of the moduli of some 1e4 on no residual of 1e-10 can be reached; and long
+before, the pressure oscillates at the corners of a stiff punch. From the softer body the ratio does not count. So the
+first surface, which the user names, carries the pressure up to STIFFER, and beyond that the softer one.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from solver.body import Body
 from solver.statement import Contact, Side
 
-STIFFER = 100.0  # ratio of the plane moduli from which the softer body carries the pressure, whichever is named first
+STIFFER = 10.0  # ratio of the plane moduli beyond which the softer body carries the pressure, whichever is named first
 
 
 def carrying(bodies: Sequence[Body], contact: Contact) -> tuple[Side, Side]:

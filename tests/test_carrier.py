@@ -1,4 +1,4 @@
-"""Bodies of very different stiffness, named in either order: the softer one carries the pressure from a ratio of 100
+"""Bodies of very different stiffness, named in either order: the softer one carries the pressure from a ratio of 10
 on."""
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def test_named_order_keeps_its_meaning():
     assert np.allclose(np.linalg.norm(shear, axis=1), 0.2 * first.pressure, rtol=1e-6)
 
 
-@pytest.mark.parametrize(("stiffer", "carrier"), [(STIFFER, (0, "arc")), (1.01 * STIFFER, (1, "top"))])
+@pytest.mark.parametrize(("stiffer", "carrier"), [(0.99 * STIFFER, (0, "arc")), (1.01 * STIFFER, (1, "top"))])
 def test_who_carries(stiffer, carrier):
     """The first surface, and the softer one where the first body is more than STIFFER times as stiff; by either the
     roller sinks in the same within 1 %."""

@@ -24,8 +24,8 @@ Two steel half-spheres of {RADIUS:g} mm radius, quarters of them, without fricti
 prescribed motion from where they touch, once by placing them in overlap. Both state one problem. Second-order
 hexahedra of a/{CELLS} in rings, alike on both, cut off {SIDE:g} mm from the contact. Points are paired as the surfaces
 meet, not as they overlap: paired in overlap, the two ways were 6 % apart in the peak at a/R = 0.14. Hertz' p0 and a of
-the force that was found say what the size of the contact adds: at a fifth of the radius it is no small part of a
-half-space any more.
+the force that was found say what the size of the contact adds: at a fifth of the radius it is a third of the bodies
+and no small part of a half-space any more.
 """
 
 
@@ -102,5 +102,5 @@ def draw(figure: Figure, found: dict[float, tuple[Found, ...]]) -> None:
         for way, marker, colour, number in zip(WAYS, ("s", "o"), (WHEEL, PINION), (0, 1)):
             values = [(f[number].peak, f[number].radius)[index] / f[number].hertz[index] for f in found.values()]
             axes.plot(list(found), values, marker, color=colour, ms=9 - 3 * number, mfc="none", mew=1.5, label=way)
-        axes.set(xlabel="a/R", ylabel=f"{name} over Hertz' of the force", ylim=(0.9, 1.1))
+        axes.set(xlabel="a/R", ylabel=f"{name} over Hertz' of the force", ylim=(0.85, 1.15), xlim=(0.0, 0.25))
         axes.legend(loc="lower left")

@@ -66,7 +66,7 @@ PROBLEM = f"""
 A steel punch, flat over 2a = {2 * FLAT:g} mm with edges rounded by R = {ROUNDING:g} mm, on an aluminium block, plane
 strain, no friction: the punch of NAFEMS' second contact benchmark (R0094) in 2D, with both bodies so large
 ({BLOCK / HALF_WIDTH:.0f} b) that they are half-planes, for which the pressure has a closed form. It rises from the
-middle to the ends of the flat, has a slope of infinite steepness there, and falls to zero at b. The load is the one for
+middle, with infinite slope at the ends of the flat, to beyond them, and falls to zero at b. The load is the one for
 b = {HALF_WIDTH:g} mm, {EXACT.load:.0f} N/mm. Second-order quadrilaterals of b/{CELLS} on the punch, 1.37 times finer on
 the block, which do not match.
 """
@@ -113,7 +113,7 @@ def measure() -> Rung:
         PROBLEM,
         claims(profile, float(contact.weights[contact.pressure > 0.0].sum()) / 2.0),
         lambda figure: draw(figure, profile),
-        "The pressure is lowest in the middle and highest where the flat ends",
+        "The pressure is lowest in the middle and highest just beyond the ends of the flat",
     )
 
 

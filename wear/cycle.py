@@ -10,17 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from meshes.data import Floats, Ints
 from solver.contact_result import ContactResult
 from solver.nitsche import ContactOperator
-from solver.position import History, Position, Where
+from solver.position import History, Position
 from solver.prepared import PreparedBody
-from solver.settled import settled
 from solver.statement import Problem, Side, Step
+from solver.surface import Surface
 from wear.law import Archard, Places, StepsTooLong
 from wear.track import Track, Travel
 
@@ -86,7 +85,8 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
     found: list[list[Rubbing]] = [[] for _ in worn.laws]
     count, steps = len(worn.cycle.steps), worn.cycle.steps if worn.cycle.travel else 2 * worn.cycle.steps
     for number, step in enumerate(steps):
-        position, solution, before = settled(partial(_Wearing, worn, prepared, step), worn.problem, before)
+        position = _Wearing(worn, prepared, step)
+        solution, before = position.solve(before)
         if number == len(steps) - 1 if worn.cycle.travel else number >= count:
             for i, result in enumerate(solution.contacts):
                 found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
@@ -96,14 +96,16 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
 
 
 class _Wearing(Position):
-    """A position between worn surfaces."""
+    """A position between worn surfaces. Its pairs are those of the bodies as placed: where these overlap, as worn ones
+    do, material is gone, and they must not be brought apart (solver/settled.py)."""
 
-    def __init__(
-        self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step, problem: Problem, where: Where
-    ) -> None:
+    def __init__(self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step) -> None:
         self.wear = worn
-        super().__init__(problem, prepared, step, where)
+        super().__init__(worn.problem, prepared, step)
         self.places = [self._places(i) for i in range(len(self.operators))]
+
+    def _prescribed(self, sides: tuple[Side, Side], placed: tuple[Surface, Surface]) -> None:
+        """Pairs stay those of the bodies as placed."""
 
     def _places(self, index: int) -> tuple[Places, Places]:
         """Of the points on the contact's first surface and on its second."""

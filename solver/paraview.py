@@ -28,8 +28,9 @@ from meshes.errors import InputError
 from meshes.files import write_bytes
 from meshes.inputs import refuse
 from meshes.reference import node_positions
+from solver.contact_result import ContactResult
 from solver.lagrange import gmsh_permutation
-from solver.position import ContactResult, Solution
+from solver.position import Solution
 from solver.statement import Placement
 from solver.stress import cell_stress, von_mises
 
@@ -115,7 +116,7 @@ def _body(solution: Solution, index: int) -> Data:
 def _contact(solution: Solution, contact: ContactResult) -> Data:
     index, group = contact.carrier
     surface, where = solution.prepared[index].surfaces[group], _placement(solution, index)
-    hats = surface.hat_matrix(contact.facets, contact.local)
+    hats = surface.hat_matrix(contact.meeting.pairing.facet1, contact.meeting.pairing.xi1)
 
     def about_nodes(values: Floats) -> Floats:
         total = hats.T @ (contact.weights[:, None] * values.reshape(len(values), -1))

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from meshes.data import Floats
 from solver.body import Assembled, Body, assemble
+from solver.carrier import carrying
 from solver.condense import Factor, NotPositiveDefinite, compliance, compliance_by_columns
 from solver.statement import Nitsche, Problem
 from solver.surface import Surface, refuse_edges, surface_of
@@ -82,8 +83,8 @@ def prepare(problem: Problem) -> tuple[PreparedBody, ...]:
 
 
 def _groups(problem: Problem, body: int, first: bool) -> set[str]:
-    """The facet groups of a body that are the first, or the second, side of a contact."""
-    sides = [contact.first if first else contact.second for contact in problem.contacts]
+    """The facet groups of a body that carry the pressure of a contact, or are the other side of one."""
+    sides = [carrying(problem.bodies, contact)[0 if first else 1] for contact in problem.contacts]
     return {group for index, group in sides if index == body}
 
 

@@ -11,20 +11,24 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterable, Iterator
-from functools import cached_property
+from functools import cached_property, partial
 
 from meshes.data import MeshData, MeshError
 from meshes.errors import EvolventError, InputError, ResultError
 from meshes.gmsh_io import read_msh
 from meshes.inputs import refuse
 from solver.body import Body, BodyForce, Fixed, Freedom, Rigid, Traction
+from solver.contact_result import ContactResult
+from solver.contact_width import CoarseContactWarning, warn_if_coarse
 from solver.material import STEEL, Material
 from solver.newton import NotConverged
 from solver.paraview import write_paraview
-from solver.position import ContactResult, History, Position, Solution
+from solver.position import History, Position, Solution, Where
 from solver.prepared import PreparedBody, prepare
 from solver.reactions import Reaction, reactions
 from solver.search import SearchError
+from solver.settled import Unsettled, settled
+from solver.small_strain import TooLarge
 from solver.statement import Contact, Nitsche, Placement, Problem, Side, Step, check_step
 from solver.stress import cell_stress, von_mises
 
@@ -32,6 +36,7 @@ __all__ = [
     "STEEL",
     "Body",
     "BodyForce",
+    "CoarseContactWarning",
     "Contact",
     "ContactResult",
     "EvolventError",
@@ -55,7 +60,9 @@ __all__ = [
     "Solution",
     "Step",
     "Sweep",
+    "TooLarge",
     "Traction",
+    "Unsettled",
     "cell_stress",
     "prepare",
     "reactions",
@@ -91,10 +98,13 @@ class Sweep:
     def solve(self, step: Step) -> Solution:
         """The next step. Raises InputError, NotConverged, SearchError."""
         check_step(self.problem, step)
-        solution, before = Position(self.problem, self.prepared, step).solve(self._before)
+        at = partial(_position, self.prepared, step)
+        _, solution, before = settled(at, self.problem, self._before)
         _refuse_rigid_carrier(solution)
         self._before = before
         self.solved += 1
+        for contact, result in zip(self.problem.contacts, solution.contacts):
+            warn_if_coarse(f"contact of {contact.first} with {contact.second}", result.width)
         LOG.info("step %d: %s", self.solved, _line(solution))
         return solution
 
@@ -113,6 +123,10 @@ def sweep(problem: Problem, steps: Iterable[Step]) -> Iterator[Solution]:
     return (run.solve(step) for step in steps)
 
 
+def _position(prepared: tuple[PreparedBody, ...], step: Step, problem: Problem, where: Where) -> Position:
+    return Position(problem, prepared, step, where)
+
+
 def _refuse_rigid_carrier(solution: Solution) -> None:
     """Nitsche's method takes the traction from the deformation of the surface that carries the pressure; where all of a
     facet is held there is none, and what remains is a penalty that lets the other body through. Raises InputError."""
@@ -120,7 +134,8 @@ def _refuse_rigid_carrier(solution: Solution) -> None:
         index, group = contact.carrier
         body = solution.prepared[index]
         surface, held = body.surfaces[group], body.assembled.held.reshape(-1, body.assembled.d).all(axis=1)
-        if held[surface.nodes[surface.facets[contact.facets[contact.pressure > 0.0]]]].all(axis=1).any():
+        pressed = contact.meeting.pairing.facet1[contact.pressure > 0.0]
+        if held[surface.nodes[surface.facets[pressed]]].all(axis=1).any():
             raise InputError(
                 f"contact on {group!r} of body {index}: wanted a first surface that deforms where it is pressed on, "
                 "found facets there that a support or a rigid coupling holds; name the other surface first"

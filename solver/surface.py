@@ -82,6 +82,11 @@ class Surface:
         """The length [mm] or area [mm²] of each facet: (m,)."""
         return self._rule()[2].sum(axis=1)
 
+    @property
+    def size(self) -> float:
+        """Median length [mm] of the facets: in 3D the root of the area."""
+        return float(np.median(self.areas()) ** (1.0 / (self.points.shape[1] - 1)))
+
     def weights(self) -> Floats:
         """m_j = ∫ψ_j [mm or mm²], ψ_j the hats of the node grid: (n,), all positive."""
         psi, _, measure = self._rule()

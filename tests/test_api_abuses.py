@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import api_body_abuses
+import api_large_abuses
 import api_mesh_abuses
 import api_odd_inputs
 import api_step_abuses
@@ -14,8 +15,8 @@ from api_blocks import Abuse, Fine
 
 from solver.problem import EvolventError, InputError
 
-ABUSES = [*api_mesh_abuses.ROWS, *api_body_abuses.ROWS, *api_step_abuses.ROWS]
-FINE = api_odd_inputs.ROWS
+ABUSES = [*api_mesh_abuses.ROWS, *api_body_abuses.ROWS, *api_step_abuses.ROWS, *api_large_abuses.ABUSES]
+FINE = [*api_odd_inputs.ROWS, *api_large_abuses.FINE]
 JARGON = re.compile(
     r"numpy|ufunc|PETSc|UFL|matmul|tuple index|substring|max_gap|attribute|Traceback|NoneType|broadcast"
 )

@@ -18,7 +18,7 @@ from meshes.data import Floats, MeshData
 from meshes.errors import InputError
 from meshes.lattice import Mask
 from solver.body import Body, Traction
-from solver.position import reach_of
+from solver.meeting import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
 from solver.statement import Placement, Problem, Side

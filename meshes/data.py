@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,19 @@ FACET_SHAPE = {
     "tetrahedron": "triangle",
     "hexahedron": "quadrilateral",
 }
+
+def _as(value: Any, kinds: str, wanted: type) -> Any:
+    """An array of one of these kinds in the wanted type, not copied where it is; anything else as it is."""
+    return value.astype(wanted, copy=False) if isinstance(value, np.ndarray) and value.dtype.kind in kinds else value
+
+
+TURNED = {
+    ("triangle", 1): [0, 2, 1],
+    ("triangle", 2): [0, 2, 1, 5, 4, 3],
+    ("quadrilateral", 1): [0, 3, 2, 1],
+    ("quadrilateral", 2): [0, 3, 2, 1, 7, 6, 5, 4, 8],
+}
+"""Nodes of a plane cell in gmsh's order that make it run the other way round."""
 
 
 class MeshError(InputError):
@@ -45,7 +59,22 @@ class MeshData:
     facets: dict[str, Ints]
     volumes: dict[str, Ints]
 
+    def __post_init__(self) -> None:
+        """Arrays of numbers in the types that the solver works with; `meshes.sound` refuses all others."""
+        given = {"points": _as(self.points, "f", np.float64), "cells": _as(self.cells, "iu", np.int64)}
+        if isinstance(self.facets, dict):
+            given["facets"] = {name: _as(rows, "iu", np.int64) for name, rows in self.facets.items()}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
     @property
     def dimension(self) -> int:
         """Topological dimension, 2 or 3."""
         return CELL_DIMENSION[self.shape]
+
+    def turned_over(self) -> MeshData:
+        """The same mesh with the nodes of its 2D cells in the opposite sense of rotation: of a mesh that is numbered
+        clockwise, one that is numbered counter-clockwise. Raises MeshError in 3D."""
+        if self.dimension == 3:
+            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; number the cells of a 3D mesh anew")
+        return replace(self, cells=np.ascontiguousarray(self.cells[:, TURNED[self.shape, self.order]]))

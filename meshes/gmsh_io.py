@@ -8,12 +8,14 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import gmsh
 import numpy as np
 
-from meshes.data import CELL_DIMENSION, FACET_SHAPE, Floats, Ints, MeshData, MeshError
+from meshes.data import CELL_DIMENSION, FACET_SHAPE, TURNED, Floats, Ints, MeshData, MeshError
 from meshes.files import whole
+from meshes.inputs import shown
 
 ELEMENT_TYPES: dict[int, tuple[str, int]] = {
     1: ("interval", 1),
@@ -29,6 +31,11 @@ ELEMENT_TYPES: dict[int, tuple[str, int]] = {
 }
 _TYPE_NUMBERS = {shape: number for number, shape in ELEMENT_TYPES.items()}
 _SERENDIPITY = (16, 17)
+MSH_HEADERS = (b"$MeshFormat", b"$Comments")
+
+
+class NoMeshFile(MeshError, FileNotFoundError):
+    """There is no file to read a mesh from."""
 
 
 @contextmanager
@@ -51,19 +58,50 @@ def gmsh_model(name: str) -> Iterator[None]:
 
 
 def read_msh(path: Path | str) -> MeshData:
-    """Read a gmsh file: named physical volumes (surfaces in 2D), named facet groups, order 1 or 2, one cell shape.
+    """Read a gmsh file (MSH 4.1 or 2.2) with named physical volumes (surfaces in 2D) and named facet groups, order 1 or
+    2, one cell shape.
 
-    Lengths are taken as mm. Elements in no physical group are left out, and so are nodes no cell uses. Raises
-    FileNotFoundError or MeshError.
+    Lengths are taken as mm. Elements in no physical group are left out, and so are nodes no cell uses; plane surfaces
+    that are numbered clockwise are turned over. Raises MeshError, NoMeshFile where there is none.
     """
-    if not Path(path).is_file():
-        raise FileNotFoundError(f"mesh file: wanted a gmsh file, found nothing at {path}; check the path")
-    with gmsh_model("read"):
+    if not isinstance(path, str | os.PathLike):
+        raise MeshError(f"mesh file: wanted the path of a gmsh file, found {shown(path)}; write read_msh('block.msh')")
+    _refuse_scripts(Path(path))
+    with gmsh_model("read"), TemporaryDirectory() as folder:
+        alias = Path(folder) / "mesh.msh"
+        alias.symlink_to(Path(path).resolve())  # away from a .opt file beside it, which gmsh would run
         try:
-            gmsh.merge(str(path))
+            gmsh.merge(str(alias))
         except Exception as error:
-            raise MeshError(f"mesh file {path}: wanted a file that gmsh can read, found: {error}") from error
-        return from_gmsh()
+            raise MeshError(
+                f"mesh file {path}: wanted a whole mesh in gmsh's format, found what gmsh cannot read; write it by "
+                "gmsh.write, or export it as MSH 4.1 or 2.2"
+            ) from error
+        try:
+            return from_gmsh()
+        except MeshError as error:
+            raise MeshError(f"mesh file {path}: {error}") from error
+
+
+def _refuse_scripts(path: Path) -> None:
+    """Whatever is no mesh gmsh takes for a .geo script and runs, shell commands in it too. Raises MeshError."""
+    try:
+        if not path.is_file():
+            found = "a folder" if path.is_dir() else "nothing"
+            raise NoMeshFile(f"mesh file: wanted a gmsh file, found {found} at {path}; check the path")
+        with open(path, "rb") as file:
+            head = file.read(64).lstrip()
+    except NoMeshFile:
+        raise
+    except OSError as error:
+        found = f"{path}: {error.strerror}"
+        raise NoMeshFile(f"mesh file: wanted a file that can be read, found {found}; check its rights") from error
+    if not head.startswith(MSH_HEADERS):
+        found = "an empty file" if not head else f"one that begins with {head[:16]!r}"
+        raise MeshError(
+            f'mesh file {path}: wanted a mesh in gmsh\'s MSH format, which begins with "$MeshFormat", found {found}; '
+            "open it in gmsh, mesh it and save it as .msh"
+        )
 
 
 def from_gmsh() -> MeshData:
@@ -74,7 +112,7 @@ def from_gmsh() -> MeshData:
             "gmsh model: wanted a named physical volume (a physical surface in 2D), found no such group; add one with "
             "gmsh.model.addPhysicalGroup and a name, or 'Physical Volume(\"name\") = {...};' in the .geo file"
         )
-    volumes = _groups(dimension)
+    volumes = _groups(dimension, plane=dimension == 2)
     shape, order = _single_type(volumes, dimension)
     facet_groups = {k: v for k, v in _groups(dimension - 1).items() if any(len(t) for t, _ in v.values())}
     _check_facets(facet_groups, (FACET_SHAPE[shape], order))
@@ -96,26 +134,42 @@ def from_gmsh() -> MeshData:
 Group = dict[int, tuple[Ints, Ints]]
 
 
-def _groups(dimension: int) -> dict[str, Group]:
-    """Physical groups of a dimension: name -> element type -> (element tags (n,), node tags (n, nodes))."""
+def _groups(dimension: int, plane: bool = False) -> dict[str, Group]:
+    """Physical groups of a dimension: name -> element type -> (element tags (n,), node tags (n, nodes)). plane: turn
+    surfaces counter-clockwise."""
     groups: dict[str, Group] = {}
     for _, number in gmsh.model.getPhysicalGroups(dimension):
         name = gmsh.model.getPhysicalName(dimension, number)
         if not name:
-            raise MeshError(f"gmsh model: wanted a name for every group, found none for physical {dimension}D {number}")
+            raise MeshError(
+                f"gmsh model: wanted a name for every group, found none for physical {dimension}D {number}; give "
+                "gmsh.model.addPhysicalGroup a name"
+            )
         entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, number)
-        groups[name] = _elements(dimension, [int(e) for e in entities])
+        groups[name] = _elements(dimension, [int(e) for e in entities], plane)
     return groups
 
 
-def _elements(dimension: int, entities: list[int]) -> Group:
+def _elements(dimension: int, entities: list[int], plane: bool) -> Group:
     tags: dict[int, list[Ints]] = {}
     nodes: dict[int, list[Ints]] = {}
     for entity in entities:
         for kind, element_tags, node_tags in zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True):
+            cells = node_tags.astype(np.int64).reshape(len(element_tags), -1)
             tags.setdefault(int(kind), []).append(element_tags.astype(np.int64))
-            nodes.setdefault(int(kind), []).append(node_tags.astype(np.int64).reshape(len(element_tags), -1))
+            nodes.setdefault(int(kind), []).append(_counter_clockwise(int(kind), cells) if plane else cells)
     return {kind: (np.concatenate(tags[kind]), np.concatenate(nodes[kind])) for kind in tags}
+
+
+def _counter_clockwise(kind: int, cells: Ints) -> Ints:
+    """The cells of one surface, turned over where most of it is numbered clockwise: its normal then points down."""
+    turned = TURNED.get(ELEMENT_TYPES.get(kind, ("", 0)))
+    if turned is None or not len(cells):
+        return cells
+    tags, local = np.unique(cells[:, : 3 if len(turned) in (3, 6) else 4], return_inverse=True)
+    x, y = np.moveaxis(_points(tags)[local.reshape(len(cells), -1), :2], -1, 0)
+    area = np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1))
+    return cells[:, turned] if area < 0.0 else cells
 
 
 def _single_type(volumes: dict[str, Group], dimension: int) -> tuple[str, int]:

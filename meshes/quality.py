@@ -10,6 +10,7 @@ from meshes.data import CELL_DIMENSION, Floats, MeshData, MeshError
 from meshes.reference import node_positions, shape_gradients
 
 _CHUNK = 20_000
+_ROUNDING = 1e-12  # a cell whose volume is this share of its extent's is flat
 
 
 def scaled_jacobians(mesh: MeshData) -> Floats:
@@ -28,6 +29,36 @@ def scaled_jacobians(mesh: MeshData) -> Floats:
         jacobians = np.einsum("cni,pnj->cpij", nodes, gradients)
         smallest[start : start + _CHUNK] = _scaled(mesh.shape, jacobians).min(axis=1)
     return smallest
+
+
+def least_determinants(mesh: MeshData) -> Floats:
+    """Smallest det J (n cells,) of each cell over its nodes and Gauss points, as a share of the largest one there, and
+    zero where that is below rounding; negative in 2D for cells that are numbered clockwise."""
+    dimension = CELL_DIMENSION[mesh.shape]
+    affine = mesh.order == 1 and mesh.shape in ("triangle", "tetrahedron")
+    where = np.zeros((1, dimension)) if affine else _sample_points(mesh.shape, mesh.order)
+    gradients = shape_gradients(mesh.shape, mesh.order, where)
+    count = gradients.shape[1]
+    operator = np.moveaxis(gradients, 1, 0).reshape(count, -1)
+    smallest = np.empty(len(mesh.cells))
+    for start in range(0, len(mesh.cells), _CHUNK):
+        nodes = mesh.points[mesh.cells[start : start + _CHUNK], :dimension]
+        columns = (np.swapaxes(nodes, 1, 2) @ operator).reshape(len(nodes), dimension, len(where), dimension)
+        determinant = _determinants(np.moveaxis(columns, (1, 3), (0, 1)))
+        size = np.ptp(nodes, axis=1).max(axis=1) ** dimension
+        largest = np.abs(determinant).max(axis=1)
+        solid = largest > _ROUNDING * size
+        least = np.where(np.abs(determinant) > _ROUNDING * largest[:, None], determinant, 0.0).min(axis=1)
+        smallest[start : start + _CHUNK] = np.where(solid, least / np.where(solid, largest, 1.0), 0.0)
+    return smallest
+
+
+def _determinants(J: Floats) -> Floats:
+    """Of matrices (d, d, ...): their entries come first."""
+    if len(J) == 2:
+        return np.asarray(J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0])
+    cofactors = (J[1, b] * J[2, c] - J[1, c] * J[2, b] for b, c in ((1, 2), (2, 0), (0, 1)))
+    return np.asarray(sum(row * cofactor for row, cofactor in zip(J[0], cofactors)))
 
 
 def check_quality(mesh: MeshData, minimum: float) -> None:

@@ -62,6 +62,12 @@ def _position_index(shape: str, order: int) -> dict[tuple[int, ...], int]:
     return {tuple(p): i for i, p in enumerate(node_positions(shape, order).tolist())}
 
 
+@lru_cache
+def node_count(shape: str, order: int) -> int:
+    """Number of nodes of a cell or facet of order 1 or 2."""
+    return len(node_positions(shape, order))
+
+
 def sub_cell_nodes(shape: str, sub_shape: str, corners: Ints, order: int) -> Ints:
     """Local nodes of sub-cells (facets, simplices) given by corners of a cell.
 

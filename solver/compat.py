@@ -12,7 +12,6 @@ import inspect
 import logging
 import platform
 from collections.abc import Callable
-from functools import cache
 from importlib import metadata
 from typing import Any
 
@@ -22,7 +21,9 @@ import ufl
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from meshes.data import CELL_DIMENSION, Floats, Ints
+from meshes.data import CELL_DIMENSION, Floats, Ints, MeshError
+from meshes.reference import node_count
+from meshes.sound import check_cells
 from solver.jit import compiling, form_directory, root_logger_kept
 from solver.petsc import PETSc  # before dolfinx, which would start it
 
@@ -44,18 +45,11 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
     points: (n, 3) [mm]; of a 2D shape only x and y are used.
     cells: (n_c, k) node indices in gmsh's order, complete Lagrange cells (tri3/6, quad4/9, tet4/10, hex8/27).
     shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron"; order: 1 or 2.
-    Raises ValueError for another shape or a wrong number of nodes per cell.
+    Raises MeshError for what does not fit, as `meshes.sound.check_cells` does.
     """
-    if shape not in CELL_DIMENSION:
-        raise ValueError(f"cell shape: wanted one of {', '.join(CELL_DIMENSION)}, found {shape!r}")
-    wanted = _nodes_per_cell(shape, order)
-    if cells.ndim != 2 or cells.shape[1] != wanted:
-        raise ValueError(
-            f"cells: wanted (n, {wanted}) nodes for {shape} of order {order}, found {cells.shape}; "
-            "gmsh must write complete second-order cells (Mesh.SecondOrderIncomplete = 0)"
-        )
+    check_cells(points, cells, shape, order, "mesh")
     dimension = CELL_DIMENSION[shape]
-    permuted = np.ascontiguousarray(cells[:, gmsh_permutation(shape, wanted)], dtype=np.int64)
+    permuted = np.ascontiguousarray(cells[:, gmsh_permutation(shape, node_count(shape, order))], dtype=np.int64)
     coordinates = np.ascontiguousarray(points[:, :dimension], dtype=np.float64)
     domain = _coordinate_domain(shape, order, dimension)
     # The coordinate element's argument has had two names and two places in the call.
@@ -117,7 +111,7 @@ def node_dofs(space: Space, mesh: Mesh, n_nodes: int | None = None) -> Ints:
 def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
     """(n_f,) dolfinx's indices of facets given by the caller's nodes, corners first as gmsh orders them: (n_f, k).
 
-    Raises ValueError if one of them is no facet of any cell.
+    Raises MeshError if one of them is no facet of any cell.
     """
     corners = _facet_corners(mesh)
     wanted = np.sort(facets[:, : corners.shape[1]], axis=1)
@@ -128,7 +122,10 @@ def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
     found = of_row[inverse[len(corners) :]]
     if np.any(found < 0):
         missing = facets[np.argmax(found < 0)]
-        raise ValueError(f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none")
+        raise MeshError(
+            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none; mesh the "
+            "boundary together with the volume"
+        )
     return found
 
 
@@ -208,17 +205,6 @@ def _distribution_version(name: str) -> str:
         return ""
 
 
-@cache
-def _nodes_per_cell(shape: str, order: int) -> int:
-    if order not in (1, 2):
-        raise ValueError(f"cell order: wanted 1 or 2, found {order}")
-    along = order + 1
-    return {
-        "triangle": along * (along + 1) // 2,
-        "quadrilateral": along**2,
-        "tetrahedron": along * (along + 1) * (along + 2) // 6,
-        "hexahedron": along**3,
-    }[shape]
 
 
 def _coordinate_domain(shape: str, order: int, dimension: int) -> Any:

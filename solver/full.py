@@ -31,8 +31,9 @@ class FullContact:
         self.K = sp.block_diag([b.stiffness for b in bodies], format="csr")
         self.seen = sp.hstack([E @ b.functionals[:, f] for E, b, f in zip(position.maps, bodies, free)]).tocsr()
         self.pushed = sp.hstack([E @ b.forces[:, f] for E, b, f in zip(position.maps, bodies, free)]).tocsr()
-        self.load = position.step.load * np.concatenate([b.assembled.load[f] for b, f in zip(bodies, free)])
-        self.prescribed = self.condensed.jump - position.load_jump()
+        self.load = position.step.load * np.concatenate([b.load for b in bodies])
+        held = sum(E @ (b.functionals @ b.assembled.prescribed) for E, b in zip(position.maps, bodies))
+        self.prescribed = self.condensed.jump - position.load_jump() + position.step.load * held
 
     @property
     def size(self) -> int:

@@ -42,6 +42,8 @@ class KeptColumns:
         """(f, δ) from right, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular to double
         precision."""
         b, load = np.split(right, [len(self.H)])
+        if not len(self.columns) + len(load):  # nothing touches and nothing is free
+            return b
         known = np.concatenate([self.A @ b, (load - self.H.T @ b) / self._balance])
         z, motion = np.split(lu_solve(self._factor, known, check_finite=False), [len(self.columns)])
         return np.concatenate([b - self.M @ z, motion])
@@ -67,7 +69,7 @@ class KeptColumns:
         # a rounded factor need not be good: its iterations find out
         if B.dtype == float and s + r and np.isfinite(size) and gecon(lu, size)[0] < np.finfo(float).eps:
             raise NotConverged(
-                "a free rigid motion meets no resistance: wanted a support, or friction that sticks somewhere; "
-                "support the body, prescribe the motion, or lower the load"
+                "contact: wanted supports, or friction that sticks, against every free rigid motion, found one that "
+                "meets no resistance; support the body, prescribe the motion, or lower the load"
             )
         return lu, pivots

@@ -7,23 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats
+from meshes.inputs import number
 
 
 @dataclass(frozen=True)
 class Material:
     """Isotropic elastic material; 2D bodies are in plane strain.
 
-    youngs_modulus [MPa], poissons_ratio [-]. Raises ValueError outside E > 0, −1 < ν < 0.5.
+    youngs_modulus [MPa]: from 1e-12 to 1e20. poissons_ratio [-]: from −0.9999 to 0.49999, beyond which rounding makes
+    the stiffness useless. Raises InputError.
     """
 
     youngs_modulus: float = 210e3
     poissons_ratio: float = 0.3
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.youngs_modulus) and self.youngs_modulus > 0.0):
-            raise ValueError(f"youngs_modulus: wanted a number > 0 [MPa], found {self.youngs_modulus!r}")
-        if not -1.0 < self.poissons_ratio < 0.5:
-            raise ValueError(f"poissons_ratio: wanted −1 < ν < 0.5, found {self.poissons_ratio!r}")
+        remedy = "give one in MPa, steel has 210e3"
+        wanted = "a finite number > 0, from 1e-12 to 1e20 [MPa]"
+        number("youngs_modulus", self.youngs_modulus, wanted, remedy, lambda E: 1e-12 <= E <= 1e20)
+        remedy = "give one, steel has 0.3; 0.499 is nearly incompressible"
+        wanted = "−1 < ν < 0.5, from −0.9999 to 0.49999"
+        number("poissons_ratio", self.poissons_ratio, wanted, remedy, lambda ν: -0.9999 <= ν <= 0.49999)
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -184,7 +184,7 @@ def contact_operator(
     ψ = hats(first.shape, first.order, pairing.xi1)
     own, other = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
     shape, hat = _rows(own, N1, len(nodes)), _rows(own, ψ, len(nodes))
-    mass = _mass(first, facets, nodes)
+    mass = mass_matrix(first, facets, nodes)
     return ContactOperator(
         nodes,
         frames[nodes],
@@ -223,8 +223,8 @@ def _projection(
     return sp.csr_matrix((block.data, used[block.indices], block.indptr), (len(nodes), len(second.points)))
 
 
-def _mass(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
-    """∫N_k N_l over some facets, (n, n) for their nodes."""
+def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
+    """∫N_k N_l over some facets, (n, n) for their nodes, which are sorted."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)

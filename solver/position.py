@@ -8,36 +8,17 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats
+from meshes.inputs import is_index, refuse
 from solver.body import Assembled, RigidMotions
+from solver.carrier import carrying
+from solver.contact_result import ContactResult
 from solver.equilibrium import CondensedSystem, Equilibrium, frictional, frictionless, normal_part, stuck
+from solver.meeting import Meeting, Places, Supports, met, reach_of
 from solver.newton import NotConverged
-from solver.nitsche import ContactOperator, contact_operator, stacked
+from solver.nitsche import ContactOperator, stacked
 from solver.prepared import PreparedBody
-from solver.search import Pairing, SearchError, pair_surfaces
-from solver.statement import Contact, Placement, Problem, Side, Step
+from solver.statement import Placement, Problem, Side, Step, check_step
 from solver.surface import Surface
-
-
-@dataclass(frozen=True)
-class ContactResult:
-    """One contact of a solution, at the q quadrature points of the first surface that face the second one.
-
-    points: (q, d) their positions. normals: (q, d). weights: (q,) [mm²; mm in 2D]. pressure: (q,) λ [MPa]. traction:
-    (q, d) λn + τ in the common frame [MPa], what the first body presses on the second with. slip: (q, d) [mm] of the
-    first body over the second since the step before, in the first step since rest; zero where the points stick.
-    """
-
-    points: Floats
-    normals: Floats
-    weights: Floats
-    pressure: Floats
-    traction: Floats
-    slip: Floats
-
-    @property
-    def force(self) -> Floats:
-        """Resultant (d,) on the second body [N; N/mm in 2D]."""
-        return self.weights @ self.traction
 
 
 @dataclass(frozen=True)
@@ -45,8 +26,8 @@ class Solution:
     """Equilibrium of a problem at one step.
 
     motions: per body (r,) rigid motions in the order of its freedoms [mm, rad]. iterations: Newton's, of the start and
-    of the friction law. imbalance: largest residual force over the largest force. nodal_forces: per body, on what is
-    seen of it.
+    of the friction law, in all searches. imbalance: largest residual force over the largest force. nodal_forces: per
+    body, on what is seen of it. searches: how often pairs were searched: once, or again on the displaced surfaces.
     """
 
     contacts: tuple[ContactResult, ...]
@@ -56,68 +37,89 @@ class Solution:
     nodal_forces: tuple[Floats, ...]
     prepared: tuple[PreparedBody, ...]
     step: Step
+    searches: int = 1
+
+    def body(self, index: int) -> PreparedBody:
+        """A body as it was prepared. Raises InputError for one that is not there."""
+        if not (is_index(index) and 0 <= index < len(self.prepared)):
+            refuse("solution", f"a body index below {len(self.prepared)}", index, "bodies are counted from 0")
+        return self.prepared[index]
 
     def displacement(self, body: int) -> Floats:
-        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included."""
-        return self.prepared[body].displacement(self.nodal_forces[body], self.step.load, self.motions[body])
+        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included. Raises InputError."""
+        return self.body(body).displacement(self.nodal_forces[body], self.step.load, self.motions[body])
 
 
 @dataclass(frozen=True)
 class History:
-    """Deformed positions of the surfaces of each contact at the last step: (n1, d) and (n2, d) in the common frame."""
+    """Deformed positions of the surfaces of each contact at the last step, the one that carries the pressure first."""
 
-    points: tuple[tuple[Floats, Floats], ...]
+    points: tuple[Places, ...]
 
 
-def reach_of(contact: Contact, first: Surface) -> float:
-    """The gap [mm] up to which a contact whose first surface is given is looked for."""
-    return contact.reach or 0.1 * float(np.ptp(first.points, axis=0).max())
+Where = tuple[Places | None, ...] | None
+"""Of each contact, where its surfaces are searched; by default where `Position` says."""
+MOVED = 0.5  # of a facet: prescribed motions beyond this are gone along with before pairs are searched
 
 
 class Position:
-    """The condensed contact system of one step. Raises ValueError for a freedom that no body has, SearchError."""
+    """The condensed contact system of one step.
 
-    def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step) -> None:
+    where: where the surfaces of each contact are searched; by default as the bodies are placed, moved by what is
+    prescribed if that is far.
+
+    Raises InputError for a step of another problem, SearchError.
+    """
+
+    def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step, where: Where = None) -> None:
         self.problem, self.prepared, self.step = problem, prepared, step
         self.d = prepared[0].assembled.d
-        if any(not 0 <= i < len(prepared) for i, _ in step.freedoms):
-            raise ValueError(f"step: wanted body indices below {len(prepared)}, found {[i for i, _ in step.freedoms]}")
+        check_step(problem, step)
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
-        self.placed = [(self._surface(c.first), self._surface(c.second)) for c in problem.contacts]
-        self.pairings = [self._pairing(c, *pair) for c, pair in zip(problem.contacts, self.placed)]
-        self.operators = [
-            self._operator(c, p, *pair) for c, p, pair in zip(problem.contacts, self.pairings, self.placed)
-        ]
-        self.maps = [self._map(b) for b in range(len(prepared))]
+        self.sides = [carrying(problem.bodies, contact) for contact in problem.contacts]
+        self.reaches = [reach_of(contact, self._surface(contact.first)) for contact in problem.contacts]
         self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(prepared)]
+        self.meetings = [self._meeting(i, where[i] if where else None) for i in range(len(problem.contacts))]
+        self.operators = [meeting.operator for meeting in self.meetings]
+        self.maps = [self._map(b) for b in range(len(prepared))]
 
     def _surface(self, side: Side) -> Surface:
         where = self.placements[side[0]]
         return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
 
-    def _pairing(self, contact: Contact, first: Surface, second: Surface) -> Pairing:
-        reach = reach_of(contact, first)
-        found = pair_surfaces(first, second, reach, reach)
-        if not len(found.facet1):
-            raise SearchError(
-                f"contact between {contact.first[1]!r} of body {contact.first[0]} and {contact.second[1]!r} of body "
-                f"{contact.second[0]}: wanted surfaces within {reach:.3g} mm of each other, found none; place the "
-                "bodies closer together, or give the contact a larger reach"
-            )
-        return found
+    def _meeting(self, index: int, where: Places | None) -> Meeting:
+        contact, (carrier, other) = self.problem.contacts[index], self.sides[index]
+        traction = self.prepared[carrier[0]].tractions[carrier[1]]
+        frames = traction.frames @ self.placements[carrier[0]].rotation.T
+        placed = self._surface(carrier), self._surface(other)
+        where = where or self._prescribed((carrier, other), placed)
+        supports = self._supports(carrier), self._supports(other)
+        return met(contact, self.reaches[index], placed, traction.stabiliser, frames, supports, where)
 
-    def _operator(self, contact: Contact, pairing: Pairing, first: Surface, second: Surface) -> ContactOperator:
-        traction = self.prepared[contact.first[0]].tractions[contact.first[1]]
-        frames = traction.frames @ self.placements[contact.first[0]].rotation.T
-        return contact_operator(pairing, first, second, traction.stabiliser, frames)
+    def _supports(self, side: Side) -> Supports:
+        body = self.prepared[side[0]]
+        return Supports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
+
+    def _prescribed(self, sides: tuple[Side, Side], placed: tuple[Surface, Surface]) -> Places | None:
+        """Where the prescribed motions take the surfaces, if that is further than MOVED."""
+        first, second = (self._held(side) for side in sides)
+        far = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
+        return (placed[0].points + first, placed[1].points + second) if max(far) > MOVED else None
+
+    def _held(self, side: Side) -> Floats:
+        """Displacements (n, d) of a surface by the prescribed motions alone."""
+        body, motions = self.prepared[side[0]], self.motions[side[0]]
+        nodes, held = body.surfaces[side[1]].nodes, np.flatnonzero(~np.isnan(motions.value))
+        u: Floats = motions.shapes[nodes][:, :, held] @ motions.value[held]
+        return u @ self.placements[side[0]].rotation.T
 
     def _map(self, body: int) -> sp.csr_matrix:
         """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
         d, prepared = self.d, self.prepared[body]
         rows = []
-        for contact, op in zip(self.problem.contacts, self.operators):
+        for sides, op in zip(self.sides, self.operators):
             block = sp.csr_matrix((len(op.nodes) * d, prepared.functionals.shape[0]))
-            for number, side in ((1, contact.first), (2, contact.second)):
+            for number, side in zip((1, 2), sides):
                 if side[0] == body:
                     local = op.local_map(number, self.placements[body].rotation)
                     columns = local.indices + prepared.offsets[side[1]]
@@ -210,12 +212,14 @@ class Position:
         force = self._forces(found)
         slid = self._split(self._slid(system, found, slip))
         on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
-        contacts = tuple(_contact_result(*own) for own in zip(self.operators, self._tractions(found), slid))
+        contacts = tuple(
+            ContactResult.of(*own)
+            for own in zip(self.problem.contacts, self.sides, self.meetings, self._tractions(found), slid)
+        )
         largest = max(system.scale, float(np.abs(force).sum()))
         imbalance = found.residual / largest if largest else 0.0
-        return Solution(
-            contacts, tuple(self._body_motions(found)), found.iterations, imbalance, on_bodies, self.prepared, self.step
-        )
+        motions = tuple(self._body_motions(found))
+        return Solution(contacts, motions, found.iterations, imbalance, on_bodies, self.prepared, self.step)
 
     def _history(self, found: Equilibrium) -> History:
         force = self._forces(found).ravel()
@@ -224,25 +228,23 @@ class Position:
             self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
             for b, E, δ in zip(self.prepared, self.maps, motions)
         ]
-        contacts = zip(self.problem.contacts, self.operators, self.placed, self._tractions(found))
+        contacts = zip(self.sides, self.meetings, self._tractions(found))
         return History(tuple(self._deformed(seen, *contact) for contact in contacts))
 
-    def _deformed(
-        self, seen: list[Floats], contact: Contact, op: ContactOperator, pair: tuple[Surface, Surface], traction: Floats
-    ) -> tuple[Floats, Floats]:
+    def _deformed(self, seen: list[Floats], sides: tuple[Side, Side], meeting: Meeting, traction: Floats) -> Places:
         """Deformed positions of both surfaces of a contact, from what is seen of the bodies."""
         result = []
-        for side, surface in zip((contact.first, contact.second), pair):
+        for side, surface in zip(sides, meeting.placed):
             start = self.prepared[side[0]].offsets[side[1]]
             u = seen[side[0]][start : start + surface.points.size].reshape(-1, self.d)
             result.append(surface.points + u @ self.placements[side[0]].rotation.T)
-        result[0][op.nodes] += op.flux(traction)
+        result[0][meeting.operator.nodes] += meeting.operator.flux(traction)
         return result[0], result[1]
 
     def slip(self, before: History | None) -> Floats:
         """(Σn, d−1): tangential change of [x] at the present pairs of points, but for the present displacement."""
         result = []
-        for i, (op, pair) in enumerate(zip(self.operators, self.placed)):
+        for i, (op, pair) in enumerate((meeting.operator, meeting.placed) for meeting in self.meetings):
             now = then = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
             if before is not None:
                 then = op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
@@ -256,19 +258,8 @@ def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     names = [f.direction for f in rigid.freedoms] if rigid else []
     load, value = step.load * own.load, step.load * own.value
     for freedom in (f for i, f in step.freedoms if i == index):
-        if freedom.direction not in names:
-            raise ValueError(
-                f"step: wanted one of the freedoms {names} of {assembled.body.name} (body {index}), found "
-                f"{freedom.direction!r}; declare it in the body's Rigid first"
-            )
         k = names.index(freedom.direction)
         carried = step.load * float(own.shapes[:, :, k].ravel() @ assembled.load)
         load[k] = np.nan if freedom.load is None else freedom.load + carried
         value[k] = np.nan if freedom.displacement is None else freedom.displacement
     return RigidMotions(own.shapes, load, value)
-
-
-def _contact_result(op: ContactOperator, local: Floats, slid: Floats) -> ContactResult:
-    normals = op.common(np.eye(op.d)[:1].repeat(len(local), axis=0))
-    slip = op.common(np.hstack([np.zeros((len(slid), 1)), slid]))
-    return ContactResult(op.points, normals, op.weights, local[:, 0], op.common(local), slip)

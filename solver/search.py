@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints
-from meshes.errors import ResultError
+from meshes.errors import InputError, ResultError
 from solver.clipping import EMPTY, clip, fan
 from solver.facet import area_vector, cross, reference_cell
 from solver.lagrange import quadrature
@@ -84,7 +84,7 @@ def pair_surfaces(surface1: Surface, surface2: Surface, max_gap: float, max_over
     facets1: indices of the facets of surface 1 to look at (default all).
     degree: polynomial degree of the rule on each segment (3D: 4 has 6 points a triangle; 2D: at least 5, 3 points).
     Parts of surface 1 without a partner have no points.
-    Raises SearchError (see there), ValueError if the two surfaces or the limits do not fit.
+    Raises SearchError (see there), InputError if the two surfaces or the limits do not fit.
     """
     _check(surface1, surface2, max_gap, max_overlap)
     chosen = np.arange(len(surface1.facets)) if facets1 is None else np.unique(np.asarray(facets1, dtype=np.int64))
@@ -98,10 +98,11 @@ def pair_surfaces(surface1: Surface, surface2: Surface, max_gap: float, max_over
 
 def _check(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: float) -> None:
     if surface1.points.shape[1] != surface2.points.shape[1]:
-        raise ValueError(f"both surfaces must be 2D or both 3D; found {surface1.points.shape[1]}D facing "
-                         f"{surface2.points.shape[1]}D")
+        raise InputError(f"contact: wanted both surfaces in 2D or both in 3D, found {surface1.points.shape[1]}D facing "
+                         f"{surface2.points.shape[1]}D; mesh both alike")
     if not (max_gap >= 0.0 and max_overlap >= 0.0):
-        raise ValueError(f"max_gap and max_overlap must be >= 0 mm; found {max_gap} and {max_overlap}")
+        raise InputError(f"contact: wanted a reach >= 0 mm, found {max_gap} for gaps and {max_overlap} for overlaps; "
+                         "give it in mm")
 
 
 # Step 1: candidates ---------------------------------------------------------------------------------------------------
@@ -264,9 +265,10 @@ def _refuse_double(surface: Surface, facets: Ints, size: Floats) -> None:
     covered = _coverage(surface, facets, size)
     if np.any(covered > 1.0 + DOUBLE):
         worst = int(np.argmax(covered))
-        raise SearchError(f"{int(np.sum(covered > 1.0 + DOUBLE))} facets of surface 1 have two partners (facet {worst} "
-                          f"is covered {covered[worst]:.6f} times, at most 1 wanted): surface 2 lies in range twice; "
-                          "make max_gap and max_overlap smaller, or split surface 2")
+        raise SearchError(f"contact: wanted one partner for each place of the first surface, found "
+                          f"{int(np.sum(covered > 1.0 + DOUBLE))} facets that have two partners (facet {worst} is "
+                          f"covered {covered[worst]:.6f} times): the second surface lies in reach twice; make the "
+                          "contact's reach smaller, or split the second surface")
 
 
 def _refuse_lost(surface: Surface, segments: Segments, size: Floats, found: Bools) -> float:
@@ -283,8 +285,8 @@ def _refuse_lost(surface: Surface, segments: Segments, size: Floats, found: Bool
     lost, total = float(missing @ surface.areas()), float((missing + covered) @ surface.areas())
     if lost > ALLOWED_LOSS * total:
         worst = row[np.argmax(missing[segments.facet1[row]])]
-        raise SearchError(f"no partner found for {lost:.3e} of {total:.3e} mm (2D) or mm² (3D), at most a share of "
-                          f"{ALLOWED_LOSS} wanted; worst: facet {segments.facet1[worst]} of surface 1 against facet "
-                          f"{segments.facet2[worst]} of surface 2. The surfaces are too curved for their facets, or "
-                          "too far apart: refine them, or make max_gap smaller")
+        raise SearchError(f"contact: wanted partners for all but {ALLOWED_LOSS} of the first surface in reach, no "
+                          f"partner found for {lost:.3e} of {total:.3e} mm (2D) or mm² (3D), worst for facet "
+                          f"{segments.facet1[worst]} against facet {segments.facet2[worst]} of the second surface: too "
+                          "curved for their facets, or too far apart; refine them, or make the contact's reach smaller")
     return lost

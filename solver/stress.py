@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshes.data import Floats, MeshData
+from meshes.inputs import refuse
 from solver.lagrange import gmsh_permutation, node_points, tabulate
 from solver.material import Material
 
@@ -12,9 +13,12 @@ from solver.material import Material
 def cell_stress(mesh: MeshData, material: Material, displacement: Floats) -> Floats:
     """σ [MPa] at the cells' centres, (n_cells, 3, 3) also in 2D (plane strain: σ_zz = ν(σ_xx + σ_yy)).
 
-    displacement: (N, d) of the mesh nodes [mm].
+    displacement: (N, d) of the mesh nodes [mm]. Raises InputError for another shape.
     """
     d = mesh.dimension
+    if np.shape(displacement) != (len(mesh.points), d):
+        wanted = f"numbers of shape {(len(mesh.points), d)}, one row a node of the mesh"
+        refuse("stress, displacement", wanted, displacement, "give what Solution.displacement returns for this body")
     nodes = mesh.cells[:, gmsh_permutation(mesh.shape, mesh.order)]
     corners = node_points(mesh.shape, 1)
     dN = tabulate(mesh.shape, mesh.order, corners.mean(axis=0)[None])[1][0]

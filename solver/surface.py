@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_matrix
 
-from meshes.data import FACET_SHAPE, Floats, Ints, MeshData
+from meshes.data import FACET_SHAPE, Floats, Ints, MeshData, MeshError
 from solver.facet import TURNED_OVER, area_vector, hats, monomials, reference_cell, subcell_rule
 from solver.lagrange import gmsh_permutation
 from solver.lagrange import tabulate as shape_functions
 
 # Degree of the rule on each sub-facet for ∫ψ_j N_k: exact on plane facets (also distorted ones), ample on curved ones.
 MASS_DEGREE = 6
+EDGE = np.radians(40.0)  # between a node's normal and that of a facet there: half of an edge of 80°
 INNER_NODES = {("interval", 2): [2], ("quadrilateral", 2): [8], ("triangle", 2): [3, 4, 5]}
 """Of second-order facets in basix's order: nodes that a facet has for itself; of a triangle those of its edges."""
 
@@ -80,6 +81,11 @@ class Surface:
     def areas(self) -> Floats:
         """The length [mm] or area [mm²] of each facet: (m,)."""
         return self._rule()[2].sum(axis=1)
+
+    @property
+    def size(self) -> float:
+        """Median length [mm] of the facets: in 3D the root of the area."""
+        return float(np.median(self.areas()) ** (1.0 / (self.points.shape[1] - 1)))
 
     def weights(self) -> Floats:
         """m_j = ∫ψ_j [mm or mm²], ψ_j the hats of the node grid: (n,), all positive."""
@@ -153,19 +159,30 @@ def _nodal_normals(surface: Surface) -> Floats:
     return total / np.linalg.norm(total, axis=1, keepdims=True)
 
 
+def refuse_edges(surface: Surface, of: str) -> None:
+    """A contact surface that goes round a sharp edge has normals there that neither face has, and wrong pressures.
+    Raises MeshError where a facet's normal is further than EDGE from that of one of its nodes."""
+    cell, every = reference_cell(surface.shape, surface.order), np.arange(len(surface.facets))
+    own = surface.area_vectors(every, np.broadcast_to(cell.nodes, (len(every), *cell.nodes.shape)))
+    own = own / np.linalg.norm(own, axis=2, keepdims=True)
+    agreement = np.einsum("mkd,mkd->mk", own, surface.normals[surface.facets])
+    facet, node = np.unravel_index(int(np.argmin(agreement)), agreement.shape)
+    if agreement[facet, node] < np.cos(EDGE):
+        place = ", ".join(f"{x:.4g}" for x in surface.points[surface.facets[facet, node]])
+        raise MeshError(
+            f"{of}: wanted a surface without sharp edges, found one at ({place}) mm; leave the faces behind its edges "
+            "out of the facet group, or give each face a contact of its own"
+        )
+
+
 def surface_of(mesh: MeshData, group: str | Sequence[str]) -> Surface:
     """The contact surface made of one or more named facet groups, turned outwards with the cells behind the facets.
 
-    ValueError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
+    MeshError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
     """
     names = [group] if isinstance(group, str) else list(group)
-    for name in names:
-        if name not in mesh.facets:
-            raise ValueError(f"the mesh has no facet group {name!r}; it has {sorted(mesh.facets)}")
     shape, order = FACET_SHAPE[mesh.shape], mesh.order
-    found = [np.asarray(mesh.facets[name], dtype=np.int64) for name in names]
-    if sum(map(len, found)) == 0:
-        raise ValueError(f"facet group {' + '.join(names)} is empty: a contact surface needs at least one facet")
+    found = [facet_group(mesh, name, "contact surface") for name in names]
     gmsh = np.concatenate([f for f in found if len(f)])[:, gmsh_permutation(shape, order)]
     facets = _outward(mesh, gmsh, shape)
     nodes, local = np.unique(facets, return_inverse=True)
@@ -188,19 +205,60 @@ def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
 
 
 def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
-    """The one cell (f,) that has all nodes of each facet (f, k). Raises ValueError for a facet with none or two."""
+    """The one cell (f,) that has all nodes of each facet (f, k). Raises MeshError for a facet with none or two."""
+    rows, columns = _behind(cells, facets, n_points)
+    count = np.bincount(rows, minlength=len(facets))
+    if np.any(count != 1):
+        bad = int(np.flatnonzero(count != 1)[0])
+        raise MeshError(
+            f"facets: wanted one cell behind each, as on the boundary of a body, found {count[bad]} behind facet {bad} "
+            f"with nodes {facets[bad].tolist()}; put only boundary facets of this body into the group"
+        )
+    behind = np.empty(len(facets), dtype=np.int64)
+    behind[rows] = columns
+    return behind
+
+
+def _behind(cells: Ints, facets: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """Facets and cells that have all their nodes, in pairs."""
+
     def incidence(items: Ints) -> Any:
         rows = np.repeat(np.arange(len(items)), items.shape[1])
         return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
 
-    shared = (incidence(facets) @ incidence(cells).T).tocoo()
+    on_facets = np.zeros(n_points, dtype=bool)
+    on_facets[facets] = True
+    near = np.flatnonzero(on_facets[cells].sum(axis=1) >= facets.shape[1])
+    shared = (incidence(facets) @ incidence(cells[near]).T).tocoo()
     whole = shared.data > facets.shape[1] - 0.5
-    rows, columns = shared.row[whole], shared.col[whole]
-    count = np.bincount(rows, minlength=len(facets))
-    if np.any(count != 1):
-        bad = int(np.flatnonzero(count != 1)[0])
-        raise ValueError(f"a contact facet must have one cell behind it; facet {bad} with nodes {facets[bad].tolist()} "
-                         f"has {count[bad]}: put only boundary facets of this body into the group")
-    behind = np.empty(len(facets), dtype=np.int64)
-    behind[rows] = columns
-    return behind
+    return shared.row[whole], near[shared.col[whole]]
+
+
+def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The facets (m, k) of a group that is there and not empty, each of a cell, in gmsh's node order. Raises
+    MeshError."""
+    if group not in mesh.facets:
+        known = ", ".join(sorted(mesh.facets)) or "(the mesh has none)"
+        raise MeshError(f"{of}: wanted one of the facet groups {known}, found {group!r}; name one of these")
+    facets = np.asarray(mesh.facets[group], dtype=np.int64)
+    if not len(facets):
+        raise MeshError(f"{of}: wanted at least one facet in the group {group!r}, found it empty; put facets into it")
+    lost = np.setdiff1d(np.arange(len(facets)), _behind(mesh.cells, facets, len(mesh.points))[0])
+    if len(lost):
+        raise MeshError(
+            f"{of}, facet group {group!r}: wanted facets of the mesh's cells, found {len(lost)} that are none, the "
+            f"first has the nodes {facets[lost[0]].tolist()}; mesh the boundary together with the body"
+        )
+    return facets
+
+
+def boundary_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The same of a group whose facets are on the boundary, each there once. Raises MeshError."""
+    facets = facet_group(mesh, group, of)
+    try:
+        cells_behind(mesh.cells, facets, len(mesh.points))
+    except MeshError as error:
+        raise MeshError(f"{of}, facet group {group!r}: {error}") from error
+    if len(np.unique(np.sort(facets, axis=1), axis=0)) < len(facets):
+        raise MeshError(f"{of}, facet group {group!r}: wanted each facet once, found some twice; leave out the copies")
+    return facets

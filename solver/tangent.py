@@ -44,7 +44,8 @@ class Tangent:
         kept = used & (normal | np.repeat(_held_nodes(operator, law), k))
         if not kept.any() and H.shape[1]:
             raise NotConverged(
-                "no node in contact while a motion is free: bring the bodies together, or hold the motion"
+                "contact: wanted one that holds every free rigid motion, found no node in contact; bring the bodies "
+                "together, or hold the motion"
             )
         return Tangent(M, A, H, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
 

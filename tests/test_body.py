@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse.linalg as spla
 
 from meshes.blocks import box, rectangle
-from solver.body import DIRECTIONS, Body, Fixed, Freedom, Rigid, Traction, assemble
+from solver.body import DIRECTIONS, Body, BodyForce, Fixed, Freedom, Rigid, Traction, assemble
 from solver.material import Material
 from solver.traction import rigid_modes
 
@@ -109,6 +109,37 @@ def test_rigid_coupling():
     assert np.array_equal(a.motions.free, [0])
     assert a.motions.load[0] == 5.0
     assert a.motions.value[1] == 0.1
+
+
+@pytest.mark.parametrize(("shape", "order"), CASES)
+def test_weight_of_a_column(shape, order):
+    """A standing column, ν = 0, of length L under f = ϱg: u(z) = −f (L z − z²/2)/E, which second-order cells have
+    exactly; the load adds up to f times the volume in all."""
+    mesh = _block(shape, order)
+    d = mesh.dimension
+    up, f, E = "xyz"[d - 1], 2.0, 100e3
+    sides = (Fixed("left", "x"), Fixed("bottom", up), *(() if d == 2 else (Fixed("front", "y"),)))
+    a = assemble(Body(mesh, Material(E, 0.0), sides, (BodyForce((0.0,) * (d - 1) + (-f,)),)))
+    load = a.load.reshape(-1, d).sum(axis=0)
+    assert np.allclose(load, [0.0] * (d - 1) + [-f * (6.0 if d == 2 else 12.0)], atol=1e-12)
+    u = np.zeros(a.stiffness.shape[0])
+    u[a.free] = spla.spsolve(a.stiffness[a.free][:, a.free].tocsc(), a.load[a.free])
+    z = mesh.points[:, d - 1]
+    exact = -f * (2.0 * z - z**2 / 2.0) / E
+    assert order == 1 or np.allclose(u.reshape(-1, d)[:, -1], exact, atol=1e-10 * np.abs(exact).max())
+
+
+def test_displacement_of_a_face():
+    """A face that moves by a prescribed displacement is held there, the others of its directions are free; of two
+    supports that agree at a node both hold it."""
+    mesh = _block("quadrilateral", 2)
+    a = assemble(Body(mesh, supports=(Fixed("top", "y", 0.25), Fixed("right", "y", 0.25))))
+    held, value = a.held.reshape(-1, 2), a.prescribed.reshape(-1, 2)
+    moved = np.union1d(mesh.facets["top"], mesh.facets["right"])
+    assert np.array_equal(np.flatnonzero(value[:, 1]), moved)
+    assert np.all(value[moved] == (0.0, 0.25))
+    assert held[moved, 1].all()
+    assert held[:, 0].sum() == 1  # the pin of the shift along x
 
 
 @pytest.mark.parametrize(

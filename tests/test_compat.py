@@ -175,9 +175,9 @@ def test_unused_nodes_have_no_block():
 @pytest.mark.parametrize(
     ("cells", "shape", "order", "message"),
     [
-        (np.zeros((1, 6), dtype=np.int64), "prism", 1, "wanted one of triangle"),
-        (np.zeros((1, 20), dtype=np.int64), "hexahedron", 2, r"wanted \(n, 27\)"),
-        (np.zeros((1, 10), dtype=np.int64), "triangle", 3, "wanted 1 or 2"),
+        (np.zeros((1, 6), dtype=np.int64), "prism", 1, "wanted cells of shape triangle"),
+        (np.zeros((1, 20), dtype=np.int64), "hexahedron", 2, r"wanted integers \(n, 27\)"),
+        (np.zeros((1, 10), dtype=np.int64), "triangle", 3, "wanted cells of order 1 or 2"),
     ],
 )
 def test_wrong_cells_are_refused(cells, shape, order, message):

@@ -203,3 +203,16 @@ def test_cells_in_no_group(tmp_path: Path) -> None:
     mesh = MeshData(base.points, base.shape, 2, base.cells, base.facets, {"half": np.array([0, 1])})
     with pytest.raises(MeshError, match="2 of 4 cells"):
         write_msh(mesh, tmp_path / "mesh.msh")
+
+
+def test_commands_beside_a_mesh_are_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """gmsh merges a file NAME.opt with the mesh NAME, and takes whatever is no mesh for a script: both can run shell
+    commands. Neither is run by read_msh, and the mesh beside the .opt file is read."""
+    monkeypatch.chdir(tmp_path)
+    write_msh(BLOCKS[0], tmp_path / "mesh.msh")
+    (tmp_path / "mesh.msh.opt").write_text('SystemCall "touch by_options";')
+    assert len(read_msh(tmp_path / "mesh.msh").cells) == 12
+    (tmp_path / "script.msh").write_text('SystemCall "touch by_script";')
+    with pytest.raises(MeshError, match="MSH format"):
+        read_msh(tmp_path / "script.msh")
+    assert not list(tmp_path.glob("by_*"))

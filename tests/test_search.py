@@ -255,7 +255,7 @@ def test_wrong_input_is_refused():
     line = curve(3, 1, lambda u: np.stack([u, 0 * u], axis=1))
     with pytest.raises(ValueError, match="found 3D facing 2D"):
         pair_surfaces(a, line, 0.1, 0.1)
-    with pytest.raises(ValueError, match="must be >= 0"):
+    with pytest.raises(ValueError, match="wanted a reach >= 0"):
         pair_surfaces(a, a, -0.1, 0.1)
     layers = [facing(lattice(2, 2, *QUAD1, rectangle((0, 0), (1, 1), 0.0, z))) for z in (0.1, 0.2)]
     n = len(layers[0].points)

@@ -15,7 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from meshes.data import Floats
-from meshes.errors import ResultError
+from meshes.errors import InputError, ResultError
 from solver.newton import NotConverged
 from solver.search import SearchError
 from wear.law import StepsTooLong
@@ -53,7 +53,7 @@ class BlockSettings:
     def __post_init__(self) -> None:
         for name in ("first", "tolerance", "deformation_share"):
             if not getattr(self, name) > 0.0:
-                raise ValueError(f"wear blocks: wanted {name} above zero, found {getattr(self, name)}")
+                raise InputError(f"wear blocks: wanted {name} above zero, found {getattr(self, name)}")
 
 
 @dataclass(frozen=True)

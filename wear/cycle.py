@@ -14,10 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.data import Floats, Ints
+from meshes.errors import InputError
+from solver.contact_result import ContactResult
 from solver.nitsche import ContactOperator
-from solver.position import ContactResult, History, Position
+from solver.position import History, Position
 from solver.prepared import PreparedBody
 from solver.statement import Problem, Side, Step
+from solver.surface import Surface
 from wear.law import Archard, Places, StepsTooLong
 from wear.track import Track, Travel
 
@@ -78,7 +81,7 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
     Raises NotConverged, SearchError, StepsTooLong, ValueError.
     """
     if worn.ahead and not worn.cycle.travel:
-        raise ValueError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
+        raise InputError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
     before: History | None = None
     found: list[list[Rubbing]] = [[] for _ in worn.laws]
     count, steps = len(worn.cycle.steps), worn.cycle.steps if worn.cycle.travel else 2 * worn.cycle.steps
@@ -89,21 +92,31 @@ def rubbings(worn: Worn, prepared: tuple[PreparedBody, ...]) -> list[list[Rubbin
             for i, result in enumerate(solution.contacts):
                 found[i].append(Rubbing(result, position.sliding(i, result), position.places[i]))
     if not any(state.sliding.any() for own in found for state in own):
-        raise ValueError("wear: wanted a cycle in which something slides, found none; give it travel or moving steps")
+        raise InputError("wear: wanted a cycle in which something slides, found none; give it travel or moving steps")
     return found
 
 
 class _Wearing(Position):
-    """A position between worn surfaces."""
+    """A position between worn surfaces. Its pairs are those of the bodies as placed: where these overlap, as worn ones
+    do, material is gone, and they must not be brought apart (solver/settled.py)."""
 
     def __init__(self, worn: Worn, prepared: tuple[PreparedBody, ...], step: Step) -> None:
         self.wear = worn
         super().__init__(worn.problem, prepared, step)
         self.places = [self._places(i) for i in range(len(self.operators))]
 
+    def _prescribed(self, sides: tuple[Side, Side], placed: tuple[Surface, Surface]) -> None:
+        """Pairs stay those of the bodies as placed."""
+
     def _places(self, index: int) -> tuple[Places, Places]:
-        pairing, (first, second) = self.pairings[index], self._sides(index)
-        return self._on(first, pairing.facet1, pairing.xi1), self._on(second, pairing.facet2, pairing.xi2)
+        """Of the points on the contact's first surface and on its second."""
+        found, (carrier, other) = self.meetings[index].pairing, self.sides[index]
+        places = {
+            carrier: self._on(carrier, found.facet1, found.xi1),
+            other: self._on(other, found.facet2, found.xi2),
+        }
+        first, second = self._sides(index)
+        return places[first], places[second]
 
     def _on(self, side: Side, facets: Ints, xi: Floats) -> Places:
         surface, track = self.prepared[side[0]].surfaces[side[1]], self.wear.tracks.get(side)

@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from scipy.ndimage import binary_dilation
 
 from meshes.data import Floats, Ints
+from meshes.errors import InputError
 from meshes.lattice import Mask
 from meshes.parameters import GearPair
 from solver.gear_body import GearBody
@@ -48,17 +49,17 @@ class FlankGrid:
 
     @staticmethod
     def of(body: GearBody) -> FlankGrid:
-        """Of a gear's flank. Raises ValueError where its nodes are no grid."""
+        """Of a gear's flank. Raises InputError where its nodes are no grid."""
         u, module = body.roll_length**2 / (2.0 * body.gear.base_radius), body.gear.normal_module
         layer = np.round(body.z / (SAME * module)).astype(np.int64)
         heights, which = np.unique(layer, return_inverse=True)
         order = np.lexsort([u, which.reshape(-1)])
         if len(order) % len(heights) or len(set(np.bincount(which.reshape(-1)))) > 1:
-            raise ValueError(f"flank of {body.gear.z} teeth: wanted layers with equally many nodes, found others")
+            raise InputError(f"flank of {body.gear.z} teeth: wanted layers with equally many nodes, found others")
         node = order.reshape(len(heights), -1)
         spread = float(np.ptp(u[node], axis=0).max())
         if spread > UNEVEN * module:
-            raise ValueError(f"flank of {body.gear.z} teeth: wanted the same arcs in all layers, found {spread:.2g} mm")
+            raise InputError(f"flank of {body.gear.z} teeth: wanted the same arcs in all layers, found {spread:.2g} mm")
         return FlankGrid(u[node].mean(axis=0), body.z[node].mean(axis=1), node, body.flank.weights())
 
     @staticmethod

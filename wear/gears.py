@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from mpi4py import MPI
 
 from meshes.data import Floats, MeshData
+from meshes.errors import InputError
 from solver.gear_model import GearModel
 from solver.gear_points import ContactPoints
 from solver.gear_position import PositionResult, SearchedAt, SharedPosition, searched_at, shared_position, worn_on
@@ -75,11 +76,11 @@ class GearWear:
         self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF,
         following: Following | None = None,
     ) -> None:  # fmt: skip
-        """Raises ValueError unless the positions are equal steps of one pitch: they are one tooth's passage."""
+        """Raises InputError unless the positions are equal steps of one pitch: they are one tooth's passage."""
         angles = np.array(pitch.angles)
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
         if len(angles) < 2 or not np.allclose(np.diff(angles), step, rtol=1e-6):
-            raise ValueError(
+            raise InputError(
                 f"wear: wanted at least two positions in equal steps over one pitch, found {len(angles)} over "
                 f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; see gear_sweep.uniform_pitch"
             )
@@ -156,7 +157,7 @@ class GearWear:
         """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `Wearable`. The
         pressures follow the depth as they do without friction. Raises NotConverged."""
         if now.refreshed != self.refreshed:
-            raise ValueError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
+            raise InputError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
         responses = together(self._comm, lambda: [Response.of(*each) for each in zip(now.shared, now.points)])
         found, openings = now.passage, self._opened([r.points for r in responses])
         block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))

@@ -40,7 +40,7 @@ def certify_volume(name: str, found: float, wanted: float) -> None:
 @dataclass(frozen=True)
 class Archard:
     """K/H [mm²/N] of the first and of the second surface of a contact; zero: does not wear. Source: J. F. Archard,
-    Contact and rubbing of flat surfaces, J. Appl. Phys. 24 (1953) 981. Raises ValueError."""
+    Contact and rubbing of flat surfaces, J. Appl. Phys. 24 (1953) 981. Raises InputError."""
 
     first: float = 0.0
     second: float = 0.0
@@ -48,7 +48,7 @@ class Archard:
     def __post_init__(self) -> None:
         for name, value in (("first", self.first), ("second", self.second)):
             if not (np.isfinite(value) and value >= 0.0):
-                raise ValueError(f"wear of the {name} surface: wanted K/H of zero or more in mm²/N, found {value}")
+                raise InputError(f"wear of the {name} surface: wanted K/H of zero or more in mm²/N, found {value}")
 
     @property
     def both(self) -> tuple[float, float]:

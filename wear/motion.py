@@ -19,6 +19,7 @@ import ufl
 from scipy.sparse.csgraph import connected_components
 
 from meshes.data import FACET_SHAPE, Floats, Ints, MeshData, MeshError
+from meshes.errors import InputError
 from meshes.lattice import boundary_facets
 from meshes.quality import check_quality
 from meshes.reference import corner_count
@@ -58,13 +59,13 @@ def worn_mesh(
 ) -> MeshData:  # fmt: skip
     """The mesh with its worn surfaces moved in and the interior following. held: facet groups that stay where they are.
 
-    Raises MeshInverted where a scaled Jacobian falls below `least_quality`, and ValueError where nothing is held.
+    Raises MeshInverted where a scaled Jacobian falls below `least_quality`, and InputError where nothing is held.
     """
     moved = np.concatenate([w.surface.nodes for w in worn])
     depths = [w.surface.with_volume_of_hats(w.depth) for w in worn]
     goal = np.concatenate([-h[:, None] * directions(mesh, w.surface) for h, w in zip(depths, worn)])
     if not len(held):
-        raise ValueError("mesh motion: wanted a facet group that stays at rest, found none; name a support")
+        raise InputError("mesh motion: wanted a facet group that stays at rest, found none; name a support")
     resting = [mesh.facets[name].ravel() for name in held]
     still = np.unique(np.concatenate([*resting, *(_continuation(mesh, w.surface) for w in worn)]))
     shift = np.zeros((len(mesh.points), mesh.dimension))

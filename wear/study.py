@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshes.data import Floats, MeshData
+from meshes.errors import InputError
 from meshes.lattice import Mask
-from solver.body import Body
-from solver.position import reach_of
+from solver.body import Body, Traction
+from solver.meeting import reach_of
 from solver.prepared import PreparedBody, prepare
 from solver.search import SearchError
 from solver.statement import Placement, Problem, Side
@@ -71,11 +72,11 @@ class WearStudy:
         self, problem: Problem, laws: Sequence[Archard], cycle: Cycle, refresh: Refresh | None = None
     ) -> None:
         if len(laws) != len(problem.contacts):
-            raise ValueError(f"wear: wanted a law for each of {len(problem.contacts)} contacts, found {len(laws)}")
+            raise InputError(f"wear: wanted a law for each of {len(problem.contacts)} contacts, found {len(laws)}")
         self.laws, self.cycle, self.refresh = tuple(laws), cycle, refresh or Refresh()
         self.sides = _wearing_sides(problem, self.laws)
         if not self.sides:
-            raise ValueError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
+            raise InputError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
         _known_bodies(cycle, len(problem.bodies))
         prepared = prepare(problem)
         self.tracks = _tracks(self.sides, cycle, prepared)
@@ -247,19 +248,19 @@ def _wearing_sides(problem: Problem, laws: Sequence[Archard]) -> tuple[Side, ...
 
 
 def _known_bodies(cycle: Cycle, bodies: int) -> None:
-    """Raises ValueError where a body travels that there is not."""
+    """Raises InputError where a body travels that there is not."""
     for travel in cycle.travel:
         if not 0 <= travel.body < bodies:
-            raise ValueError(f"wear: wanted travel of a body below {bodies}, found body {travel.body}")
+            raise InputError(f"wear: wanted travel of a body below {bodies}, found body {travel.body}")
 
 
 def _tracks(sides: Sequence[Side], cycle: Cycle, prepared: tuple[PreparedBody, ...]) -> dict[Side, Track]:
-    """Of the sides whose bodies travel, as they stand in the last step. Raises ValueError."""
+    """Of the sides whose bodies travel, as they stand in the last step. Raises InputError."""
     found, placements = {}, cycle.steps[-1].placements
     for body, group in sides:
         own = [travel for travel in cycle.travel if travel.body == body]
         if len(own) > 1:
-            raise ValueError(f"wear of body {body}: wanted one travel of a body that wears, found {len(own)}")
+            raise InputError(f"wear of body {body}: wanted one travel of a body that wears, found {len(own)}")
         if own:
             where = placements[body] if placements else Placement.at_rest(prepared[body].assembled.d)
             found[body, group] = track_of(prepared[body].surfaces[group], own[0].in_frame(where))
@@ -270,7 +271,7 @@ def _resting(body: Body) -> list[str]:
     """Facet groups that stay where they are when the mesh moves; a plane of symmetry is not among them."""
     rigid = [body.rigid.group] if body.rigid else []
     fixed = [s.group for s in body.supports if set(s.directions) >= set("xyz"[: body.mesh.dimension])]
-    return [*{*fixed, *(t.group for t in body.loads), *rigid}]
+    return [*{*fixed, *(t.group for t in body.loads if isinstance(t, Traction)), *rigid}]
 
 
 def _certify(state: CycleState) -> None:

@@ -19,6 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from meshes.data import Floats
+from meshes.errors import InputError
 from solver.statement import Placement
 from solver.surface import Surface
 from wear.law import between
@@ -99,10 +100,10 @@ class Track:
 
 
 def track_of(surface: Surface, travel: Travel) -> Track:
-    """The track of a surface; both in the body's frame. Raises ValueError where the surface is not all on one track."""
+    """The track of a surface; both in the body's frame. Raises InputError where the surface is not all on one track."""
     x, turns, goes = surface.points, any(travel.rotation), any(travel.translation)
     if turns == goes:
-        raise ValueError(
+        raise InputError(
             f"wear of body {travel.body}, which travels: wanted a body that turns or goes straight on, found "
             f"{'both' if turns else 'neither'}; its track has to be a ring or an endless belt"
         )
@@ -111,7 +112,7 @@ def track_of(surface: Surface, travel: Travel) -> Track:
         c, other = other, c
     width, off = np.ptp(c.at(x) if x.shape[1] == 3 else x, axis=0).max(), np.ptp(other.at(x))
     if not off < FLAT * width:
-        raise ValueError(
+        raise InputError(
             f"wear of body {travel.body}, which travels: wanted a surface that stays on its own track, a disc's flat "
             f"face, a cylinder's side or a plane along the path, found one {width:.3g} mm wide that leaves it by "
             f"{off:.3g} mm; mind the axis, and give curved or inclined parts no K/H"

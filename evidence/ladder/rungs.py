@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from evidence.claims import Rung
 from evidence.ladder import (
+    half_spheres,
     hertz_ellipse,
     hertz_line,
     hertz_point,
@@ -16,8 +17,10 @@ from evidence.ladder import (
     partial_slip,
     patch,
     rolling,
+    rounded_punch,
     sharing,
     sliding,
+    stiff_punch,
     torque,
 )
 
@@ -26,7 +29,10 @@ RUNGS: tuple[Callable[[], Rung], ...] = (
     hertz_line.measure,
     hertz_point.measure,
     hertz_ellipse.measure,
+    half_spheres.measure,
     nafems.measure,
+    rounded_punch.measure,
+    stiff_punch.measure,
     orders.measure,
     partial_slip.measure,
     mindlin.measure,

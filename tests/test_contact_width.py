@@ -1,0 +1,112 @@
+"""How many cells a contact is wide: of known footprints, in 2D and 3D; and the warning."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from meshes.blocks import box, cylinder_2d, graded_rectangle, rectangle
+from solver.body import Body, Fixed, Freedom, Rigid
+from solver.contact_width import CoarseContactWarning, width_of
+from solver.meeting import Meeting
+from solver.problem import Contact, Position, Problem, Step, prepare, solve
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def flat(d: int, supports: tuple[Fixed, ...] = ()) -> Meeting:
+    """Pairs of two flat blocks of 8 mm: the first with cells of 0.5 mm, the second with cells of 0.8 mm."""
+    if d == 2:
+        upper, lower, down = rectangle(8.0, 1.0, 16, 1), rectangle(8.0, 1.0, 10, 1, origin=(0.0, -1.0)), "y"
+    else:
+        upper = box((8.0, 8.0, 1.0), (16, 16, 1), 1)
+        lower, down = box((8.0, 8.0, 1.0), (10, 10, 1), 1, origin=(0.0, 0.0, -1.0)), "z"
+    bodies = (
+        Body(upper, supports=supports, rigid=Rigid("top", (Freedom(down, load=-1.0),))),
+        Body(lower, supports=(Fixed("bottom"),)),
+    )
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    return Position(problem, prepare(problem), Step()).meetings[0]
+
+
+@pytest.fixture(scope="module", params=[2, 3])
+def meeting(request) -> Meeting:
+    return flat(request.param)
+
+
+def test_strip(meeting):
+    """A strip of 3 mm inside: 3 mm over the longer cells, 0.8 mm; to the quadrature points' distance."""
+    x = meeting.operator.points[:, 0]
+    found = width_of(meeting, np.where((x > 2.0) & (x < 5.0), 7.0, 0.0))
+    assert found.width == pytest.approx(3.0, abs=0.25)
+    assert found.cell == pytest.approx(0.8, rel=1e-9)
+    assert found.cells == pytest.approx(3.0 / 0.8, abs=0.3)
+
+
+def test_narrowest_patch_counts(meeting):
+    """Two strips, of 3 and 1 mm: the narrow one; unless it carries hardly anything."""
+    x = meeting.operator.points[:, 0]
+    wide, narrow = (x > 1.0) & (x < 4.0), (x > 5.5) & (x < 6.5)
+    assert width_of(meeting, 1.0 * (wide | narrow)).width == pytest.approx(1.0, abs=0.25)
+    assert width_of(meeting, 1.0 * wide + 1e-3 * narrow).width == pytest.approx(3.0, abs=0.25)
+
+
+def test_whole_surface(meeting):
+    """What presses all over is as wide as the surface."""
+    assert width_of(meeting, np.ones(len(meeting.operator.weights))).width == pytest.approx(8.0, abs=0.25)
+
+
+def test_nothing_presses(meeting):
+    """An open contact has no width, and is not too coarse."""
+    assert width_of(meeting, np.zeros(len(meeting.operator.weights))).cells == np.inf
+
+
+def test_disc_and_ring():
+    """In 3D a disc is as wide as its diameter, a ring as its band."""
+    meeting = flat(3)
+    r = np.hypot(*(meeting.operator.points[:, :2] - 4.0).T)
+    assert width_of(meeting, 1.0 * (r < 2.0)).width == pytest.approx(4.0, abs=0.3)
+    assert width_of(meeting, 1.0 * ((r > 2.0) & (r < 3.2))).width == pytest.approx(1.2, abs=0.3)
+
+
+@pytest.mark.parametrize(("supports", "width"), [((), 2.0), ((Fixed("left", "x"),), 4.0)])
+def test_plane_of_symmetry(supports, width):
+    """A contact up to a free edge ends there; up to a plane of symmetry it is half of the whole."""
+    meeting = flat(2, supports)
+    found = width_of(meeting, 1.0 * (meeting.operator.points[:, 0] < 2.0))
+    assert found.width == pytest.approx(width, abs=0.25)
+
+
+def roller(size: float) -> Problem:
+    """Of 10 mm radius, pressed to a half-width of 0.33 mm (Hertz) with cells of `size` on both sides."""
+    up = Body(cylinder_2d(10.0, size, 1.5), rigid=Rigid("top", (Freedom("y", load=-1e3),)))
+    low = Body(graded_rectangle(20.0, 10.0, size, 1.5), supports=(Fixed("bottom"),))
+    return Problem((up, low), (Contact((0, "arc"), (1, "top"), reach=0.2),))
+
+
+def test_hertz():
+    """2a = 0.662 mm, within a tenth of a cell of 0.08 mm."""
+    contact = solve(roller(0.08)).contacts[0]
+    assert contact.cells_across == pytest.approx(0.662 / 0.08, abs=0.3)
+
+
+def test_warning():
+    """0.66 mm on cells of 0.5 mm: warned, with the contact, the cells and the size that would do; on finer ones not."""
+    said = r"\(0, 'arc'\) with \(1, 'top'\).*2 cells wide, found 1\.\d, .*at most 0\.\d+ mm on both"
+    with pytest.warns(CoarseContactWarning, match=said):
+        solve(roller(0.5))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CoarseContactWarning)
+        solve(roller(0.16))
+
+
+def test_example_of_the_docs_warns(tmp_path):
+    """docs/own_problem.md presses a hook with cells of 0.5 mm to a half-width of 0.56 mm; its peak is 1.6 times the
+    converged one."""
+    program = re.search(r"```python\n(.*?)```", (ROOT / "docs/own_problem.md").read_text(), re.DOTALL).group(1)
+    with pytest.warns(CoarseContactWarning, match="'round'"):
+        exec(compile(program.replace("hook.msh", str(tmp_path / "hook.msh")), "own_problem.md", "exec"), {})

@@ -57,7 +57,7 @@ class Seen:
     """A contact on the surfaces of its solution.
 
     where: the surfaces, brought together; None where nothing presses.
-    gap: change of the gaps over the contact's depth.
+    gap: change of the gaps over the contact's depth, but for a slope along the contact.
     tilt: [rad] of the normals.
     drift: of the partners, over the contact's width.
     missed: [mm] deepest overlap without pairs.
@@ -132,7 +132,19 @@ def look(position: Position, index: int, result: ContactResult, places: Places) 
     where = _together(meeting, places, pressed, share)
     gap, tilt, drift = _partners(meeting, displaced(meeting.placed, where), pressed)
     tilted = float(np.sqrt(share @ tilt**2))
-    return Seen(where, float(gap.max()) / depth, tilted, float(drift.max()) / width, missed, wanted)
+    bent = _bent(gap, result.points[pressed], share)
+    return Seen(where, bent / depth, tilted, float(drift.max()) / width, missed, wanted)
+
+
+def _bent(change: Floats, points: Floats, share: Floats) -> float:
+    """Largest of the changes (p,) of gaps at points (p, d), but for their slope: a curved contact that moves along the
+    surface has one, which alters its place and nothing else."""
+    if not np.isfinite(change).all():
+        return float("inf")
+    weight = np.sqrt(share)
+    arms = points - share @ points
+    slope = np.linalg.lstsq(weight[:, None] * arms, weight * (change - share @ change), rcond=None)[0]
+    return float(np.abs(change - arms @ slope).max())
 
 
 def _together(meeting: Meeting, places: Places, pressed: Ints, share: Floats) -> Places:
@@ -189,7 +201,7 @@ def _partners(meeting: Meeting, moved: Pair, pressed: Ints) -> tuple[Floats, Flo
     normal = _unit(op.shape[pressed] @ op.frames[:, 0])
     now = _normals(moved[0], found.facet1[pressed], found.xi1[pressed])
     apart = between(moved, found)[pressed]
-    change = np.abs(_gaps(meeting, moved, pressed, now) - np.einsum("qa,qa->q", normal, apart))
+    change = _gaps(meeting, moved, pressed, now) - np.einsum("qa,qa->q", normal, apart)
     along = apart - np.einsum("qa,qa->q", now, apart)[:, None] * now
     return change, np.linalg.norm(now - normal, axis=1), np.linalg.norm(along, axis=1)
 

@@ -9,9 +9,21 @@ import numpy as np
 import pytest
 
 from meshes.blocks import cylinder_2d, graded_rectangle, rectangle
+from solver import settled
 from solver.body import Body, Fixed, Freedom, Rigid
 from solver.material import Material
-from solver.problem import Contact, ContactResult, Placement, Problem, Solution, Step, TooLarge, solve, sweep
+from solver.problem import (
+    Contact,
+    ContactResult,
+    Placement,
+    Problem,
+    Solution,
+    Step,
+    TooLarge,
+    Unsettled,
+    solve,
+    sweep,
+)
 from solver.search import SearchError
 
 ALUMINIUM = Material(70e3, 0.3)
@@ -141,6 +153,18 @@ def test_large_strain_is_refused():
     for strain in (0.21, 2.0):
         with pytest.raises(TooLarge, match=rf"body 0.*strain of at most 0\.2 in every cell.*found {strain:g};"):
             solve(column(1000 / strain))
+
+
+def test_what_does_not_settle_is_refused(monkeypatch):
+    """With one search allowed, both a reach that is too small and a placement in overlap are refused, with what was
+    found and what to do."""
+    monkeypatch.setattr(settled, "ROUNDS", 1)
+    with pytest.raises(
+        Unsettled, match=r"'arc' of body 0.*found an overlap of 0\.0\d+ mm without; give .* larger reach"
+    ):
+        solve(cylinder(1e-3, Freedom("y", displacement=-0.15)))
+    with pytest.raises(Unsettled, match=r"elsewhere after 1 searches \(gaps off by .*smaller steps"):
+        solve(*half_discs(0.2, placed=True))
 
 
 def test_turned_round_a_corner_is_no_silence():

@@ -12,7 +12,8 @@ import inspect
 import logging
 import platform
 from collections.abc import Callable
-from importlib import metadata
+from importlib import import_module, metadata
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -67,12 +68,11 @@ def gmsh_permutation(shape: str, count: int) -> Ints:
 def vector_space(mesh: Mesh, order: int) -> Space:
     """Continuous Lagrange displacements, one vector of the mesh's dimension a node."""
     dimension = mesh.geometry.dim
-    if hasattr(fem, "functionspace"):
-        return fem.functionspace(mesh, ("Lagrange", order, (dimension,)))
     with compiling(dolfinx.__version__):
-        return fem.FunctionSpace(
-            mesh, ufl.VectorElement("Lagrange", mesh.ufl_cell(), order), jit_params=_jit_options()
-        )
+        if hasattr(fem, "functionspace"):
+            return fem.functionspace(mesh, ("Lagrange", order, (dimension,)), **_compiler_options(fem.functionspace))
+        element = ufl.VectorElement("Lagrange", mesh.ufl_cell(), order)
+        return fem.FunctionSpace(mesh, element, **_compiler_options(fem.FunctionSpace.__init__))
 
 
 def input_nodes(mesh: Mesh) -> Ints:
@@ -146,9 +146,8 @@ def compile_form(form: Form) -> Form:
 
     Raises CompileError, CacheError where it cannot be compiled or kept.
     """
-    options: dict[str, Any] = {_first_parameter(fem.form, "jit_options", "jit_params"): _jit_options()}
     with compiling(dolfinx.__version__):
-        return fem.form(form, **options)
+        return fem.form(form, **_compiler_options(fem.form))
 
 
 def assemble_csr(form: Form) -> sp.csr_matrix:
@@ -256,5 +255,24 @@ def _facet_corners(mesh: Mesh) -> Ints:
     return np.sort(node_of_vertex[_rows(topology.connectivity(topology.dim - 1, 0), n_facets)], axis=1)
 
 
-def _jit_options() -> dict[str, Any]:
-    return {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
+def _compiler_options(function: Callable[..., Any]) -> dict[str, Any]:
+    """Arguments of a function that compiles: the libraries' defaults, but for cache and patience. They are given in
+    full, for what is not given is read from files of other programs in the current folder and the home's .config."""
+    jit = _defaults("dolfinx.jit", "DOLFINX_DEFAULT_JIT_OPTIONS", "DOLFINX_DEFAULT_JIT_PARAMETERS")
+    own = {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
+    ffcx = _defaults("ffcx", "options.FFCX_DEFAULT_OPTIONS", "parameters.FFCX_DEFAULT_PARAMETERS")
+    return {
+        _first_parameter(function, "jit_options", "jit_params"): jit | own,
+        _first_parameter(function, "form_compiler_options", "form_compiler_params"): ffcx,
+    }
+
+
+def _defaults(package: str, *names: str) -> dict[str, Any]:
+    """Option -> default, from whichever table the installed version has: (value, help), or (type, value, help, ...)."""
+    for name in names:
+        module, _, table = f"{package}.{name}".rpartition(".")
+        if (spec := find_spec(module)) and hasattr(found := import_module(spec.name), table):
+            return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(found, table).items()}
+    raise RuntimeError(
+        f"{package}: wanted one of {', '.join(names)}, found none; solver/compat.py must learn this version"
+    )

@@ -1,4 +1,5 @@
-"""PETSc runs with options of our own: those of other programs, in files and in the environment, change nothing."""
+"""PETSc and the form compiler run with options of our own: those of other programs, in files and in the environment,
+change nothing."""
 
 from __future__ import annotations
 
@@ -35,3 +36,33 @@ def test_options_on_purpose(tmp_path: Path) -> None:
     """EVOLVENT_PETSC_OPTIONS, which --petsc-options sets, is read."""
     found = options(tmp_path, EVOLVENT_PETSC_OPTIONS="-mat_view :a.txt")
     assert "('mat_view', ':a.txt')" in found
+
+
+FORM = """
+import numpy as np
+from meshes.blocks import rectangle
+from solver import compat
+from solver.body import Body, assemble
+print(repr(float(abs(assemble(Body(rectangle(1.0, 1.0, 2, 2))).stiffness).sum())))
+"""
+
+
+def test_compilers_options_of_others_are_not_read(tmp_path: Path) -> None:
+    """Files that tell FFCx to drop table values below 0.3 and the compiler to stop at an error, in the current folder
+    and in the home's .config: a stiffness is what it is without."""
+    ffcx, jit = '{"epsilon": 0.3, "table_atol": 0.3}', '{"cffi_extra_compile_args": ["-Dnonsense(", "-Werror"]}'
+    found = []
+    for kind in ("none", "options", "parameters"):
+        home = tmp_path / kind
+        for folder in (home, home / ".config" / "ffcx", home / ".config" / "dolfinx"):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"ffcx_{kind}.json").write_text(ffcx, encoding="utf-8")
+            (folder / f"dolfinx_jit_{kind}.json").write_text(jit, encoding="utf-8")
+        variables = {**os.environ, "PYTHONPATH": str(ROOT), "HOME": str(home), "XDG_CACHE_HOME": str(home / "cache")}
+        variables.pop("XDG_CONFIG_HOME", None)
+        done = subprocess.run(
+            [sys.executable, "-c", FORM], cwd=home, env=variables, capture_output=True, text=True, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+        found.append(done.stdout)
+    assert found[0] == found[1] == found[2]

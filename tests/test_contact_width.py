@@ -104,9 +104,16 @@ def test_warning():
         solve(roller(0.16))
 
 
-def test_example_of_the_docs_warns(tmp_path):
-    """docs/own_problem.md presses a hook with cells of 0.5 mm to a half-width of 0.56 mm; its peak is 1.6 times the
-    converged one."""
-    program = re.search(r"```python\n(.*?)```", (ROOT / "docs/own_problem.md").read_text(), re.DOTALL).group(1)
-    with pytest.warns(CoarseContactWarning, match="'round'"):
-        exec(compile(program.replace("hook.msh", str(tmp_path / "hook.msh")), "own_problem.md", "exec"), {})
+@pytest.mark.parametrize(("cell", "warns"), [("0.1", False), ("0.7", True)])
+def test_example_of_the_docs(tmp_path, cell, warns):
+    """docs/own_problem.md presses a hook to a contact of 1.1 mm with cells of 0.1 mm, and is not warned; with cells of
+    0.7 mm it is."""
+    page = (ROOT / "docs/own_problem.md").read_text()
+    program = re.search(r"```python\n(.*?)```", page, re.DOTALL).group(1)
+    program = program.replace("hook.msh", str(tmp_path / "hook.msh"))
+    assert program.count("CELL = 2000.0, 0.1") == 1
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        exec(compile(program.replace("CELL = 2000.0, 0.1", f"CELL = 2000.0, {cell}"), "own_problem.md", "exec"), {})
+    coarse = [w for w in caught if issubclass(w.category, CoarseContactWarning) and "'round'" in str(w.message)]
+    assert bool(coarse) == warns

@@ -17,12 +17,12 @@ from demos.two_blocks import Patch
 from evidence.stress.matrix import Cylinder, patch_cell
 from evidence.stress.sheets import Cell, attempt
 from meshes.data import Floats
-from solver import equilibrium, gear_position, gear_sweep, newton, position
+from solver import equilibrium, gear_position, gear_sweep, meeting, newton
 from solver.friction import Law, coulomb
 from solver.gear_model import GearModel
 from solver.gear_position import PositionResult, shared_position
 from solver.newton import NotConverged
-from solver.problem import Problem, solve
+from solver.problem import Problem, TooLarge, solve
 from solver.scene import Scene, scene_from_text
 
 ROTATIONS = np.array([1.0, 1.5, 2.0])
@@ -177,15 +177,18 @@ def in_units(problem: Problem, length: float) -> Problem:
 @pytest.mark.parametrize("length", [1e-3, 25.4, 1e3])
 def test_units(length: float) -> None:
     """Exact: a cylinder on a block with friction in µm, inch and m has the traction that it has in mm, within 1e-8.
-    Seen to fail where the modulus keeps its unit."""
+    Where the modulus keeps its unit it has another one, or is refused as strained too far."""
     problem = Cylinder().problem()
     wanted = solve(problem).contacts[0]
     found = solve(in_units(problem, length)).contacts[0]
     np.testing.assert_allclose(found.traction / length**2, wanted.traction, atol=1e-8 * wanted.pressure.max())
     turned = in_units(problem, length)
     kept = [replace(body, material=old.material) for body, old in zip(turned.bodies, problem.bodies, strict=True)]
-    other = attempt(lambda: Cell(error=solve(replace(turned, bodies=tuple(kept))).contacts[0].pressure.max()))
-    assert not abs(other.error / length**2 / wanted.pressure.max() - 1.0) < 1e-3
+    try:
+        other = solve(replace(turned, bodies=tuple(kept))).contacts[0].pressure.max()
+    except TooLarge:
+        return
+    assert abs(other / length**2 / wanted.pressure.max() - 1.0) > 1e-3
 
 
 def test_swapped_gears() -> None:
@@ -209,13 +212,13 @@ def test_patch_test_on_distorted_meshes(shape: str, order: int, monkeypatch: pyt
     22 % of the pressure while γ itself, not 1/γ, was interpolated between nodes, which is how it is broken here."""
     patch = Patch(shape, order, friction=0.3)
     assert patch_cell(patch, 0.1).error < 1e-9
-    original = position.contact_operator
+    original = meeting.contact_operator
 
     def interpolated(pairing, first, second, stabiliser, frames):  # type: ignore[no-untyped-def]
         operator = original(pairing, first, second, stabiliser, frames)
         return replace(operator, stabiliser=operator.hat @ stabiliser[operator.nodes])
 
-    monkeypatch.setattr(position, "contact_operator", interpolated)
+    monkeypatch.setattr(meeting, "contact_operator", interpolated)
     assert patch_cell(patch, 0.1).error > 1e-3
 
 

@@ -146,6 +146,20 @@ def test_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert path.read_text() == "before"
 
 
+def test_no_room_in_the_list(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No room for a file's line: WriteError, neither the line nor the file is there, and what was listed is."""
+    before = (folder.out / MANIFEST).read_bytes()
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("solver.run_folder.os.fsync", full)
+    with pytest.raises(WriteError, match=r"evolvent-files\.jsonl: wanted to write"):
+        folder.write_text("summary.json", "new")
+    assert (folder.out / MANIFEST).read_bytes() == before
+    assert not (folder.out / "summary.json").exists()
+
+
 HOLD = """
 import sys
 from pathlib import Path

@@ -12,12 +12,13 @@ from pathlib import Path
 from PIL import Image
 
 from evidence.benchmark.tables import read_rows, write_rows
-from evidence.report import COLOURS, table
+from evidence.report import table
 from solver.estimated_errors import FigureErrors, plus_minus
 from solver.overview import overview
 from solver.scene import load_scene
 
 ROOT = Path(__file__).resolve().parents[1]
+COLOURS = 256
 KEPT = Path("pictures") / "tutorial"
 PICTURES = (
     "01_loaded_pair",
@@ -59,8 +60,12 @@ def keep_pictures(out: Path, printed: Path, docs: Path) -> None:
     (docs / KEPT / "run.txt").write_text(printed.read_text(encoding="utf-8"), encoding="utf-8")
     for name in PICTURES:
         with Image.open(out / "pictures" / f"{name}.png") as image:
-            small = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-            small.save(docs / KEPT / f"{name}.png", optimize=True)
+            small(image).save(docs / KEPT / f"{name}.png", optimize=True)
+
+
+def small(image: Image.Image) -> Image.Image:
+    """With a palette, in which also rare colours keep theirs, as that above the scale of a map."""
+    return image.convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
 
 
 def figures(docs: Path) -> str:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
@@ -18,7 +19,7 @@ from solver.mesh_facts import cells_across
 from solver.overview import paper_estimate
 from solver.plain_text import signed
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, friction_colours, note, sheet
+from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, note, sheet
 from solver.plots_teeth import compares_yang
 from solver.results import FrictionRow, friction_rows, loss_percent
 from solver.run_data import RunData
@@ -29,6 +30,7 @@ YANG_PRINTS = 1788.0
 HERTZ = "#c98a1b"
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 PINION_ANGLE = "pinion rotation φ [°]"
+EVEN = 600  # rotations at which rigid flanks share: the share of a spur pair jumps
 
 
 def load_sharing(run: RunData) -> Figure:
@@ -43,11 +45,12 @@ def load_sharing(run: RunData) -> Figure:
     figure = sheet("Load sharing", see)
     axes = figure.subplots()
     for curve, colour in zip(curves, friction_colours(run.frictions)):
-        axes.plot(np.degrees(curve.angle), 100.0 * curve.share, color=colour, label=f"μ = {curve.friction:g}")
+        first, last = curve.ends
+        share, angle = np.array([0.0, *curve.share, 0.0]), np.degrees([first, *curve.angle, last])
+        axes.plot(angle, 100.0 * share, color=colour, label=f"μ = {curve.friction:g}")
     angle, share = even_share(run)
-    axes.plot(
-        np.degrees(angle), 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line"
-    )
+    angle, share = np.degrees(angle[[0, *range(len(angle)), -1]]), np.array([0.0, *share, 0.0])
+    axes.plot(angle, 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line")
     axes.set(xlabel=OWN_ANGLE, ylabel="share of the normal force [%]")
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper right")
@@ -57,7 +60,7 @@ def load_sharing(run: RunData) -> Figure:
 def even_share(run: RunData) -> tuple[Floats, Floats]:
     """(own rotation, share) of a tooth if the load lay evenly on the contact lines of rigid flanks."""
     rows = []
-    for angle in np.linspace(0.0, run.pitch, 60, endpoint=False):
+    for angle in np.linspace(0.0, run.pitch, EVEN, endpoint=False):
         lines = contact_lines(run.pair, float(angle))
         lengths = [line.z[1] - line.z[0] for line in lines]
         rows += [(angle + line.tooth * run.pitch, size / sum(lengths)) for line, size in zip(lines, lengths)]
@@ -81,8 +84,8 @@ def transmission_error(run: RunData) -> Figure:
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
     missed = missed_peaks(1e3 * np.array([each[low].result.transmission_error for each in run.positions]))
-    text = f"{len(run.positions)} positions; between them the extremes may lie up to {missed:.2f} µm further apart"
-    axes.set_title(text, fontsize=9, loc="left")
+    text = f"{len(run.positions)} positions. Between them the curve may reach further: peak to peak up to"
+    foot(figure, f"{text} {missed:.2f} µm more.")
     for index, colour in enumerate(friction_colours(run.frictions)):
         x, y = _closed(run, np.array([1e3 * each[index].result.transmission_error for each in run.positions]))
         axes.plot(
@@ -135,14 +138,15 @@ def losses(run: RunData) -> Figure:
         x, y = _closed(run, np.array([loss_percent(each[index]) for each in run.positions]))
         over.plot(x, y, color=colour, label=f"μ = {run.frictions[index]:g}")
     over.set(xlabel=PINION_ANGLE, ylabel="friction power over input power [%]")
-    over.set_ylim(bottom=0.0)
+    over.set_ylim(bottom=-0.02 * over.get_ylim()[1])  # a line at 0 is seen
     over.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     bars = [0.0 if row.estimated_error is None else row.estimated_error.loss_percent for row in rows]
     points = [row.friction for row in rows], [row.loss_percent for row in rows]
     total.errorbar(*points, yerr=bars, color=INK, marker="o", capsize=3.0)
     total.set(xlabel="friction coefficient μ", ylabel="mean loss over a pitch [%]")
-    total.set_xlim(left=0.0)
-    total.set_ylim(bottom=0.0)
+    most = max(run.frictions)
+    total.set_xlim(-0.04 * most, 1.06 * most)
+    total.set_ylim(bottom=-0.02 * max(points[1]))
     return figure
 
 
@@ -162,8 +166,8 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0])
     )
     inside = load[(ξ > start) & (ξ < end) & ~edge]
-    see = f"From {inside.min():.0f} to {inside.max():.0f} N/mm, at most {inside.max() / mean:.2f} times the even load"
-    see += f" (μ = {run.frictions[index]:g})."
+    see = f"Between the tip edges from {inside.min():.0f} to {inside.max():.0f} N/mm"
+    see += f", at most {inside.max() / mean:.2f} times the even load (μ = {run.frictions[index]:g})."
     figure = sheet("Line load and sliding along the path of contact", see, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(
@@ -176,11 +180,11 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         label="all slices of all positions",
     )
     upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=dot_size(len(ξ)) + 1, label="bears on a tip edge")
-    upper.axhspan(low, high, color="#3b7a57", alpha=0.15)
-    upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks")
+    upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks, mean")
+    upper.axhspan(low, high, color="#3b7a57", alpha=0.15, linewidth=0.0, label="its range over the pitch")
     upper.set_ylabel("line load [N/mm]")
-    upper.set_ylim(0.0, 1.3 * float(np.max(load)))
-    upper.legend(loc="upper center", ncols=3)
+    upper.set_ylim(-0.02 * float(np.max(load)), 1.3 * float(np.max(load)))
+    upper.legend(loc="upper center", ncols=4)
     _sliding(lower, run)
     lower.set(
         xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)", xlim=(start - 0.5, end + 0.5)
@@ -209,14 +213,13 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
     ratio = peak[inside] / hertz[inside] - 1.0
     middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
-    see = f"Computed over Hertz for the slice's own line load: median {middle} %, nine in ten within {most:.1f} %"
-    see += f" (μ = {run.frictions[index]:g})."
-    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
-    along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+    see = f"Difference from Hertz for a slice's own line load: median {middle} %"
+    see += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
     count = cells_across(run)
     if not count >= FEWEST_CELLS:
-        along.set_title(f"{count:.1f} elements across the contact: fewer than {FEWEST_CELLS:g}, for looking only",
-                        fontsize=9, loc="left")  # fmt: skip
+        see += f" For looking only: {count:.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
+    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
+    along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(
         ξ[inside],
         peak[inside],
@@ -265,6 +268,7 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
         beside = {"xytext": (5, 0), "textcoords": "offset points"}
         axes.annotate(f"{value:.0f}", (value, place), va="center", fontsize=9, bbox=WHITE, **beside)
     axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
+    axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.18 * max(row[1] for row in rows)))
     axes.grid(axis="y", visible=False)
     if compares_yang(run.scene):

@@ -14,7 +14,7 @@ from meshes.flank import contact_lines
 from solver.engagement import largest_peak, pooled_peaks
 from solver.flank_field import flank_field, flank_patch
 from solver.plain_text import signed
-from solver.plots_style import INK, PRESSURE_MAP, sheet
+from solver.plots_style import ABOVE, INK, PRESSURE_MAP, sheet
 from solver.run_data import RunData, SolvedPosition
 
 FACE = "face width z [mm]"
@@ -29,7 +29,7 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
     figure = sheet(f"Pressure on the unrolled pinion flank, μ = {run.frictions[index]:g}", see, (12.0, 6.2))
     axes = figure.subplots(1, 4, sharey=True, width_ratios=(1.5, 1, 1, 1))
     shown = _envelope_map(axes[0], run, index, top)
-    axes[0].set_title("envelope over the engagement", fontsize=10)
+    axes[0].set_title("envelope between the tip-edge zones", fontsize=10)
     for ax, k in zip(axes[1:], steps):
         _position_map(ax, run, run.positions[k][index], top)
         ax.set_title(f"at φ = {np.degrees(run.angles[k]):.2f}°, all teeth", fontsize=10)
@@ -38,14 +38,21 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
         _flank_axes(ax, run)
     _diameters(axes[-1], run)
     bar = figure.colorbar(shown, ax=list(axes), location="bottom", shrink=0.5, aspect=45, pad=0.02, extend="max")
-    bar.set_label("pressure [MPa]   (blue: above, where a tip edge bears and pressure is singular)")
+    bar.set_label(f"pressure [MPa]   ({ABOVE})")
     return figure
 
 
 def pressure_top(run: RunData, index: int) -> float:
-    """Upper end of the colours [MPa]: the largest fitted peak, rounded up."""
-    peaks = np.concatenate([each[index].cut.peak for each in run.positions])
-    return float(100.0 * np.ceil(np.nanmax(peaks) / 100.0))
+    """Upper end of the colours [MPa]: of the fitted peaks and the nodes' pressures between the tip-edge zones the
+    largest, rounded up; what lies above it is at a tip edge."""
+    low, high = run.inner_path
+    roll = run.flank.roll_length - run.pair.pitch_point_roll_lengths[0]
+    found = [0.0]
+    for solved in (each[index] for each in run.positions):
+        cut, ξ = solved.cut, roll[solved.result.node]
+        found += cut.peak[(low <= cut.ξ) & (cut.ξ <= high) & np.isfinite(cut.peak)].tolist()
+        found += solved.result.pressure[(low <= ξ) & (ξ <= high)].tolist()
+    return float(100.0 * max(1.0, np.ceil(max(found) / 100.0)))
 
 
 def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
@@ -71,18 +78,35 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
 
 
 def _envelope_map(axes: Axes, run: RunData, index: int, top: float) -> QuadMesh:
-    ξ = np.linspace(*run.pair.path_of_contact, 480)
-    heights, peak = envelope(run, index, ξ)
-    z = np.linspace(heights[0], heights[-1], 320)
-    fine = np.column_stack([np.interp(z, heights, row) for row in peak]).T  # NaN beside NaN
+    ξ = np.linspace(*run.inner_path, 480)
+    z = np.linspace(-0.5, 0.5, 320) * run.pair.face_width
+    fine = envelope_between(run, index, ξ, z)
     shown = axes.pcolormesh(z, ξ, fine, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="nearest", rasterized=True)
-    levels = MaxNLocator(8).tick_values(np.nanmin(peak), np.nanmax(peak))
-    lines = axes.contour(z, ξ, fine, levels=levels, colors="white", linewidths=0.7)
-    axes.clabel(lines, fmt="%.0f", fontsize=8, manual=_label_places(lines, run))
+    if np.isfinite(fine).any():
+        levels = MaxNLocator(8).tick_values(np.nanmin(fine), np.nanmax(fine))
+        lines = axes.contour(z, ξ, fine, levels=levels, colors="white", linewidths=0.7)
+        axes.clabel(lines, fmt="%.0f", fontsize=8, manual=_label_places(lines, run))
     angle = run.angles[0]
     for tooth in range(-3, 4):
         _nominal_lines(axes, run, angle + tooth * run.pitch / 3.0, only=0)
     return shown
+
+
+def envelope_between(run: RunData, index: int, ξ: Floats, z: Floats) -> Floats:
+    """The envelope (len(ξ), len(z)) [MPa] also between the slices' heights. The rims of what is known are straight
+    lines from slice to slice; NaN beyond them, and in holes."""
+    heights, peak = envelope(run, index, ξ)
+    known = np.isfinite(peak)
+    sliced = known.any(axis=0)
+    if not sliced.any():
+        return np.full((len(ξ), len(z)), np.nan)
+    heights, peak, known = heights[sliced], peak[:, sliced], known[:, sliced]
+    first, last = ξ[known.argmax(axis=0)], ξ[len(ξ) - 1 - known[::-1].argmax(axis=0)]
+    filled = np.column_stack([np.interp(ξ, ξ[own], column[own]) for own, column in zip(known.T, peak.T)])
+    holes = ~known & (first < ξ[:, None]) & (ξ[:, None] < last)
+    fine, hole = (np.stack([np.interp(z, heights, row) for row in rows]) for rows in (filled, holes.astype(float)))
+    low, high = np.interp(z, heights, first), np.interp(z, heights, last)
+    return np.where((low <= ξ[:, None]) & (ξ[:, None] <= high) & (hole < 0.5), fine, np.nan)
 
 
 def _label_places(lines: ContourSet, run: RunData) -> list[tuple[float, float]]:

@@ -16,12 +16,16 @@ from solver.engagement import pooled_peaks
 from solver.gear_results import Slices
 from solver.plain_text import signed
 from solver.plots_flank import FACE, envelope
-from solver.plots_style import FAINT, friction_colours, sheet
+from solver.plots_style import FAINT, foot, friction_colours, sheet
 from solver.plots_teeth import compares_yang, short_name
 from solver.plots_yang import Point, has_two_lines, paper_points, paper_position
 from solver.run_data import RunData
 
 MOST_LINES = 4
+PATH_POINTS = (
+    "A, E: start and end of the path of contact; B, D: inner and outer point of single pair contact; C: pitch point;"
+    " in the transverse section (ISO 21771)."
+)
 COLOURS, MARKERS = ("#3b7a57", "#2d6fb0", "#8a5a9e", "#c98a1b", "#b03a5b"), "osD^v"
 
 
@@ -73,7 +77,7 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
-    axes[0].set_title("nothing is drawn where a line bears on a tip edge", fontsize=9, loc="left", y=-0.2)
+    foot(figure, "Nothing is drawn where a line bears on a tip edge.")
     return figure
 
 
@@ -123,6 +127,8 @@ def points_over_friction(run: RunData) -> Figure:
     below.axhline(0.0, color=FAINT, linewidth=1.0)
     below.set(xlabel="friction coefficient μ", ylabel=f"change against μ = {μ[0]:g} [%]")
     _table(side, series, heads)
+    if not compares_yang(run.scene):
+        foot(figure, PATH_POINTS)
     return figure
 
 
@@ -185,6 +191,6 @@ def _see_lines(run: RunData, k: int, teeth: Sequence[int]) -> str:
         (z, _, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
         _, mine, its = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
         change = f" ({signed(100 * (other[its].mean() / peak[mine].mean() - 1))} %)" if highest != lowest else ""
-        texts.append(f"{short_name(run, tooth)} {peak.min():.0f} to {peak.max():.0f} MPa{change}")
-    more = f" (and the mean change to μ = {run.frictions[highest]:g})" if highest != lowest else ""
+        texts.append(f"{short_name(run, tooth)}, {peak.min():.0f} to {peak.max():.0f} MPa{change}")
+    more = f", in brackets the mean change to μ = {run.frictions[highest]:g}" if highest != lowest else ""
     return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

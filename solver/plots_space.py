@@ -17,7 +17,7 @@ from solver.engagement import Engagement, engagement
 from solver.plots3d import gear_picture, pair_picture
 from solver.plots_flank import pressure_top
 from solver.plots_stress import OWN_ANGLE, STRESS
-from solver.plots_style import FAINT, PINION, PRESSURE_MAP, sheet
+from solver.plots_style import ABOVE, FAINT, PINION, PRESSURE_MAP, sheet
 from solver.results import position_row
 from solver.run_data import RunData
 
@@ -53,7 +53,7 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
         pad=0.015,
         extend="max",
     )
-    bar.set_label("pressure [MPa]   (blue: above, where a tip edge bears)")
+    bar.set_label(f"pressure [MPa]   ({ABOVE})")
     return figure
 
 
@@ -106,6 +106,8 @@ def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> I
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
     left.axis("off")
+    scale = ScalarMappable(Normalize(0.0, top), PRESSURE_MAP)
+    figure.colorbar(scale, ax=left, location="bottom", shrink=0.8, aspect=40, extend="max", label="pressure [MPa]")
     right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
     here = curve.position == k
     right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)

@@ -19,7 +19,7 @@ from solver.engagement import Engagement, crossing, engagement, engagements, wit
 from solver.estimated_errors import plus_minus
 from solver.mesh_facts import cells_across
 from solver.plain_text import signed
-from solver.plots_style import FAINT, INK, TEETH, friction_colours, sheet
+from solver.plots_style import FAINT, INK, TEETH, foot, friction_colours, sheet
 from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
 from solver.scene_warnings import FEWEST_CELLS
@@ -34,14 +34,12 @@ def engagement_stress(run: RunData) -> Figure:
     curves = engagements(run)
     cross = _crossing_deg(curves)
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
-    figure = sheet("Contact stress of a tooth over its engagement", _see_engagement(curves, cross, bar), (10.4, 6.2))
+    see = _see_engagement(run, curves, cross, bar)
+    figure = sheet("Contact stress of a tooth over its engagement", see, (10.4, 6.2))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
-    _zone_ends(main, run, _lowest(curves))
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    about = f"between the tip-edge zones, ξ = {low} to {high} mm"
-    about += "; shaded: largest where one begins, rises further in" if _lowest(curves).at_zone_end.any() else ""
-    main.set_title("\n".join([about, *_resolved(run)]), fontsize=8, loc="left")
+    foot(figure, f"Largest between the tip-edge zones, from ξ = {low} to {high} mm.", *_resolved(run))
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -52,9 +50,8 @@ def engagement_stress(run: RunData) -> Figure:
     main.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
-        detail.set_title(
-            "enlarged at the crossing" if np.isfinite(cross) else "enlarged at the pitch point", fontsize=10
-        )
+        place = "where they cross" if np.isfinite(cross) else "at the pitch point"
+        detail.set_title(f"enlarged {place}", fontsize=10)
         detail.set(xlabel="pinion rotation of the tooth [°]")
     return figure
 
@@ -62,7 +59,7 @@ def engagement_stress(run: RunData) -> Figure:
 def tooth_stress(run: RunData) -> Figure:
     """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(run, curves)
+    see = _see_teeth(run, smoothed(run, curves))
     figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", see, (11.6, 6.6))
     teeth = shown_teeth(run, curves)
     grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
@@ -76,8 +73,7 @@ def tooth_stress(run: RunData) -> Figure:
     grid[0, 0].set_ylabel(STRESS)
     grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
     grid[0, 0].legend(loc="best")
-    for sentence in _resolved(run):
-        figure.supxlabel(sentence, fontsize=9, x=0.01, ha="left")
+    foot(figure, *_resolved(run))
     return figure
 
 
@@ -86,7 +82,7 @@ def friction_trend(run: RunData) -> Figure:
     curves = sorted(engagements(run), key=lambda c: c.friction)
     found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
     each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
-    changes = ", ".join(f"{name} {signed(change)} %" for name, change in each)
+    changes = ", ".join(f"{name} by {signed(change)} %" for name, change in each)
     see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
     figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
@@ -99,7 +95,7 @@ def friction_trend(run: RunData) -> Figure:
         grid[0, column].set_ylim(0.0, 1.5 * max(np.max(t.largest) for t in found))
         grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
         grid[1, column].set_xlabel("friction coefficient μ")
-        grid[1, column].set_xlim(0.0, 1.05 * μ[-1])
+        grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
     grid[0, 0].set_ylabel("contact stress [MPa]")
     grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
     grid[0, 1].legend(loc="upper right")
@@ -139,7 +135,7 @@ def _resolved(run: RunData) -> list[str]:
         return []
     return [
         f"Only {cells_across(run):.1f} elements across the contact: points as computed; lines: Hertz for the same loads"
-        f" times the median of {MEDIAN} ratios to it."
+        f" times the running median, over {MEDIAN} positions, of computed over Hertz."
     ]
 
 
@@ -151,17 +147,6 @@ def running_median(values: Floats) -> Floats:
         span = min(reach, place, len(known) - 1 - place)  # as many on either side: an end keeps its own value
         found[index] = np.median(values[known[place - span : place + span + 1]])
     return found
-
-
-def _zone_ends(axes: Axes, run: RunData, curve: Engagement) -> None:
-    """Shades the rotations at which the maximum lies where a tip-edge zone begins."""
-    step = np.degrees(run.pitch) / len(run.positions)
-    there = curve.at_zone_end.astype(float)
-    there = running_median(there) if few_cells_across(run) else there
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], (there > 0.5).astype(int), [0]])))
-    for first, last in edges.reshape(-1, 2):
-        low, high = np.degrees(curve.angle[first]) - 0.5 * step, np.degrees(curve.angle[last - 1]) + 0.5 * step
-        axes.axvspan(low, high, color=FAINT, alpha=0.13, linewidth=0.0)
 
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
@@ -234,7 +219,7 @@ def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
         axes.errorbar(*place, yerr=bar, color=INK, linewidth=1.2, capsize=4.0, zorder=5.0)
 
 
-def _see_engagement(curves: Sequence[Engagement], cross: float, bar: float) -> str:
+def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float, bar: float) -> str:
     """bar: of the largest pressure [MPa], NaN where it is not known."""
     lowest, highest = _lowest(curves), _highest(curves)
     top = int(np.nanargmax(lowest.max_pressure))
@@ -244,7 +229,8 @@ def _see_engagement(curves: Sequence[Engagement], cross: float, bar: float) -> s
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
     before, after = (signed(100 * float(np.nanmean(change[side]))) for side in (angle < 0.0, angle > 0.0))
-    where = f"the curves cross at {signed(cross)}°" if np.isfinite(cross) else "the curves do not cross"
+    what = "points" if few_cells_across(run) else "curves"
+    where = f"the {what} cross at {signed(cross)}°" if np.isfinite(cross) else f"the {what} do not cross"
     means = f"μ = {highest.friction:g} changes it by {before} % on average before the pitch point, {after} % after it"
     return f"{peak}; {means}; {where}."
 
@@ -257,7 +243,7 @@ def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
     for tooth in shown_teeth(run, curves):
         _, change = relative_change(highest, lowest, highest.tooth == tooth)
         low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
-        parts.append(f"{short_name(run, tooth)} {low} to {high} %")
+        parts.append(f"{short_name(run, tooth)} by {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
 
 

@@ -24,6 +24,7 @@ TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b", "#2d6fb0")
 INK, FAINT = "#222222", "#8a8f98"
 OVER = "#1f6fd0"
 """Beyond the upper end of a colour scale."""
+ABOVE = "blue: above the scale"
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
 ).with_extremes(over=OVER)
@@ -41,7 +42,10 @@ STYLE = {
     "axes.spines.right": False,
     "grid.color": "#e3e6ea",
     "grid.linewidth": 0.8,
-    "legend.frameon": False,
+    "legend.frameon": True,
+    "legend.framealpha": 1.0,  # a line behind a legend does not cross its words
+    "legend.edgecolor": "none",
+    "legend.fancybox": False,
     "legend.fontsize": 9.0,
     "lines.linewidth": 1.6,
     "savefig.dpi": 140.0,
@@ -59,9 +63,9 @@ def styled() -> Iterator[None]:
 def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
     """An empty figure [inch] with its title and below it the line that says what to see."""
     figure = Figure(figsize=size, layout="constrained")
-    band = 0.62 / size[1]
-    figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - band))  # type: ignore[union-attr, call-arg]
-    left = 0.14 / size[0]
+    band, left, bottom = 0.62 / size[1], 0.14 / size[0], 0.08 / size[1]
+    inside = (0.5 * left, bottom, 1.0 - 1.5 * left, 1.0 - band - bottom)  # labels at an end reach over their axes
+    figure.get_layout_engine().set(rect=inside)  # type: ignore[union-attr, call-arg]
     figure.text(
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
@@ -70,6 +74,13 @@ def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figur
     see_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
     figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
     return figure
+
+
+def foot(figure: Figure, *sentences: str) -> None:
+    """What one has to know to read the figure, below it; a sentence a line."""
+    if sentences:
+        left = 0.14 / figure.get_figwidth()
+        figure.supxlabel("\n".join(sentences), fontsize=9.0, x=left, ha="left", color="#444444")
 
 
 def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:

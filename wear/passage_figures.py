@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from solver.draw import Picture
-from solver.plots_style import FAINT, INK, PINION, WHEEL, png, sheet, styled
+from solver.mesh_facts import cells_across
+from solver.plots_stress import few_cells_across
+from solver.plots_style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from solver.run_data import RunData
 from solver.scene import GEARS
 from wear.observed import Contacts, Depths, PointPassage, pitch_point_depth
@@ -39,14 +41,14 @@ def _drawn(figure: Callable[[T], Figure], of: T) -> bytes:
 
 def point_in_contact(point: PointPassage) -> Figure:
     """Stress and sliding of a point of the pinion while it bears (Fig. 17a)."""
-    see = f"It bears over {np.degrees(point.lasts):.3f}° of the pinion, at most {point.pressure.max():.0f} MPa"
-    see += f" (Hertz: {point.hertz.max():.0f}), and slides {1e3 * point.sliding[-1]:.1f} µm"
+    see = f"It bears over {np.degrees(point.lasts):.3f}° of pinion rotation, at most {point.pressure.max():.0f} MPa"
+    see += f" (Hertz: {point.hertz.max():.0f} MPa), and slides {1e3 * point.sliding[-1]:.1f} µm."
     figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
     left, right = figure.subplots(1, 2)
     angle = np.degrees(point.rotation)
     left.plot(angle, point.pressure, color=PINION, lw=2.2, label="computed, averaged about nodes")
-    left.plot(angle, point.hertz, label="Hertz, own load", **FORMULA)
-    left.set(ylabel="contact stress [MPa]", ylim=(0.0, None))
+    left.plot(angle, point.hertz, label="Hertz, same load", **FORMULA)
+    left.set(ylabel="contact stress [MPa]", ylim=(0.0, 1.3 * max(point.pressure.max(), point.hertz.max())))
     left.legend(loc="upper right")
     right.plot(angle, 1e3 * point.sliding, color=PINION)
     right.set(ylabel="sliding distance so far [µm]", ylim=(0.0, None))
@@ -63,11 +65,14 @@ def stress_and_sliding(run: RunData) -> Figure:
         100.0 * float(np.median(np.abs(found / wanted - 1.0)))
         for found, wanted in ((pinion.peak, pinion.hertz), (pinion.half_width, pinion.hertz_half_width))
     )
-    see = f"Half of all points are within {stress:.1f} % of Hertz' stress and {width:.1f} % of Hertz' width, own load"
+    see = f"Half of the points are within {stress:.1f} % of Hertz's stress and {width:.1f} % of Hertz's contact width"
+    see += " for the same load."
     figure = sheet("One mesh over the profile: contact stress and sliding", see)
+    if few_cells_across(run):
+        foot(figure, f"Only {cells_across(run):.1f} elements across the contact: single points are for looking only.")
     left, right = figure.subplots(1, 2)
     left.plot(pinion.radius, pinion.peak, ".", color=PINION, label="computed")
-    left.plot(pinion.radius, pinion.hertz, label="Hertz, own load", **FORMULA)
+    left.plot(pinion.radius, pinion.hertz, label="Hertz, same load", **FORMULA)
     left.set(ylabel="largest contact stress [MPa]", ylim=(0.0, 1.1 * pinion.peak.max()))
     for own, colour, name in zip(both, (PINION, WHEEL), GEARS):
         right.plot(pinion.radius, 1e3 * own.sliding, ".", color=colour, label=f"{name}, computed")
@@ -78,19 +83,19 @@ def stress_and_sliding(run: RunData) -> Figure:
     for ax, corner in ((left, "lower center"), (right, "upper center")):
         ax.set(xlabel="radius on the pinion [mm]   (dashed: pitch point)")
         _pitch_point(ax, run.pair.working_pitch_diameters[0] / 2.0)
-        ax.legend(loc=corner, frameon=True, framealpha=1.0, edgecolor="none")
+        ax.legend(loc=corner)
     return figure
 
 
 def depth_by_formula(study: WornRun) -> Figure:
     """Depth of a million meshes of the unworn pair, and two formulas (Fig. 19)."""
     pair, own = study.pairs[0], wearing(study)
-    see = "Largest stress times sliding distance, He et al. Eq. 24, is 4/π times the exact depth of a line contact"
+    see = "Largest stress times sliding distance, He et al. Eq. 24, is 4/π times the exact depth of a line contact."
     figure = sheet("Wear of a million meshes, flanks as new", see)
     for ax, (gear, coefficient) in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own.items()):
         depths = Depths.of(pair, gear, coefficient)
         ax.plot(depths.radius, UM * depths.own, color=(PINION, WHEEL)[gear], lw=2.6, label="computed")
-        ax.plot(depths.radius, UM * depths.line, label="(K/H) (F/L) |ζ|, own load", **FORMULA)
+        ax.plot(depths.radius, UM * depths.line, label="(K/H) (F/L) |ζ|, same load", **FORMULA)
         ax.plot(depths.radius, UM * depths.peak_times_sliding, color=FAINT, ls=":", label="He et al., Eq. 24")
         pitch = pair.run.pair.working_pitch_diameters[gear] / 2.0
         deep = UM * pitch_point_depth(pair.run, gear, coefficient)

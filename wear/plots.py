@@ -17,7 +17,7 @@ from solver.draw import Picture
 from solver.engagement import engagement
 from solver.flank_field import flank_patch
 from solver.plots3d import flank_picture
-from solver.plots_style import FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, png, sheet, styled
+from solver.plots_style import ABOVE, FAINT, PINION, PRESSURE_MAP, WHEEL, friction_colours, png, sheet, styled
 from solver.scene import GEARS
 from wear.report import WornPair, WornRun
 
@@ -70,9 +70,10 @@ def depth_over_profile(study: WornRun) -> Figure:
     last, own = study.pairs[-1], wearing(study)
     found = [getattr(last.report(), GEARS[gear]) for gear in own]
     deepest = ", ".join(
-        f"{GEARS[gear]} {each.deepest_um:.3g} µm at d = {each.at_diameter_mm:.1f} mm" for gear, each in zip(own, found)
+        f"{GEARS[gear]} {_three(each.deepest_um)} µm at d = {each.at_diameter_mm:.1f} mm"
+        for gear, each in zip(own, found)
     )
-    see = f"Deepest after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out"
+    see = f"Deepest after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
     figure = sheet("Wear depth over the profile", see)
     for ax, gear in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own):
         for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
@@ -90,7 +91,7 @@ def depth_over_flank(study: WornRun) -> Figure:
     """The worn flanks unrolled, at the end."""
     last, own = study.pairs[-1], wearing(study)
     title = f"Worn flanks after {cycles_label(last.cycles)} cycles"
-    figure = sheet(title, f"{_most(study)}; tip up, root down", (5.8 * len(own) + 1.0, 5.6))
+    figure = sheet(title, f"{_most(study)} The tip is above, the root below.", (5.8 * len(own) + 1.0, 5.6))
     for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
         chart = last.worn[gear]
         shown = ax.pcolormesh(
@@ -109,7 +110,8 @@ def worn_teeth(study: WornRun) -> Figure:
     """The worn flanks on their teeth, at the end."""
     last, own = study.pairs[-1], wearing(study)
     title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
-    figure = sheet(title, f"Least along the pitch line, where flanks roll. {_most(study)}", (6.2 * len(own) + 1.0, 5.0))
+    see = f"Least along the pitch line, where the flanks roll. {_most(study)}"
+    figure = sheet(title, see, (6.2 * len(own) + 1.0, 5.0))
     for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
         patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)
         ρ, z = np.meshgrid(patch.roll_length, patch.z, indexing="ij")
@@ -124,12 +126,18 @@ def worn_teeth(study: WornRun) -> Figure:
 
 def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
     """Each gear's own: their depths may be far apart. Tip edges are beyond its end."""
-    figure.colorbar(shown, ax=ax, label="wear depth [µm]", shrink=0.85, extend="max")
+    figure.colorbar(shown, ax=ax, label=f"wear depth [µm]   ({ABOVE})", shrink=0.85, extend="max")
 
 
 def _most(study: WornRun) -> str:
-    found = [f"{GEARS[gear]} {_deepest(study.pairs[-1], gear):.3g} µm" for gear in wearing(study)]
-    return f"Colours to the most between the tip-edge zones: {', '.join(found)}"
+    """What stands at the upper end of the colours."""
+    found = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
+    return f"Deepest between the tip-edge zones: {', '.join(found)}."
+
+
+def _three(value: float) -> str:
+    """A number in three digits, also where the last is 0."""
+    return f"{value:#.3g}".removesuffix(".")
 
 
 def _deepest(pair: WornPair, gear: int) -> float:
@@ -139,12 +147,14 @@ def _deepest(pair: WornPair, gear: int) -> float:
 
 def growth(study: WornRun) -> Figure:
     """Deepest wear and worn volume over the cycles; a dot a block."""
-    see = f"{len(study.rows)} blocks, errors of their volumes at most {100.0 * max(r.error for r in study.rows):.1f} %"
+    error = 100.0 * max(row.error for row in study.rows)
+    see = f"{len(study.rows)} blocks of cycles; estimated error of a block's worn volume at most {error:.1f} %."
     figure = sheet("How the wear grows", see)
     left, right = figure.subplots(1, 2)
     unit, name = _unit(study)
     for gear in wearing(study):
-        style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear]}
+        style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear],
+                 "clip_on": False}  # fmt: skip
         x = np.array([0.0, *(row.cycles for row in study.rows)]) / unit
         deepest = [0.0, *(getattr(row, f"deepest_{GEARS[gear]}_um") for row in study.rows)]
         volume = [0.0, *(getattr(row, f"volume_{GEARS[gear]}_mm3") for row in study.rows)]
@@ -165,7 +175,8 @@ def force_on_tooth(study: WornRun) -> Figure:
     """Normal force on a tooth over its engagement at each report."""
     curves = [engagement(pair.run, 0) for pair in (study.pairs[0], study.pairs[-1])]
     (first, last), (new, worn) = (c.force.max() for c in curves), (np.degrees(np.ptp(c.ends)) for c in curves)
-    see = f"Whole engagement from {new:.2f}° to {worn:.2f}°, largest force from {first:.0f} to {last:.0f} N"
+    see = f"As new a tooth is engaged over {new:.2f}° and carries at most {first:.0f} N"
+    see += f"; at last {worn:.2f}°, {last:.0f} N."
     figure = _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
     figure.axes[0].set(xlabel="pinion rotation of the tooth from the pitch point [°]", ylim=(0.0, None))
     return figure
@@ -181,7 +192,7 @@ def _force(pair: WornPair) -> tuple[Floats, Floats]:
 def transmission_error(study: WornRun) -> Figure:
     """Loaded transmission error less its mean over a pitch at each report."""
     first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
-    see = f"Peak to peak {first:.2f} µm at first, {last:.2f} µm at last"
+    see = f"Peak to peak {first:.2f} µm as new, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
     label = "transmission error less its mean [µm]"
     return _over_rotation(study, "Transmission error as the flanks wear", see, label, _error)
 
@@ -199,7 +210,7 @@ def _over_rotation(
     figure = sheet(title, see)
     ax: Axes = figure.add_subplot()
     for pair, colour in zip(study.pairs, _colours(study)):
-        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "at the beginning"
+        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "as new"
         ax.plot(*curve(pair), color=colour, label=name)
     ax.set(xlabel="pinion rotation [°]", ylabel=label)
     ax.legend()

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from gear_cases import helical_scene, model_of, spur_scene
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from mpi4py import MPI
 from synthetic_run import synthetic_run
 
@@ -15,11 +16,13 @@ from meshes.parameters import GearPair
 from solver.companion import solved_run
 from solver.flank_chart import FlankChart
 from solver.hertz import line_pressure
+from solver.plots_style import styled
 from solver.run_data import RunData
 from solver.run_sweep import pitch_of
 from solver.sectors import gear_mesh
 from wear.flank_grid import FlankGrid, line_arc
 from wear.observed import Contacts, Depths, PointPassage, pitch_point_depth, radius_at, roll_distance_at, sliding
+from wear.passage_figures import point_in_contact
 from wear.report import WornPair
 
 K = 1.3832e-10  # mm²/N, He et al. 2022
@@ -50,6 +53,17 @@ def test_point_a_at_half_load() -> None:
     assert point.sliding[-1] == pytest.approx(0.0625, rel=0.02)
     inner = point.hertz > 0.7 * 425.0  # averages reach half a cell over the rims, which are steep
     np.testing.assert_allclose(point.pressure[inner], point.hertz[inner], atol=0.02 * 425.0)
+
+
+def test_legend_beside_the_curves() -> None:
+    """Point A's stress over its rotation: no point of a curve lies behind the legend."""
+    with styled():
+        figure = point_in_contact(PointPassage.of(he(), A))
+    FigureCanvasAgg(figure).draw()
+    axes = figure.axes[0]
+    box = axes.get_legend().get_window_extent()
+    for line in axes.lines:
+        assert not any(box.contains(*point) for point in axes.transData.transform(line.get_xydata()))
 
 
 def test_a_point_sees_no_spikes() -> None:

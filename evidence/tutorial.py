@@ -15,10 +15,10 @@ from evidence.benchmark.tables import read_rows, write_rows
 from evidence.report import table
 from solver.estimated_errors import FigureErrors, plus_minus
 from solver.overview import overview
+from solver.plots_style import palette, reduced
 from solver.scene import load_scene
 
 ROOT = Path(__file__).resolve().parents[1]
-COLOURS = 256
 KEPT = Path("pictures") / "tutorial"
 PICTURES = (
     "01_loaded_pair",
@@ -64,8 +64,9 @@ def keep_pictures(out: Path, printed: Path, docs: Path) -> None:
 
 
 def small(image: Image.Image) -> Image.Image:
-    """With a palette, in which also rare colours keep theirs, as that above the scale of a map."""
-    return image.convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    """With a palette that keeps the colours of maps."""
+    full = image.convert("RGB")
+    return reduced(full, palette(full))
 
 
 def figures(docs: Path) -> str:

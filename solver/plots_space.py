@@ -17,7 +17,7 @@ from solver.engagement import Engagement, engagement
 from solver.plots3d import gear_picture, pair_picture
 from solver.plots_flank import pressure_top
 from solver.plots_stress import OWN_ANGLE, STRESS
-from solver.plots_style import ABOVE, FAINT, PINION, PRESSURE_MAP, sheet
+from solver.plots_style import ABOVE, FAINT, PINION, PRESSURE_MAP, palette, reduced, sheet
 from solver.results import position_row
 from solver.run_data import RunData
 
@@ -80,34 +80,25 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
     for k in range(len(run.positions)):
         frames.append(_frame(run, index, k, curve, top))
         step()
-    palette = _with_pressure_colours(frames[0]).quantize(255, dither=Image.Dither.NONE)
-    reduced = [frame.quantize(255, palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    colours = palette(frames[0])
+    first, *others = [reduced(frame, colours) for frame in frames]
     content = io.BytesIO()
-    more = {"append_images": reduced[1:], "duration": FRAME_MS, "loop": 0, "optimize": True}
-    reduced[0].save(content, format="GIF", save_all=True, **more)
+    more = {"append_images": others, "duration": FRAME_MS, "loop": 0, "optimize": True}
+    first.save(content, format="GIF", save_all=True, **more)
     return content.getvalue()
-
-
-def _with_pressure_colours(frame: Image.Image) -> Image.Image:
-    """The frame over a band of the pressure map, so that a palette made from it has the colours of thin lines too."""
-    width, height = frame.size
-    band = (255 * PRESSURE_MAP(np.linspace(0.0, 1.0, width))[:, :3]).astype(np.uint8)
-    both = Image.new("RGB", (width, height + height // 4))
-    both.paste(frame, (0, 0))
-    both.paste(Image.fromarray(np.tile(band, (height // 4, 1, 1))), (0, height))
-    return both
 
 
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
     """A frame: the pair, and where its teeth stand on the curve of contact stress."""
     result = run.positions[k][index].result
     see = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
-    figure = sheet(run.scene.title, see, (9.0, 4.6))
+    figure = sheet(run.scene.title, see, (9.0, 5.0))
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
     left.axis("off")
     scale = ScalarMappable(Normalize(0.0, top), PRESSURE_MAP)
-    figure.colorbar(scale, ax=left, location="bottom", shrink=0.8, aspect=40, extend="max", label="pressure [MPa]")
+    bar = {"fraction": 0.06, "pad": 0.01, "shrink": 0.8, "aspect": 40, "extend": "max"}
+    figure.colorbar(scale, ax=left, location="bottom", label=f"pressure [MPa]   ({ABOVE})", **bar)
     right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
     here = curve.position == k
     right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.textpath import TextPath
+from PIL import Image
 
 from meshes.files import write_bytes
 
@@ -97,6 +98,25 @@ def dot_size(count: int) -> float:
 def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:
     """A small remark inside the axes, at its upper left unless said otherwise."""
     axes.text(x, y, text, transform=axes.transAxes, va="top", ha="left", fontsize=9, color="#444444")
+
+
+def palette(image: Image.Image) -> Image.Image:
+    """A palette of 255 colours for `image` and what is like it: white, the pressure map's, that above it, which few
+    pixels have and would lose, and the image's own."""
+    scale = (255 * PRESSURE_MAP(np.append(np.linspace(0.0, 1.0, 70), 2.0))[:, :3]).round().astype(int)
+    fixed = [255, 255, 255, *scale.ravel().tolist()]
+    own = image.quantize(255 - len(fixed) // 3, dither=Image.Dither.NONE).getpalette() or []
+    found = Image.new("P", (1, 1))
+    found.putpalette([*fixed, *own][: 3 * 255])
+    return found
+
+
+def reduced(image: Image.Image, colours: Image.Image) -> Image.Image:
+    """The image in the colours of `palette`; its white stays white, which Pillow rounds."""
+    found = image.quantize(palette=colours, dither=Image.Dither.NONE)
+    white = (np.asarray(image) == 255).all(axis=-1)
+    found.paste(0, mask=Image.fromarray(white))
+    return found
 
 
 def png(figure: Figure) -> bytes:

@@ -182,6 +182,7 @@ def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
     with styled(), Image.open(io.BytesIO(png(pressure_map(run)))) as picture:
         colours = np.asarray(small(picture).convert("RGB")).reshape(-1, 3).astype(float)
     assert np.abs(colours - 255.0 * np.array(to_rgb(OVER))).max(axis=1).min() < 4.0
+    assert (colours[0] == 255.0).all()
 
 
 def test_envelope_has_straight_rims(run: RunData) -> None:

@@ -73,7 +73,7 @@ def depth_over_profile(study: WornRun) -> Figure:
         f"{GEARS[gear]} {_three(each.deepest_um)} µm at d = {each.at_diameter_mm:.1f} mm"
         for gear, each in zip(own, found)
     )
-    see = f"Deepest after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
+    see = f"Deepest on the flank after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
     figure = sheet("Wear depth over the profile", see)
     for ax, gear in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own):
         for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
@@ -110,7 +110,7 @@ def worn_teeth(study: WornRun) -> Figure:
     """The worn flanks on their teeth, at the end."""
     last, own = study.pairs[-1], wearing(study)
     title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
-    see = f"Least along the pitch line, where the flanks roll. {_most(study)}"
+    see = f"Little along the pitch line, where the flanks roll. {_most(study)}"
     figure = sheet(title, see, (6.2 * len(own) + 1.0, 5.0))
     for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
         patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)

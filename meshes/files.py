@@ -67,7 +67,9 @@ def folder_for(out: Path, option: str = "--out") -> Iterator[None]:
 
 def unusable(out: Path, error: OSError | ValueError, option: str = "--out") -> InputError:
     """The error of a folder that cannot be made or written to."""
-    found = "a file" if isinstance(error, FileExistsError) else getattr(error, "strerror", None) or str(error)
+    found = getattr(error, "strerror", None) or str(error)
+    if isinstance(error, FileExistsError):
+        found = "a file" if out.exists() else "a link that leads nowhere"
     return InputError(
         f"{option}: found {str(out)[:200]!r} ({found}); allowed: a directory that can be made and written to by user "
         f"{os.geteuid()}; remedy: name another one, or mend its access"

@@ -83,7 +83,7 @@ class Archive:
             if not (same and np.array_equal(kept.flank_nodes, own.flank_nodes)):
                 raise ArchiveError(
                     f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "
-                    "version of Evolvent or gmsh; run without --resume"
+                    "version of Evolvent or gmsh; `evolvent run ... --overwrite` computes them anew"
                 )
 
     def read_gears(self) -> tuple[GearShape, GearShape]:
@@ -139,8 +139,8 @@ class Archive:
         if str(arrays["fingerprint"]) != self.fingerprint:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this scene, found those of another one, of another level or of "
-                "another version of Evolvent; name another folder with --out, run the same scene, or leave --resume "
-                "out to start again"
+                "another version of Evolvent; resume with the scene and the settings that it was run with (scene.toml in "
+                "that folder), name another folder with --out, or compute anew with `evolvent run ... --overwrite`"
             )
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
@@ -166,7 +166,7 @@ class Archive:
         except KeyError as missing:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; run the "
-                "scene again, without --resume"
+                "scene again, with --overwrite"
             ) from missing
         return SweptPosition(float(arrays["angle"]), results, SweepState((0.0, 0.0), ()), again, closes)
 
@@ -196,7 +196,8 @@ def read_arrays(path: Path) -> dict[str, Any]:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise ArchiveError(
-            f"{path}: wanted a results file, found none that can be read ({error}); run the scene again"
+            f"{path}: wanted a results file, found none that can be read ({error}); run the scene again, with "
+            "--overwrite"
         ) from error
 
 

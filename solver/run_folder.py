@@ -54,13 +54,13 @@ class RunFolder:
     def is_ours(self, path: Path) -> bool:
         """Whether a run has made this file, and nobody has changed it."""
         made = self._made().get(self._name(path), set())
-        if not made or path.is_symlink() or not path.is_file():
+        if not made or self._linked(path) or not path.is_file():
             return False
         return path == self.out / LOG or _digest(path.read_bytes()) in made
 
     def require_ours(self, paths: Iterable[Path]) -> None:
-        """Raises FolderError where one of these exists and is not ours."""
-        theirs = [path for path in paths if (path.exists() or path.is_symlink()) and not self.is_ours(path)]
+        """Raises FolderError where one of these exists and is not ours, or lies in a folder that is a link."""
+        theirs = [path for path in paths if (path.exists() or self._linked(path)) and not self.is_ours(path)]
         if theirs:
             raise FolderError(
                 f"{self.out}: wanted to write {', '.join(self._name(path) for path in theirs[:5])}, found "
@@ -70,6 +70,12 @@ class RunFolder:
 
     def require_free(self, patterns: Iterable[str]) -> None:
         """Raises FolderError where a file that is not ours has a name that a run writes (globs below OUT)."""
+        links = [self.out / folder for folder in FOLDERS[1:] if (self.out / folder).is_symlink()]
+        if links:
+            raise FolderError(
+                f"{self.out}: wanted folders of its own for what a run writes, found the link {self._name(links[0])} "
+                f"to {links[0].readlink()}; what lies there may be another run's: name another folder with --out"
+            )
         self.require_ours(path for pattern in patterns for path in sorted(self.out.glob(pattern)))
 
     def ours(self) -> list[Path]:
@@ -87,6 +93,8 @@ class RunFolder:
     def clear(self, keep: Collection[Path] = ()) -> None:
         """Removes what our runs have made, the newest first, and folders that are then empty; but for the log and
         `keep`. Raises OSError."""
+        if self._linked(self.out / MANIFEST):
+            return
         kept, stays = {path.resolve() for path in keep}, [self.out / LOG]
         for worn in self._worn():
             worn.clear(keep)
@@ -116,6 +124,11 @@ class RunFolder:
         for path in sorted(self.out.glob(WORN)):
             if (path / MANIFEST).is_file():
                 yield RunFolder(path)
+
+    def _linked(self, path: Path) -> bool:
+        """Whether a file, or a folder between it and OUT, is a link: what it leads to is somebody's."""
+        between = path.relative_to(self.out).parents
+        return path.is_symlink() or any((self.out / part).is_symlink() for part in between if part != Path())
 
     def _name(self, path: Path) -> str:
         return path.relative_to(self.out).as_posix()

@@ -85,6 +85,22 @@ def test_a_link_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
     assert (folder.out / "scene.toml").is_symlink()
 
 
+def test_a_linked_folder_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
+    """A link named results to the results of another run: neither removed, nor written over, nor added to."""
+    other = RunFolder(tmp_path / "other")
+    (other.out).mkdir()
+    (other.out / "results").symlink_to(folder.out / "results")
+    before, listed = hashes(folder.out), (folder.out / MANIFEST).read_bytes()
+    with pytest.raises(FolderError, match="the link results to"):
+        other.require_free(["results/*.npz"])
+    for name in ("results/state.npz", "results/new.npz"):
+        with pytest.raises(FolderError):
+            other.write_text(name, "new")
+    other.clear()
+    assert hashes(folder.out) == before
+    assert (folder.out / MANIFEST).read_bytes() == listed
+
+
 def test_the_same_content_is_not_written_again(folder: RunFolder) -> None:
     """Ours with this very content keeps its date."""
     path = folder.out / "scene.toml"
@@ -187,14 +203,15 @@ def test_lock_names_its_owner_and_ends_with_it(tmp_path: Path) -> None:
     assert not out.exists() or not list(out.iterdir())
 
 
-@pytest.mark.parametrize("place", ["file/out", "/dev/null", "/proc/out", "x" * 300, "a\0b", "file"])
+@pytest.mark.parametrize("place", ["dangling", "file/out", "/dev/null", "/proc/out", "x" * 300, "a\0b", "file"])
 def test_impossible_folders(place: str, tmp_path: Path) -> None:
     """Below a file, a device, where nobody may, a name that is too long: InputError, and nothing is made."""
     (tmp_path / "file").write_text("", encoding="utf-8")
+    (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
     message = r"--out: found .*; allowed: a directory that can be made and written"
     with pytest.raises(InputError, match=message), locked(tmp_path / place):
         pass
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["dangling", "file"]
 
 
 def test_lock_leaves_no_folder_that_was_not_there(tmp_path: Path) -> None:

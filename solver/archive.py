@@ -139,8 +139,8 @@ class Archive:
         if str(arrays["fingerprint"]) != self.fingerprint:
             raise ArchiveError(
                 f"{self.folder}: wanted the results of this scene, found those of another one, of another level or of "
-                "another version of Evolvent; resume with the scene and the settings that it was run with (scene.toml in "
-                "that folder), name another folder with --out, or compute anew with `evolvent run ... --overwrite`"
+                "another version of Evolvent; resume with the scene and the settings that it was run with (its "
+                "scene.toml), name another folder with --out, or compute anew with `evolvent run ... --overwrite`"
             )
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:

@@ -219,6 +219,8 @@ def wear_coefficient(
             f"K/H = {found.value:.4e} mm²/N, 95 % between {found.low:.4e} and {found.high:.4e}; at "
             f"{test.pressure:.3f} MPa {rate:.4g} µm per km"
         )
+        if found.low <= 0.0:
+            typer.echo("evolvent: warning: the interval reaches below 0, which no K/H can: give more records", err=True)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent info")

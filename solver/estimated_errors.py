@@ -72,8 +72,13 @@ def kept_errors(archive: Archive) -> EstimatedErrors | None:
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
 
 
+FINER = 3
+
+
 def plus_minus(value: float, bar: float, digits: int) -> str:
-    """ "2.60 ± 0.08", the bar rounded up; the value alone where it is exact or its bar unknown (NaN)."""
+    """ "2.60 ± 0.08", the bar rounded up; the value alone where it is exact or its bar unknown (NaN). digits: decimals,
+    up to FINER more where the bar needs them: in "0.6 ± 0.1" a bar of 0.003 cannot be seen."""
     if not (math.isfinite(bar) and bar > 0.0):
         return f"{value:.{digits}f}"
+    digits = min(max(digits, -math.floor(math.log10(bar))), digits + FINER)
     return f"{value:.{digits}f} ± {math.ceil(bar * 10**digits) / 10**digits:.{digits}f}"

@@ -168,6 +168,8 @@ def test_written_with_their_sign() -> None:
     assert plus_minus(2.5799, 0.0883, 2) == "2.58 ± 0.09"
     assert plus_minus(2.5799, float("nan"), 2) == "2.58"
     assert plus_minus(100.0, 0.0, 2) == "100.00"
+    assert plus_minus(0.5925, 0.0026, 1) == "0.593 ± 0.003"
+    assert plus_minus(0.5925, 1e-9, 1) == "0.5925 ± 0.0001"
 
 
 def test_come_back_from_disk(tmp_path: Path) -> None:

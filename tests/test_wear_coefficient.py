@@ -92,6 +92,22 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "17.684 MPa 2.45 µm per km" in out
 
 
+def test_a_test_given_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same record again would make any interval as narrow as one likes: refused."""
+    s = np.linspace(0.0, 10.0, 21)
+    paths = [str(written(tmp_path / f"{i}.csv", s, 2.4 * s)) for i in range(2)]
+    assert main(["wear-coefficient", *paths, "--force-N", "500", "--pin-diameter-mm", "6"]) == Exit.BAD_INPUT
+    assert "1.csv: found the same lines as in 0.csv" in capsys.readouterr().err
+
+
+def test_interval_below_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two records, one wearing four times as fast: the interval of their mean reaches below 0, which is said."""
+    s = np.linspace(0.0, 10.0, 21)
+    paths = [str(written(tmp_path / f"{i}.csv", s, slope * s)) for i, slope in enumerate((1.0, 4.0))]
+    assert main(["wear-coefficient", *paths, "--force-N", "500", "--pin-diameter-mm", "6"]) == Exit.DONE
+    assert "give more records" in capsys.readouterr().err
+
+
 def test_no_file(tmp_path: Path) -> None:
     """A record that is not there is named."""
     with pytest.raises(TableError, match=r"none\.csv: found No such file or directory; allowed: a readable CSV file"):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -84,7 +85,11 @@ class Coefficient:
 
 
 def coefficient(records: Sequence[Record], test: PinOnDisc) -> Coefficient:
-    """Raises TableError where nothing wears, or faster than anything does."""
+    """Raises TableError where nothing wears, or faster than anything does, or a test is given twice."""
+    for one, other in combinations(records, 2):
+        if np.array_equal(one.distance, other.distance) and np.array_equal(one.depth, other.depth):
+            found, remedy = f"the same lines as in {one.name}", "give each test once: repeating it narrows no interval"
+            raise TableError(other.name, "the record of another test", found, remedy)
     with np.errstate(all="ignore"):  # distances too small to be squared give no slope, and that is refused
         fits = [stats.linregress(r.distance, r.depth) for r in records]
     each = np.array([fit.slope / test.pressure for fit in fits])

@@ -78,6 +78,11 @@ def test_the_root_logger_is_kept_through_failures() -> None:
     assert (root.level, root.handlers) == (level, handlers)
 
 
+def left_in(folder: Path) -> list[Path]:
+    """But for Open MPI's own, which version 5 does not remove."""
+    return [path for path in folder.iterdir() if not path.name.startswith("ompi.")]
+
+
 def test_home_that_cannot_be_written(tmp_path: Path) -> None:
     """A second run finds what the first one compiled, in one folder of this user's below the temporary one that nobody
     else may read or write; nothing else is left there."""
@@ -85,7 +90,7 @@ def test_home_that_cannot_be_written(tmp_path: Path) -> None:
         done = python(FORM, XDG_CACHE_HOME="", HOME=NOWHERE, TMPDIR=str(tmp_path))
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
         times = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.so")}
-    (folder,) = tmp_path.iterdir()
+    (folder,) = left_in(tmp_path)
     assert folder.name == f"evolvent-{os.geteuid()}" and stat.S_IMODE(folder.stat().st_mode) == 0o700
     assert times
     python(FORM, XDG_CACHE_HOME="", HOME=NOWHERE, TMPDIR=str(tmp_path))
@@ -113,7 +118,7 @@ def test_a_folder_of_others_is_not_used(how: str, tmp_path: Path) -> None:
     assert f"{folder}: wanted a folder that only this user may write to" in done.stderr
     assert len(done.stderr.splitlines()) == 1
     assert not list(folder.iterdir()) and not list(other.iterdir())
-    assert {path.name for path in tmp_path.iterdir()} == {folder.name, other.name}
+    assert set(left_in(tmp_path)) == {folder, other}
 
 
 def test_no_place_at_all() -> None:

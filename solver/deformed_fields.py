@@ -27,6 +27,7 @@ from solver.gear_position import PositionResult
 from solver.run_data import RunData
 from solver.run_folder import RunFolder
 from solver.stress import von_mises
+from solver.vtk_xml import xml_bytes
 
 VTK_CELLS = {"triangle": 5, "quadrilateral": 9, "tetrahedron": 10, "hexahedron": 12}
 """VTK's number of a cell with corners only, whose order is gmsh's."""
@@ -65,14 +66,7 @@ def vtu_bytes(teeth: Sequence[DeformedTooth], result: PositionResult) -> bytes:
     _add(grid.GetCellData(), "von_mises_MPa", von_mises(stress))
     for name in ("gear", "tooth"):
         _add(grid.GetCellData(), name, np.repeat([getattr(t, name) for t in teeth], [len(t.mesh.cells) for t in teeth]))
-    writer = vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(grid)
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOn()
-    if not writer.Write():
-        raise RuntimeError("fields: wanted VTK's XML of the deformed teeth, found that VTK could not make it")
-    return str(writer.GetOutputString()).encode()
+    return xml_bytes(vtkXMLUnstructuredGridWriter(), grid)
 
 
 def _placed(tooth: DeformedTooth, result: PositionResult) -> tuple[Floats, Ints, Floats, Floats]:

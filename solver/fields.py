@@ -38,6 +38,7 @@ from solver.gear_surfaces import (
 )
 from solver.run_data import RunData, SolvedPosition, flank_nodes
 from solver.run_folder import RunFolder
+from solver.vtk_xml import xml_bytes
 
 Arrays = dict[str, Floats]
 SAME = 1e-6  # [mm] of height
@@ -153,20 +154,13 @@ def surrounding(run: RunData, result: PositionResult) -> Polygons:
 
 
 def vtp_bytes(surface: Polygons, arrays: Arrays) -> bytes:
-    """The content of a .vtp in single precision. VTK makes it in memory: writing to a full disk, it crashes."""
+    """The content of a .vtp in single precision."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     mesh: Any = poly_data(Polygons(surface.points.astype(np.float32), surface.faces))
     for name, values in arrays.items():
         mesh.point_data[name] = np.ascontiguousarray(values, dtype=np.float32)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(mesh)
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOn()
-    if not writer.Write():
-        raise RuntimeError("fields: wanted VTK's XML of a surface, found that VTK could not make it")
-    return str(writer.GetOutputString()).encode()
+    return xml_bytes(vtkXMLPolyDataWriter(), mesh)
 
 
 def poly_data(surface: Polygons) -> Any:

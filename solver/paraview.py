@@ -33,6 +33,7 @@ from solver.lagrange import gmsh_permutation
 from solver.position import Solution
 from solver.statement import Placement
 from solver.stress import cell_stress, von_mises
+from solver.vtk_xml import xml_bytes
 
 VTK_CELLS = {
     ("interval", 1): 3, ("interval", 2): 21,
@@ -154,12 +155,7 @@ def vtu_bytes(points: Floats, cells: Ints, kind: tuple[str, int], at_nodes: Arra
         grid.point_data[name] = np.ascontiguousarray(values)
     for name, values in in_cells.items():
         grid.cell_data[name] = np.ascontiguousarray(values)
-    writer = vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(grid)
-    writer.SetWriteToOutputString(True)
-    writer.SetDataModeToBinary()
-    writer.Write()
-    return str(writer.GetOutputString()).encode()
+    return xml_bytes(vtkXMLUnstructuredGridWriter(), grid)
 
 
 @cache

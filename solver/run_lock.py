@@ -66,7 +66,7 @@ def _opened(path: Path) -> int:
 
 
 def _owner() -> str:
-    with contextlib.suppress(OSError, KeyError):
-        user = getpass.getuser()
-        return f"process {os.getpid()} of {user} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
-    return f"process {os.getpid()} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"
+    user = ""
+    with contextlib.suppress(OSError, KeyError):  # a number without a name, as in a container
+        user = f" of {getpass.getuser()}"
+    return f"process {os.getpid()}{user} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"

@@ -84,20 +84,22 @@ def write_output(
     data = with_errors(data, archive, companion)
     keep_scene(scene, archive.files)  # a resumed run may ask for other output
 
-    def write(seconds_since: float) -> None:
-        bars = 0.0 if companion is None else companion.seconds
-        now = time.perf_counter()
-        timings = replace(sweep.timings, error_bars=bars, output=now - seconds_since, total=now - begin)
-        write_tables(archive.files, data, facts_of(data, sweep.meshes, ranks, timings, memory))
+    timings = replace(sweep.timings, error_bars=0.0 if companion is None else companion.seconds)
+    facts = facts_of(data, sweep.meshes, ranks, timings, memory)
 
-    write(started)
+    def write() -> None:
+        now = time.perf_counter()
+        so_far = replace(timings, output=now - started, total=now - begin)
+        write_tables(archive.files, data, replace(facts, timings_s=so_far))
+
+    write()
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
     if more.deformation is not None:
         from solver.deformed_fields import write_deformed  # VTK takes a second
 
         log.info("fields: %s", write_deformed(data, more.deformation, archive.files))
-    write(started)  # with the time that pictures took
-    for sentence in warnings_of(data, mesh_facts(data, sweep.meshes)):
+    write()  # with the time that pictures took
+    for sentence in warnings_of(data, facts.mesh):
         log.warning(sentence)
     log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
 

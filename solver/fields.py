@@ -25,6 +25,7 @@ from scipy.spatial import cKDTree
 from meshes.data import Floats
 from solver.flank_field import flank_field, line_distance
 from solver.gear_position import PositionResult
+from solver.gear_results import on_tip_edge
 from solver.gear_surfaces import (
     Polygons,
     flank_surface,
@@ -41,7 +42,6 @@ from solver.run_folder import RunFolder
 from solver.vtk_xml import xml_bytes
 
 Arrays = dict[str, Floats]
-SAME = 1e-6  # [mm] of height
 
 
 def write_fields(run: RunData, folder: RunFolder) -> Path:
@@ -84,17 +84,9 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, t
     }
     for each in solved:
         values = _pinion_values(run, each.result, tooth) if gear == 0 else _wheel_values(run, each.result, tooth)
-        values = _without_edges(values, on_tip_edge(each, tooth, nodes.z))
+        values = _without_edges(values, on_tip_edge(each.cut, tooth, nodes.z))
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
-
-
-def on_tip_edge(solved: SolvedPosition, tooth: int, z: Floats) -> np.ndarray:
-    """(n,) bool: heights z (n,) [mm] of layers in which a tooth pair bears on a tip edge."""
-    cut = solved.cut
-    layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
-    away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
-    return np.asarray((away <= SAME).any(axis=1))
 
 
 def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:

@@ -12,6 +12,7 @@ from solver.gear_position import PositionResult
 from solver.material import Material, joint_modulus
 
 FEWEST = 5  # points under pressure that a fit of a half-ellipse needs
+SAME = 1e-6  # [mm] of height
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,13 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
     rows = [_slice(result, (c.tooth == t) & (layer == k), edges[k : k + 2], modulus) for t, k in keys]
     columns = list(zip(*rows)) if rows else [()] * 9
     return Slices(keys[:, 0], *(np.array(column) for column in columns))
+
+
+def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> np.ndarray:
+    """(n,) bool: heights z (n,) [mm] of layers in which a tooth pair bears on a tip edge, their rims included."""
+    layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
+    away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
+    return np.asarray((away <= SAME).any(axis=1))
 
 
 def layer_edges(heights: Floats) -> Floats:

@@ -13,6 +13,7 @@ from meshes.data import Floats
 from meshes.flank import contact_lines
 from solver.engagement import largest_peak, pooled_peaks
 from solver.flank_field import flank_field, flank_patch
+from solver.gear_results import on_tip_edge
 from solver.plain_text import signed
 from solver.plots_style import ABOVE, INK, PRESSURE_MAP, sheet
 from solver.run_data import RunData, SolvedPosition
@@ -44,14 +45,16 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
 
 def pressure_top(run: RunData, index: int) -> float:
     """Upper end of the colours [MPa]: of the fitted peaks and the nodes' pressures between the tip-edge zones the
-    largest, rounded up; what lies above it is at a tip edge."""
+    largest, rounded up. Layers that bear on a tip edge do not count: their pressure is singular, also beside it."""
     low, high = run.inner_path
-    roll = run.flank.roll_length - run.pair.pitch_point_roll_lengths[0]
     found = [0.0]
-    for solved in (each[index] for each in run.positions):
-        cut, ξ = solved.cut, roll[solved.result.node]
+    for cut, result in ((each[index].cut, each[index].result) for each in run.positions):
         found += cut.peak[(low <= cut.ξ) & (cut.ξ <= high) & np.isfinite(cut.peak)].tolist()
-        found += solved.result.pressure[(low <= ξ) & (ξ <= high)].tolist()
+        ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
+        for tooth in np.unique(result.tooth):
+            away = (result.tooth == tooth) & (low <= ξ) & (ξ <= high)
+            away &= ~on_tip_edge(cut, int(tooth), run.flank.z[result.node])
+            found.append(float(result.pressure[away].max(initial=0.0)))
     return float(100.0 * max(1.0, np.ceil(max(found) / 100.0)))
 
 

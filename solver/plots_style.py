@@ -25,7 +25,7 @@ TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b", "#2d6fb0")
 INK, FAINT = "#222222", "#8a8f98"
 OVER = "#1f6fd0"
 """Beyond the upper end of a colour scale."""
-ABOVE = "blue: above the scale"
+ABOVE = "blue: above the scale, at a tip edge"
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
 ).with_extremes(over=OVER)

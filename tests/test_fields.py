@@ -11,8 +11,9 @@ import pyvista
 from synthetic_run import synthetic_run
 
 from meshes.flank import contact_normal
-from solver.fields import flank_fields, on_tip_edge, write_fields
+from solver.fields import flank_fields, write_fields
 from solver.flank_field import flank_field, flank_patch, line_distance
+from solver.gear_results import on_tip_edge
 from solver.gear_surfaces import Polygons, joined, sector_surface, sliding, space_vectors
 from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
@@ -49,7 +50,7 @@ def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
         result, bears = solved.result, np.zeros(len(solved.result.node), dtype=bool)
         for tooth in np.unique(result.tooth):
             mine = result.tooth == tooth
-            bears[mine] = on_tip_edge(solved, int(tooth), run.flank.z[result.node[mine]])
+            bears[mine] = on_tip_edge(solved.cut, int(tooth), run.flank.z[result.node[mine]])
         traction = result.traction.copy()
         traction[bears & (result.pressure > 0.0), 0] = 2e4
         return replace(solved, result=replace(result, traction=traction))

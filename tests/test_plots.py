@@ -20,6 +20,7 @@ from evidence.tutorial import small
 from solver.cli import Exit, main
 from solver.display import off_screen
 from solver.engagement import engagement, engagements
+from solver.gear_results import on_tip_edge
 from solver.plain_text import signed
 from solver.plots import figures, pictures
 from solver.plots_drive import even_share, line_load, load_sharing, missed_peaks
@@ -183,6 +184,21 @@ def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
         colours = np.asarray(small(picture).convert("RGB")).reshape(-1, 3).astype(float)
     assert np.abs(colours - 255.0 * np.array(to_rgb(OVER))).max(axis=1).min() < 4.0
     assert (colours[0] == 255.0).all()
+
+
+def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
+    """Problem: in layers that bear on a tip edge the singular pressure, ten times the rest, reaches past the end of the
+    edge's zone. Exact: the scale ends where it ends without."""
+    solved = run.positions[0][0]
+    result, low = solved.result, run.inner_path[0]
+    bears = np.zeros(len(result.node), dtype=bool)
+    for tooth in np.unique(result.tooth):
+        bears |= (result.tooth == tooth) & on_tip_edge(solved.cut, int(tooth), run.flank.z[result.node])
+    singular = replace(result, traction=np.where(bears[:, None], 10.0, 1.0) * result.traction)
+    ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
+    assert singular.pressure[bears & (ξ > low)].max() > 2.0 * pressure_top(run, 0)
+    first = (replace(solved, result=singular), *run.positions[0][1:])
+    assert pressure_top(replace(run, positions=(first, *run.positions[1:])), 0) == pressure_top(run, 0)
 
 
 def test_envelope_has_straight_rims(run: RunData) -> None:

@@ -43,11 +43,15 @@ def _environment(name: str, value: str) -> Iterator[None]:
 
 @contextmanager
 def _virtual_server() -> Iterator[str]:
-    """An X server without a screen; gives its display, for instance ":1"."""
+    """An X server without a screen; gives its display, for instance ":1".
+
+    It must not start anew when a picture is done and no window is left (`-noreset`): VTK, asking for the next window
+    meanwhile, would abort the process.
+    """
     if shutil.which("Xvfb") is None:
         raise RuntimeError("pictures: wanted the virtual X server Xvfb, found none; install it: apt-get install xvfb")
     read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", SCREEN, "-nolisten", "tcp"]
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", SCREEN, "-nolisten", "tcp", "-noreset"]
     try:
         server = subprocess.Popen(command, pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     finally:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from evidence import outputs, promises, readme, tutorial
+from evidence import outputs, promises, readme, tutorial, yang_page
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -20,7 +20,12 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
     bars = promises.said(docs)
     first = root / "demos" / "first_pair.toml"
     parts = {
-        root / "README.md": {"speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs)},
+        root / "README.md": {
+            "speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs),
+            "accuracy": yang_page.accuracy(docs),
+        },
+        docs / "scene.md": {"levels": yang_page.levels(docs)},
+        docs / "yang2022.md": {"accuracy": yang_page.accuracy(docs), "points": yang_page.points(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),

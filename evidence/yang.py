@@ -1,18 +1,20 @@
-"""`python -m evidence.yang OUT`: the figures of docs/yang2022.md, from a run of demos/yang2022.toml.
+"""`python -m evidence.yang OUT`: keeps the figures of docs/yang2022.md, from a run of demos/yang2022.toml.
 
 Of the smallest and of the largest friction coefficient of the run; angles are a tooth's own, 0 at the pitch point.
+`python -m evidence.pages` then writes them into the pages, see evidence/yang_page.py.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from meshes.data import Floats
-from solver.engagement import Engagement, between, crossing, engagement, largest_peak
+from evidence.benchmark.tables import read_rows, write_rows
+from solver.engagement import Engagement, between, crossing, engagement, largest_peak, pooled_peaks
 from solver.plots_lines import at_point
 from solver.plots_stress import relative_change, trends
 from solver.plots_teeth import YANG
@@ -20,83 +22,111 @@ from solver.plots_yang import paper_points, paper_position
 from solver.results import friction_rows
 from solver.run_data import RunData, read_run
 
-Line = tuple[str, str]
+ROOT = Path(__file__).resolve().parents[1]
+KEPT = "yang2022"
 NEAR_PITCH_LINE = 0.25  # modules of roll distance
+NEAR_TIP_deg = 22.0  # a tooth's own rotation from which its contact is near the pinion's tip
 
 
-def lines(run: RunData) -> Iterator[Line]:
-    """(what, found) in the order of the page."""
+@dataclass(frozen=True)
+class YangFigure:
+    """A figure of a run; its name ends in its unit."""
+
+    name: str
+    value: float
+
+
+Named = Iterator[tuple[str, float]]
+
+
+def figures(run: RunData) -> Named:
+    """(name, value) of each figure."""
     order = np.argsort(run.frictions)
     low, high = int(order[0]), int(order[-1])
-    yield "friction coefficients", f"{run.frictions[low]:g} and {run.frictions[high]:g}"
     yield from _beside_hertz(run, low)
     yield from _over_the_engagement(engagement(run, low), engagement(run, high))
-    yield from _teeth([engagement(run, low), engagement(run, high)])
+    for trend in trends([engagement(run, low), engagement(run, high)], list(YANG)):
+        for name, values in (("largest", trend.largest), ("average", trend.average)):
+            yield f"tooth_{2 - trend.tooth}_{name}_change_percent", 100.0 * float(values[-1] / values[0] - 1.0)
     yield from _points(run, low, high)
-    yield from _whole_pair(run, low, high)
+    yield from _whole_pair(run, "low", low)
+    yield from _whole_pair(run, "high", high)
 
 
-def _beside_hertz(run: RunData, index: int) -> Iterator[Line]:
-    """Fitted peaks over Hertz for the slice's own line load, in the layer at mid-face."""
+def _beside_hertz(run: RunData, index: int) -> Named:
+    """Peaks as a run reports them over Hertz for the slice's own line load, in the layer at mid-face."""
     cuts = [each[index].cut for each in run.positions]
-    z, ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ", "peak", "hertz"))
+    z, ξ, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ", "hertz"))
+    peak = np.concatenate([pooled_peaks(cut) for cut in cuts])
     inside = np.isfinite(peak) & between(ξ, run.inner_path)
     middle = inside & (np.abs(z) <= np.abs(z).min() + 1e-9)
     off = 100.0 * (peak[middle] / hertz[middle] - 1.0)
-    yield "mid-face, over Hertz: median, nine in ten within, largest", (
-        f"{np.median(off):+.2f} %, {np.quantile(np.abs(off), 0.9):.1f} %, {np.abs(off).max():.1f} %"
-    )
+    worst = int(np.argmax(np.abs(off)))
+    yield "over_hertz_median_percent", float(np.median(off))
+    yield "off_hertz_nine_in_ten_percent", float(np.quantile(np.abs(off), 0.9))
+    yield "off_hertz_largest_percent", float(np.abs(off[worst]))
+    yield "off_hertz_largest_xi_mm", float(ξ[middle][worst])
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
-    yield "near the pitch line, median", f"{np.median(peak[near]):.0f} MPa"
-    top = largest_peak(run, index)
-    yield "largest pressure between the tip-edge zones", f"{top.pressure:.0f} MPa at ξ = {top.ξ:.2f} mm"
+    yield "near_pitch_line_median_MPa", float(np.median(peak[near]))
+    yield "largest_xi_mm", largest_peak(run, index).ξ
 
 
-def _over_the_engagement(low: Engagement, high: Engagement) -> Iterator[Line]:
+def _over_the_engagement(low: Engagement, high: Engagement) -> Named:
     top = int(np.nanargmax(low.max_pressure))
-    yield "largest over the engagement", f"{low.max_pressure[top]:.0f} MPa at {np.degrees(low.angle[top]):+.1f}°"
+    yield "largest_MPa", float(low.max_pressure[top])
+    yield "largest_deg", float(np.degrees(low.angle[top]))
     known = np.isfinite(low.max_pressure)
-    angles, stress = low.angle[known], low.max_pressure[known]
-    yield "where the tooth passes the pitch point", f"{np.interp(0.0, angles, stress):.0f} MPa"
-    yield "near the tip, last of the curve", f"{stress[-1]:.0f} MPa at {np.degrees(angles[-1]):+.1f}°"
-    angle, change = relative_change(high, low, np.ones(len(high.angle), dtype=bool))
-    for name, side in (("before", angle < 0.0), ("after", angle > 0.0)):
-        yield f"change with friction {name} the pitch point, 10 to 90 % of positions", _range(change[side])
-    yield "the curves cross at", f"{np.degrees(crossing(low, high)):+.1f}°"
+    angle, stress = np.degrees(low.angle[known]), low.max_pressure[known]
+    yield "at_pitch_point_MPa", float(np.interp(0.0, angle, stress))
+    tip = stress[angle >= NEAR_TIP_deg]
+    yield "near_tip_least_MPa", float(tip.min())
+    yield "near_tip_largest_MPa", float(tip.max())
+    yield "last_deg", float(angle[-1])
+    at, change = relative_change(high, low, np.ones(len(high.angle), dtype=bool))
+    for name, side in (("before", at < 0.0), ("after", at > 0.0)):
+        for share, end in ((0.1, "low"), (0.9, "high")):
+            yield f"change_{name}_{end}_percent", 100.0 * float(np.nanquantile(change[side], share))
+    yield "crossing_deg", float(np.degrees(crossing(low, high)))
 
 
-def _range(change: Floats) -> str:
-    few, most = (100.0 * float(np.nanquantile(change, share)) for share in (0.1, 0.9))
-    return f"{few:+.1f} to {most:+.1f} %"
-
-
-def _teeth(curves: list[Engagement]) -> Iterator[Line]:
-    for trend in trends(curves, list(YANG)):
-        largest, average = (100.0 * (v[-1] / v[0] - 1.0) for v in (trend.largest, trend.average))
-        yield f"tooth {2 - trend.tooth}: maximum, average", f"{largest:+.1f} %, {average:+.1f} %"
-
-
-def _points(run: RunData, low: int, high: int) -> Iterator[Line]:
+def _points(run: RunData, low: int, high: int) -> Named:
     k = paper_position(run)
     for point in paper_points(run, k):
         one, other = (at_point(run.positions[k][index].cut, point) for index in (low, high))
-        yield f"point {point.name}", f"{one:.0f} MPa, {other - one:+.1f} MPa, {100 * (other / one - 1):+.1f} %"
+        yield f"point_{point.name}_MPa", one
+        yield f"point_{point.name}_change_MPa", other - one
+        yield f"point_{point.name}_change_percent", 100.0 * (other / one - 1.0)
 
 
-def _whole_pair(run: RunData, low: int, high: int) -> Iterator[Line]:
-    rows = friction_rows(run)
-    for index in (low, high):
-        row, share = rows[index], engagement(run, index).share.max()
-        error = row.estimated_error
-        yield f"μ = {row.friction:g}: largest share of a tooth", f"{100 * share:.0f} %"
-        yield f"μ = {row.friction:g}: transmission error, peak to peak", (
-            f"{row.transmission_error_peak_to_peak_um:.3f} µm"
-        )
-        yield f"μ = {row.friction:g}: efficiency", f"{100 - row.loss_percent:.2f} %"
-        yield f"μ = {row.friction:g}: energy balance of the pitch", f"{row.balance_error:.1e}"
-        yield f"μ = {row.friction:g}: estimated errors", str(error)
+def _whole_pair(run: RunData, name: str, index: int) -> Named:
+    row, curve, errors = friction_rows(run)[index], engagement(run, index), run.errors.figures[index]
+    teeth = np.bincount(curve.position[curve.force > 0.0])
+    yield f"{name}_friction", row.friction
+    yield f"{name}_largest_bar_MPa", errors.max_pressure_MPa
+    yield f"{name}_fewest_teeth", float(teeth.min())
+    yield f"{name}_most_teeth", float(teeth.max())
+    yield f"{name}_largest_share_percent", 100.0 * float(curve.share.max())
+    yield f"{name}_transmission_error_um", row.transmission_error_peak_to_peak_um
+    yield f"{name}_transmission_error_bar_um", errors.transmission_error_peak_to_peak_um
+    yield f"{name}_efficiency_percent", 100.0 - row.loss_percent
+    yield f"{name}_efficiency_bar_percent", errors.loss_percent
+    yield f"{name}_energy_balance", row.balance_error
+
+
+def keep(run: RunData, docs: Path) -> Path:
+    """The figures of a run, in place of those at the same mesh level. Raises OSError."""
+    path = docs / KEPT / f"{run.scene.mesh.level}.csv"
+    write_rows(path, [YangFigure(name, value) for name, value in figures(run)])
+    return path
+
+
+def kept(docs: Path, level: str) -> dict[str, float]:
+    """What was kept. Raises ValueError where nothing was."""
+    found = {row.name: row.value for row in read_rows(docs / KEPT / f"{level}.csv", YangFigure)}
+    if not found:
+        raise ValueError(f"{docs / KEPT}: wanted {level}.csv, found none; `python -m evidence.yang OUT` writes it")
+    return found
 
 
 if __name__ == "__main__":
-    for what, found in lines(read_run(Path(sys.argv[1]))):
-        print(f"{what}: {found}")
+    print(keep(read_run(Path(sys.argv[1])), ROOT / "docs"))

@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.report import table
+from solver.cost import Timings
 from solver.estimated_errors import FigureErrors
 from solver.mesh_facts import MeshFacts
 from solver.results import (
@@ -22,7 +23,6 @@ from solver.results import (
     FrictionRow,
     PositionRow,
     Summary,
-    Timings,
     ToothRow,
 )
 from solver.skips import Skipped
@@ -52,6 +52,7 @@ FILES = (
     ("fields/deformed.pvd", "with `output.deformation`: open this one in ParaView for what is inside the teeth"),
     ("fields/deformed_*.vtu", "the sectors that carry load, undeformed where they stand, with the arrays below"),
     ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
+    ("results/cost.json", "wall time and memory of the run so far, to which a resumed one adds its own"),
     ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
     (".evolvent.lock", "there while a run goes on: one run a folder"),
     ("wear.csv", "a wear study: a line a block of cycles"),

@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 
+from meshes.files import open_file
 from solver.archive import ArchiveError
 from solver.run_folder import RunFolder
 
@@ -59,7 +60,8 @@ def kept_cost(folder: RunFolder) -> Cost:
     if not path.exists():
         return Cost()
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        with open_file(path) as file:
+            found = json.load(file)
         seconds = [float(found["timings"][field.name]) for field in fields(Timings)]
         return Cost(Timings(*seconds), float(found["memory_MB"]))
     except (OSError, ValueError, KeyError, TypeError) as error:

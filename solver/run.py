@@ -13,6 +13,7 @@ from solver.archive import Archive
 from solver.companion import companion_of
 from solver.cost import Cost, kept_cost
 from solver.deformation import deformation_of
+from solver.modifications import modification_warnings
 from solver.parallel import on_first
 from solver.progress import DEFORMATION, ERROR_BARS, OUTPUT, Progress
 from solver.run_checks import check_folder, others
@@ -64,6 +65,8 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
             log.info("skipped, %s: %s", skip.name, skip.sentence)
         for name in switched_off(scene):
             log.info("not skipped: %s", name)
+        for sentence in modification_warnings(scene):
+            log.warning(sentence)
         if scene.wear is None:
             scene, sweep = sweep_scene(scene, out, start, earlier, comm, progress, log)
         else:

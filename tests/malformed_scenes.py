@@ -173,6 +173,9 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
         "130",
         "where on the involute",
     ),
+    "relief of the whole tip": (
+        YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so", "lower them",
+    ),
     "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (Hertz", "lower the torque"),
     # no TOML, no override
     "no TOML": (YANG + "\n= 3\n", [], "scene file", "no TOML", "mend that line"),

@@ -174,7 +174,8 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
         "where on the involute",
     ),
     "relief of the whole tip": (
-        YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so", "lower them",
+        YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so",
+        "lower them",
     ),
     "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (Hertz", "lower the torque"),
     # no TOML, no override

@@ -25,6 +25,7 @@ from solver.results import (
     Summary,
     ToothRow,
 )
+from solver.shaft_forces import ShaftForces
 from solver.skips import Skipped
 from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
@@ -76,6 +77,12 @@ DEFORMED = (
     ("gear", "of a cell: 0 the pinion's, 1 the wheel's"),
     ("tooth", "of a cell: the tooth pair, as in teeth.csv"),
 )
+FORCES = (
+    "Mean over the pitch, and largest less smallest value; friction included. The forces act on the gear, bearings "
+    "react with the opposite. x is the line of centres, from pinion to wheel, z the axis; seen from +z the pinion "
+    "turns counter-clockwise; y = z × x. Without friction they are those of the textbooks: tangential T/r_w, radial "
+    "that times tan α_wt, axial that times tan β_w."
+)
 SECTIONS = (
     ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),
     ("`mesh`", MeshFacts, ""),
@@ -83,6 +90,7 @@ SECTIONS = (
     ("`timings_s`", Timings, ""),
     ("`estimated_error`", ErrorBars, ""),
     ("`frictions`, each entry", FrictionRow, ""),
+    ("`frictions`, `forces_on_pinion` and `forces_on_wheel` of an entry", ShaftForces, FORCES),
     ("`frictions`, `estimated_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),

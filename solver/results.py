@@ -24,6 +24,7 @@ from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
 from solver.run_warnings import warnings_of
 from solver.scene import GEARS
+from solver.shaft_forces import ShaftForces, shaft_forces
 from solver.skips import Skipped
 
 SCHEMA_VERSION = 1
@@ -132,6 +133,10 @@ class FrictionRow:
     it does not."""
     balance_error: float
     """Input less output less friction work, over the input, of the pitch. A run ends with status 3 above 0.01."""
+    forces_on_pinion: ShaftForces
+    """What the mesh does to the pinion and its shaft."""
+    forces_on_wheel: ShaftForces
+    """The same of the wheel."""
     estimated_error: FigureErrors | None
     """Error bars of the figures of the same names; null where there are none."""
 
@@ -225,6 +230,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
         balance_error=pitch_imbalance(results),
+        forces_on_pinion=shaft_forces(run, 0, index),
+        forces_on_wheel=shaft_forces(run, 1, index),
         estimated_error=run.errors.figures[index] if run.errors.figures else None,
     )
 

@@ -1,25 +1,37 @@
 """Poisson's ratios up to 0.45 for all cells, and up to 0.49 for quadrilaterals of order 2 with a small γ: the peak of a
-contact against that of converged meshes (quadrilaterals of order 2, 0.2 and 0.1 mm, agree within 0.1 %)."""
+contact against that of a converged mesh (quadrilaterals of order 2, 0.2 and 0.1 mm, agree within 0.1 %)."""
 
 from __future__ import annotations
 
+import re
 import warnings
+from pathlib import Path
 
 import pytest
 
 from solver.incompressible import SMALL, NearlyIncompressibleWarning
+from solver.peak_scatter import LARGE
 from solver.problem import Nitsche, Sweep, solve
 from tests.contact_cases import rubber
 
+ROOT = Path(__file__).resolve().parents[1]
 
-@pytest.mark.parametrize(
-    ("order", "shape", "allowed"),
-    [(2, "quadrilateral", 2e-3), (2, "triangle", 0.012), (1, "quadrilateral", 0.012), (1, "triangle", 0.03)],
-)
-def test_verified(order, shape, allowed):
-    """ν = 0.45, ten cells across: 1.426 MPa."""
-    contact = solve(rubber(0.4, 4.0, 0.45, order, shape)).contacts[0]
-    assert contact.pressure.max() == pytest.approx(1.426, rel=allowed)
+
+SHAPES = ((2, "quadrilateral"), (2, "triangle"), (1, "quadrilateral"), (1, "triangle"))
+
+
+@pytest.mark.parametrize("ratio", [0.3, 0.45, 0.49])
+def test_table_of_the_page(ratio):
+    """docs/own_problem.md says by how much peaks on ten cells are too high, against cells of half the size and order 2:
+    within a tenth of a per cent, or of the figure. What is further off than 3 % has a peak that scatters."""
+    page = (ROOT / "docs/own_problem.md").read_text(encoding="utf-8")
+    (row,) = re.findall(rf"^\| {ratio} \| (.*) \|$", page, re.MULTILINE)
+    fine = solve(rubber(0.2, 4.0, ratio)).contacts[0].pressure.max()
+    for said, (order, shape) in zip(row.split(" | "), SHAPES, strict=True):
+        contact = solve(rubber(0.4, 4.0, ratio, order, shape)).contacts[0]
+        off, named = contact.pressure.max() / fine - 1.0, 0.01 * float(said.removesuffix(" %"))
+        assert off == pytest.approx(named, abs=1e-3 + 0.1 * named), (order, shape)
+        assert (contact.peak_scatter > LARGE) == (off > 0.03), (order, shape)
 
 
 @pytest.mark.parametrize("fine", [1.5, 4.0])

@@ -154,9 +154,9 @@ def _claims(share: float, moved: Found, placed: Found, exact: Found) -> list[Cla
             Claim.relative(f"{name}, a/R = {share:g}", value, wanted, 0.01, Reference.OVERKILL, SOURCE, missed)
         )
     if share == SHARES[0]:
-        for name, value, exact in zip(("p0 [MPa]", "a [mm]"), (moved.peak, moved.radius), moved.hertz):
+        for name, value, wanted in zip(("p0 [MPa]", "a [mm]"), (moved.peak, moved.radius), moved.hertz):
             quantity, source = f"{name}, a/R = {share:g}", "Hertz of the force found"
-            result.append(Claim.relative(quantity, value, exact, 0.01, Reference.ANALYTICAL, source))
+            result.append(Claim.relative(quantity, value, wanted, 0.01, Reference.ANALYTICAL, source))
     return result
 
 
@@ -166,8 +166,8 @@ def draw(figure: Figure, found: dict[float, tuple[Found, ...]], along: Found) ->
         axes.axhline(1.0, color=FAINT, lw=1.0)
         over = [(f[-1].peak, f[-1].radius)[index] / f[-1].hertz[index] for f in found.values()]
         axes.plot(list(found), over, color=INK, lw=1.5, label="Signorini's problem in the section")
-        over = (along.peak, along.radius)[index] / along.hertz[index]
-        axes.plot(SHARES[-1], over, "x", color=INK, ms=8, mew=1.5, label=ALONG)
+        turned = (along.peak, along.radius)[index] / along.hertz[index]
+        axes.plot(SHARES[-1], turned, "x", color=INK, ms=8, mew=1.5, label=ALONG)
         for way, marker, colour, number in zip(WAYS, ("s", "o"), (WHEEL, PINION), (0, 1)):
             values = [(f[number].peak, f[number].radius)[index] / f[number].hertz[index] for f in found.values()]
             axes.plot(list(found), values, marker, color=colour, ms=9 - 3 * number, mfc="none", mew=1.5, label=way)

@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.report import table
+from solver.cost import Timings
 from solver.estimated_errors import FigureErrors
 from solver.mesh_facts import MeshFacts
 from solver.results import (
@@ -22,9 +23,9 @@ from solver.results import (
     FrictionRow,
     PositionRow,
     Summary,
-    Timings,
     ToothRow,
 )
+from solver.shaft_forces import ShaftForces
 from solver.skips import Skipped
 from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
@@ -52,6 +53,7 @@ FILES = (
     ("fields/deformed.pvd", "with `output.deformation`: open this one in ParaView for what is inside the teeth"),
     ("fields/deformed_*.vtu", "the sectors that carry load, undeformed where they stand, with the arrays below"),
     ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
+    ("results/cost.json", "wall time and memory of the run so far, to which a resumed one adds its own"),
     ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
     (".evolvent.lock", "there while a run goes on: one run a folder"),
     ("wear.csv", "a wear study: a line a block of cycles"),
@@ -75,6 +77,12 @@ DEFORMED = (
     ("gear", "of a cell: 0 the pinion's, 1 the wheel's"),
     ("tooth", "of a cell: the tooth pair, as in teeth.csv"),
 )
+FORCES = (
+    "Mean over the pitch, and largest less smallest value; friction included. The forces act on the gear, bearings "
+    "react with the opposite. x is the line of centres, from pinion to wheel, z the axis; seen from +z the pinion "
+    "turns counter-clockwise; y = z × x. Without friction they are those of the textbooks: tangential T/r_w, radial "
+    "that times tan α_wt, axial that times tan β_w."
+)
 SECTIONS = (
     ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),
     ("`mesh`", MeshFacts, ""),
@@ -82,6 +90,7 @@ SECTIONS = (
     ("`timings_s`", Timings, ""),
     ("`estimated_error`", ErrorBars, ""),
     ("`frictions`, each entry", FrictionRow, ""),
+    ("`frictions`, `forces_on_pinion` and `forces_on_wheel` of an entry", ShaftForces, FORCES),
     ("`frictions`, `estimated_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),

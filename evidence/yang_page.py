@@ -33,7 +33,7 @@ def accuracy(docs: Path) -> str:
 def levels(docs: Path) -> str:
     """What to expect of each level."""
     return table(
-        ("level", "elements across 2b", "peak pressure beside Hertz for its own line load"),
+        ("level", "elements across 2b_H", "peak pressure beside Hertz for its own line load"),
         [
             ("quick", "1.7", f"{beside_hertz(docs, 'quick')} ([Yang's pair](yang2022.md), mid-face)"),
             ("standard", "3", f"{beside_hertz(docs, 'standard')} (the same)"),

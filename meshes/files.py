@@ -1,21 +1,41 @@
-"""Files are written whole or not at all: under another name, flushed to the disk, then renamed."""
+"""Files are written whole or not at all: under another name, flushed to the disk, then renamed. Only files are read."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from meshes.errors import EvolventError, InputError
 
 PART = ".evolvent-part"
 """In the name of a file that is being written; one that a killed run has left may be removed."""
 
+NO_FILES = {stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
+
 
 class WriteError(EvolventError, OSError):
     """A file that could not be written; nothing of it is left. The message names file, size and remedy."""
+
+
+class NoFile(OSError):
+    """Something of this name that is not a file."""
+
+
+@contextmanager
+def open_file(path: Path | str) -> Iterator[BinaryIO]:
+    """A file to be read. Raises OSError; NoFile for a named pipe, which may wait for its writer for ever, or a device.
+    """
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
+        kind = NO_FILES.get(stat.S_IFMT(os.fstat(file.fileno()).st_mode))
+        if kind is not None:
+            raise NoFile(errno.EINVAL, f"{kind}, which is no file", str(path))
+        yield file
 
 
 def write_bytes(path: Path, content: bytes | memoryview) -> Path:

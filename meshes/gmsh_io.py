@@ -87,7 +87,7 @@ def _refuse_scripts(path: Path) -> None:
     """Whatever is no mesh gmsh takes for a .geo script and runs, shell commands in it too. Raises MeshError."""
     try:
         if not path.is_file():
-            found = "a folder" if path.is_dir() else "nothing"
+            found = "a folder" if path.is_dir() else "what is no file" if path.exists() else "nothing"
             raise NoMeshFile(f"mesh file: wanted a gmsh file, found {found} at {path}; check the path")
         with open(path, "rb") as file:
             head = file.read(64).lstrip()

@@ -151,6 +151,14 @@ def check_modifications(gear: GearParameters) -> None:
     for key in ("tip_relief_um", "lead_crowning_um"):
         value = getattr(given, key)
         require(0.0 <= value <= 1000.0, key, value, "0 to 1000 µm", "It is the material taken off, in µm.")
+    taken, thickness = given.tip_relief_um + given.lead_crowning_um, 1e3 * gear.normal_thickness(gear.tip_diameter)
+    require(
+        taken < thickness,
+        "tip_relief_um" if given.tip_relief_um >= given.lead_crowning_um else "lead_crowning_um",
+        taken,
+        f"relief and crowning below the tooth's thickness at its tip, {thickness:.4g} µm, together",
+        "Lower them: at the ends of its tip nothing is left of the tooth.",
+    )
     start = given.tip_relief_start_diameter
     if given.tip_relief_um > 0.0:
         low, high = gear.root_form_diameter, gear.tip_diameter

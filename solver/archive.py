@@ -22,6 +22,7 @@ import numpy as np
 
 from meshes.data import Floats, Ints, MeshData
 from meshes.errors import InputError
+from meshes.files import open_file
 from meshes.parameters import GearPair
 from solver.closed_pitch import one_pitch
 from solver.gear_memory import Memory
@@ -192,7 +193,7 @@ def arrays_bytes(arrays: dict[str, Any]) -> memoryview:
 def read_arrays(path: Path) -> dict[str, Any]:
     """Reads what `arrays_bytes` makes. Raises ArchiveError."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with open_file(path) as file, np.load(file, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise ArchiveError(

@@ -10,6 +10,7 @@ import numpy as np
 from meshes.data import Floats, Ints
 from solver.contact_width import Width, width_of
 from solver.meeting import Meeting
+from solver.peak_scatter import peak_scatter
 from solver.statement import Contact, Side
 
 
@@ -60,9 +61,15 @@ class ContactResult:
 
     @property
     def cells_across(self) -> float:
-        """How many cells the contact is wide, at its least resolved patch; infinite where nothing presses. Below two
-        its pressure may be off by half."""
+        """How many of its longest cells the contact is wide, at its least resolved patch; infinite where nothing
+        presses. Below two its pressure may be off by half."""
         return self.width.cells
+
+    @cached_property
+    def peak_scatter(self) -> float:
+        """How far the largest pressure lies from a smooth course of the pressures around it, over itself; see
+        solver/peak_scatter.py. Above 0.05 it is not to be trusted."""
+        return peak_scatter(self.meeting, self.pressure)
 
     @staticmethod
     def of(

@@ -2,13 +2,13 @@
 
 A separate patch of contact is as wide as twice the largest distance from a place that presses to the nearest place of
 the surface that does not, or to its rim. So a strip counts across, a ring across its band; and half a contact at a
-plane of symmetry, whose nodes a support holds, counts as the whole. A cell is measured in that direction, on both
-surfaces; the longer one counts.
+plane of symmetry, whose nodes a support holds, counts as the whole. Each cell that presses is measured in the direction
+of the edge next to it, on both surfaces; the longest one counts, because pressure is steepest at the edge, where a mesh
+that is fine in the middle may be coarse. The ends of a long patch are left out: along it cells may be long.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,11 +17,14 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from meshes.data import Floats, Ints
+from solver.facet import reference_cell
 from solver.meeting import Meeting
+from solver.said import warn_user
 from solver.surface import Surface
 
 ENOUGH = 2.0  # cells across; at one a Hertz contact's peak was found off by up to 120 %, at two by 20, in order 1 by 50
 NOTICEABLE = 0.05  # share of a contact's force below which a patch is not counted
+ENDS = 2.0  # times the least mean square extent of a patch: in directions in which it is longer its ends lie
 
 
 class CoarseContactWarning(UserWarning):
@@ -33,7 +36,7 @@ class Width:
     """Of the patch of a contact that has the fewest cells across.
 
     width: of the patch [mm].
-    cell: the size [mm] of the cells there, across the patch.
+    cell: the size [mm] of the longest cell that presses there, across the patch.
     """
 
     width: float
@@ -50,22 +53,27 @@ def width_of(meeting: Meeting, pressure: Floats) -> Width:
     pressed = np.flatnonzero(pressure > 0.0)
     if not len(pressed):
         return Width(np.inf, 0.0)
-    surface, found, points = meeting.placed[0], meeting.pairing, meeting.operator.points
+    found, points = meeting.pairing, meeting.operator.points
     bounds = np.concatenate([points[pressure <= 0.0], _ends(meeting, np.unique(found.facet1[pressed]))])
     distance, nearest = cKDTree(bounds).query(points[pressed])
+    towards = (bounds[nearest] - points[pressed]) / np.maximum(distance, 1e-300)[:, None]
     force = (meeting.operator.weights * pressure)[pressed]
     widths = []
-    for own in _patches(surface, found.facet1[pressed]):
+    for own in _patches(meeting.placed[0], found.facet1[pressed]):
         if force[own].sum() >= NOTICEABLE * force.sum():
-            deepest = own[np.argmax(distance[own])]
-            place = pressed[deepest]
-            direction = (bounds[nearest[deepest]] - points[place]) / max(distance[deepest], 1e-300)
+            across = own[_across(points[pressed[own]], towards[own])]
             cell = max(
-                _size(side, facets[place], direction)
+                _largest(side, facets[pressed[across]], towards[across])
                 for side, facets in zip(meeting.placed, (found.facet1, found.facet2))
             )
-            widths.append(Width(2.0 * float(distance[deepest]), cell))
+            widths.append(Width(2.0 * float(distance[own].max()), cell))
     return min(widths, key=lambda width: width.cells)
+
+
+def _across(points: Floats, towards: Floats) -> Ints:
+    """Of a patch's points (p, d) those at which the direction (p, d) of the nearest edge is across the patch."""
+    extent = np.einsum("pi,ij,pj->p", towards, np.cov(points.T, bias=True), towards)
+    return np.flatnonzero(extent <= ENDS * extent.min())
 
 
 def _ends(meeting: Meeting, facets: Ints) -> Floats:
@@ -102,18 +110,23 @@ def _patches(surface: Surface, facets: Ints) -> list[Ints]:
     return [np.flatnonzero(label[place] == k) for k in range(count)]
 
 
-def _size(surface: Surface, facet: int, direction: Floats) -> float:
-    """Extent [mm] of a facet in a direction (d,)."""
-    return float(np.ptp(surface.points[surface.facets[facet]] @ direction))
+def _largest(surface: Surface, facets: Ints, directions: Floats) -> float:
+    """Largest size [mm] of the facets (p,), each in its direction (p, d) along it: 1/|∇ξ| of the reference ones."""
+    own, place = np.unique(facets, return_inverse=True)
+    centre = reference_cell(surface.shape, surface.order).centre
+    middle = np.broadcast_to(centre, (len(own), 1, len(centre)))
+    jacobian = np.stack([slope[:, 0] for slope in surface.evaluate(surface.points, own, middle)[1]], axis=2)
+    passed = np.einsum("pid,pd->pi", np.linalg.pinv(jacobian)[place], directions)
+    along = np.einsum("pdi,pi->pd", jacobian[place], passed)
+    return float((np.linalg.norm(along, axis=1) / np.linalg.norm(passed, axis=1)).max())
 
 
 def warn_if_coarse(name: str, width: Width) -> None:
     """CoarseContactWarning for a contact of less than two cells; name: which."""
     if width.cells < ENOUGH:
-        warnings.warn(
+        warn_user(
             f"{name}: wanted a contact at least {ENOUGH:g} cells wide, found {width.cells:.1f}, {width.width:.3g} mm "
             f"with cells of {width.cell:.3g} mm; its pressure may be off by half. Mesh it with cells of at most "
             f"{width.width / ENOUGH:.2g} mm on both surfaces, better {width.width / 8:.2g} mm",
             CoarseContactWarning,
-            stacklevel=3,
         )

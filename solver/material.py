@@ -14,8 +14,10 @@ from meshes.inputs import number
 class Material:
     """Isotropic elastic material; 2D bodies are in plane strain.
 
-    youngs_modulus [MPa]: from 1e-12 to 1e20. poissons_ratio [-]: from −0.9999 to 0.49999, beyond which rounding makes
-    the stiffness useless. Raises InputError.
+    youngs_modulus: [MPa] from 1e-12 to 1e20.
+    poissons_ratio: from −0.9999 to 0.49999, beyond which rounding makes the stiffness useless. Contact pressures are
+        verified up to 0.45 (solver/incompressible.py).
+    Raises InputError.
     """
 
     youngs_modulus: float = 210e3

@@ -17,7 +17,7 @@ class MeshFacts:
     min_scaled_jacobian: float
     """Smallest scaled Jacobian of the cells of both sectors; 1 is a cube, 0 a cell that is folded."""
     cells_across_contact_width: float
-    """Elements across the width 2b of the contact as it was found, in the median."""
+    """Elements across the width 2b_H of the contact as it was found, in the median."""
 
 
 def cells_across(run: RunData) -> float:

@@ -163,7 +163,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
         _one("contact line length, shortest", "", "mm", 2, shortest),
         _one("contact line length, mean", "", "mm", 2, mean),
         _one("contact line length, longest", "", "mm", 2, longest),
-        _one("Hertz half-width at the pitch point", "b", "mm", 4, float(estimate.half_width(0.0))),
+        _one("Hertz half-width at the pitch point", "b_H", "mm", 4, float(estimate.half_width(0.0))),
         pressure("at the pitch point, mean length", 0.0),
         pressure("at the pitch point, shortest length", 0.0, shortest),
         pressure("at the start of engagement, mean length", start),
@@ -214,7 +214,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
-        _one("elements across the contact width 2b", "", "", 1, elements_per_contact_width(scene)),
+        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(scene)),
         Row("elements along the loaded flank", "", "", tuple(counted(sector.profile_elements) for sector in sectors)),
         Row("layers over the face width", "", "", layers),
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),

@@ -20,9 +20,11 @@ from meshes.inputs import refuse
 from solver.body import Body, BodyForce, Fixed, Freedom, Rigid, Traction
 from solver.contact_result import ContactResult
 from solver.contact_width import CoarseContactWarning, warn_if_coarse
+from solver.incompressible import NearlyIncompressibleWarning, warn_if_incompressible
 from solver.material import STEEL, Material
 from solver.newton import NotConverged
 from solver.paraview import write_paraview
+from solver.peak_scatter import ScatteredPressureWarning, warn_if_scattered
 from solver.position import History, Position, Solution, Where
 from solver.prepared import PreparedBody, prepare
 from solver.reactions import Reaction, reactions
@@ -46,6 +48,7 @@ __all__ = [
     "Material",
     "MeshData",
     "MeshError",
+    "NearlyIncompressibleWarning",
     "Nitsche",
     "NotConverged",
     "Placement",
@@ -55,6 +58,7 @@ __all__ = [
     "Reaction",
     "ResultError",
     "Rigid",
+    "ScatteredPressureWarning",
     "SearchError",
     "Side",
     "Solution",
@@ -86,6 +90,7 @@ class Sweep:
     def __init__(self, problem: Problem) -> None:
         if not isinstance(problem, Problem):
             refuse("sweep", "a Problem", problem, "write Problem(bodies, contacts)")
+        warn_if_incompressible(problem)
         self.problem = problem
         self.solved = 0
         self._before: History | None = None
@@ -104,7 +109,9 @@ class Sweep:
         self._before = before
         self.solved += 1
         for contact, result in zip(self.problem.contacts, solution.contacts):
-            warn_if_coarse(f"contact of {contact.first} with {contact.second}", result.width)
+            name = f"contact of {contact.first} with {contact.second}"
+            warn_if_coarse(name, result.width)
+            warn_if_scattered(name, result.peak_scatter)
         LOG.info("step %d: %s", self.solved, _line(solution))
         return solution
 

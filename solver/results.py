@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from solver.cost import Timings
 from solver.engagement import Engagement, crossing, engagements, line_peak
 from solver.estimated_errors import FigureErrors
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
@@ -23,30 +24,11 @@ from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
 from solver.run_warnings import warnings_of
 from solver.scene import GEARS
+from solver.shaft_forces import ShaftForces, shaft_forces
 from solver.skips import Skipped
 
 SCHEMA_VERSION = 1
 """Of summary.json: one more where a key goes, is named anew or means something else; new keys leave it as it is."""
-
-
-@dataclass(frozen=True)
-class Timings:
-    """Wall seconds of the parts of a run."""
-
-    mesh: float = 0.0
-    """Meshing both gears."""
-    assemble: float = 0.0
-    """Their stiffness and Nitsche's constant term."""
-    factor: float = 0.0
-    """Condensing both gears and closing the rings of teeth."""
-    positions: float = 0.0
-    """All positions at all friction coefficients; of a wear study, all of its blocks."""
-    error_bars: float = 0.0
-    """The coarse companion."""
-    output: float = 0.0
-    """Tables, fields and pictures."""
-    total: float = 0.0
-    """The whole run; of a resumed one since it was resumed."""
 
 
 @dataclass(frozen=True)
@@ -66,9 +48,9 @@ class RunFacts:
     skipped: Sequence[Skipped]
     """What the scene did not need, see docs/scene.md."""
     timings_s: Timings
-    """Wall time of the run's parts."""
+    """Wall time of the run's parts, summed over all its parts where it was resumed."""
     peak_memory_MB: float
-    """Largest resident memory, summed over the ranks."""
+    """Largest resident memory, summed over the ranks; of a resumed run its largest part's."""
 
 
 @dataclass(frozen=True)
@@ -151,6 +133,10 @@ class FrictionRow:
     it does not."""
     balance_error: float
     """Input less output less friction work, over the input, of the pitch. A run ends with status 3 above 0.01."""
+    forces_on_pinion: ShaftForces
+    """What the mesh does to the pinion and its shaft."""
+    forces_on_wheel: ShaftForces
+    """The same of the wheel."""
     estimated_error: FigureErrors | None
     """Error bars of the figures of the same names; null where there are none."""
 
@@ -244,6 +230,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         loss_percent=100.0 * loss,
         crossing_deg=math.degrees(crossing(lowest, curve)) if curve is not lowest else math.nan,
         balance_error=pitch_imbalance(results),
+        forces_on_pinion=shaft_forces(run, 0, index),
+        forces_on_wheel=shaft_forces(run, 1, index),
         estimated_error=run.errors.figures[index] if run.errors.figures else None,
     )
 
@@ -263,9 +251,9 @@ def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
     return force / (1e3 * solved.result.transmission_error)
 
 
-def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
-    """What summary.json holds, in plain values."""
-    found = Summary(
+def summary(run: RunData, facts: RunFacts) -> Summary:
+    """What summary.json holds."""
+    return Summary(
         **vars(facts),
         schema_version=SCHEMA_VERSION,
         scene=run.scene.model_dump(mode="json"),
@@ -274,12 +262,11 @@ def summary(run: RunData, facts: RunFacts) -> dict[str, object]:
         frictions=tuple(friction_rows(run)),
         positions=tuple(position_rows(run)),
     )
-    return {"schema_version": found.schema_version, **asdict(found)}
 
 
-def write_tables(folder: RunFolder, run: RunData, facts: RunFacts) -> None:
-    """Writes summary.json, positions.csv and teeth.csv. Raises OSError."""
-    rows = position_rows(run)
+def write_tables(folder: RunFolder, found: Summary) -> None:
+    """Writes summary.json, positions.csv and teeth.csv. Raises WriteError, FolderError."""
+    rows = found.positions
     folder.write_text("positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
     teeth = [
         {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
@@ -287,7 +274,13 @@ def write_tables(folder: RunFolder, run: RunData, facts: RunFacts) -> None:
         for tooth in row.teeth
     ]
     folder.write_text("teeth.csv", csv_text(teeth))
-    text = json.dumps(_without_nan(summary(run, facts)), ensure_ascii=False, indent=1, allow_nan=False)
+    write_summary(folder, found)
+
+
+def write_summary(folder: RunFolder, found: Summary) -> None:
+    """Writes summary.json. Raises WriteError, FolderError."""
+    values = {"schema_version": found.schema_version, **asdict(found)}
+    text = json.dumps(_without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
     folder.write_text("summary.json", text + "\n")
 
 

@@ -11,14 +11,16 @@ from mpi4py import MPI
 from solver import compat
 from solver.archive import Archive
 from solver.companion import companion_of
+from solver.cost import Cost, kept_cost
 from solver.deformation import deformation_of
+from solver.modifications import modification_warnings
 from solver.parallel import on_first
 from solver.progress import DEFORMATION, ERROR_BARS, OUTPUT, Progress
 from solver.run_checks import check_folder, others
 from solver.run_folder import RunFolder
 from solver.run_lock import locked
 from solver.run_log import logged
-from solver.run_output import Companions, peak_memory_MB, write_output
+from solver.run_output import Companions, Part, peak_memory_MB, write_output
 from solver.run_start import continued, kept_start
 from solver.run_sweep import pitch_of, sweep_scene
 from solver.run_wear import wear_scene, write_wear
@@ -55,6 +57,7 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
     compat.silence_logs()
     scene = on_first(comm, lambda: continued(scene, Archive(out, scene), resume))
     start = on_first(comm, lambda: kept_start(scene, Archive(out, scene), resume))  # before the first file is touched
+    earlier = on_first(comm, lambda: kept_cost(RunFolder(out)) if resume else Cost())
     with logged(RunFolder(out), comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
         if left := on_first(comm, lambda: others(out)):
             log.info("%s", left)
@@ -62,10 +65,12 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
             log.info("skipped, %s: %s", skip.name, skip.sentence)
         for name in switched_off(scene):
             log.info("not skipped: %s", name)
+        for sentence in modification_warnings(scene):
+            log.warning(sentence)
         if scene.wear is None:
-            scene, sweep = sweep_scene(scene, out, start, comm, progress, log)
+            scene, sweep = sweep_scene(scene, out, start, earlier, comm, progress, log)
         else:
-            sweep = wear_scene(scene, Archive(out, scene), resume, comm, progress, log)
+            sweep = wear_scene(scene, Archive(out, scene), resume, earlier, comm, progress, log)
         archive, pitch = Archive(out, scene), pitch_of(scene)
         companion = None
         if wanted_output(scene).error_bars:
@@ -76,9 +81,9 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
             progress.stage(DEFORMATION)
             deformation = deformation_of(scene, archive, comm)
         progress.stage(OUTPUT)
-        memory = comm.allreduce(peak_memory_MB())
+        part = Part(comm.size, begin, comm.allreduce(peak_memory_MB()), earlier)
         more = Companions(companion, deformation)
-        on_first(comm, lambda: write_output(scene, archive, sweep, more, comm.size, begin, memory, log))
+        on_first(comm, lambda: write_output(scene, archive, sweep, more, part, log))
         if scene.wear is not None:
             on_first(comm, lambda: write_wear(scene, out, log))
         on_first(comm, RunFolder(out).remove_parts)

@@ -14,6 +14,7 @@ COMPUTED = ("results/state.npz", "results/wear.npz", "summary.json")
 WRITTEN = (
     str(LOG), *SCENE_FILES, "summary.json", "positions.csv", "teeth.csv", "wear.csv", "wear.json",
     "results/gears.npz", "results/position_*.npz", "results/state.npz", "results/errors.npz", "results/wear.npz",
+    "results/cost.json",
 )  # fmt: skip
 """What a run needs to write, whatever its scene. Fields and pictures come last and are looked at one by one."""
 NAMED = 10  # files of somebody else's, at most

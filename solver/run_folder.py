@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshes.errors import InputError
-from meshes.files import PART, write_bytes, write_error
+from meshes.files import PART, open_file, write_bytes, write_error
 
 MANIFEST = Path("results/evolvent-files.jsonl")
 LOG = Path("run.log")
@@ -42,9 +42,10 @@ class RunFolder:
         WriteError, FolderError where a file that is not ours has this name."""
         path = self.out / name
         self.require_ours([path])
-        if path.exists() and _digest(path.read_bytes()) == _digest(content):
+        digest = _digest(content)
+        if path.exists() and _digest(path.read_bytes()) == digest:
             return path
-        self._list(path, content)
+        self._list(path, digest)
         return write_bytes(path, content)
 
     def write_text(self, name: str | Path, text: str) -> Path:
@@ -118,7 +119,7 @@ class RunFolder:
 
     def list_log(self) -> None:
         """The log, which grows, is ours by its name."""
-        self._list(self.out / LOG, b"")
+        self._list(self.out / LOG, _digest(b""))
 
     def _worn(self) -> Iterator[RunFolder]:
         for path in sorted(self.out.glob(WORN)):
@@ -136,13 +137,26 @@ class RunFolder:
     def _made(self) -> dict[str, set[str]]:
         """Name -> SHA-256 of all that was ever written under it, in the order of the last writing."""
         made: dict[str, set[str]] = {}
-        with contextlib.suppress(FileNotFoundError):
-            for line in (self.out / MANIFEST).read_text(encoding="utf-8").splitlines():
-                with contextlib.suppress(ValueError, KeyError, TypeError):  # the last line of a killed run
-                    entry = json.loads(line)
-                    if ".." not in Path(entry["path"]).parts:
-                        made[entry["path"]] = made.pop(entry["path"], set()) | {entry["sha256"]}
+        for line in self._lines():
+            with contextlib.suppress(ValueError, KeyError, TypeError):  # the last line of a killed run
+                entry = json.loads(line)
+                if ".." not in Path(entry["path"]).parts:
+                    made[entry["path"]] = made.pop(entry["path"], set()) | {entry["sha256"]}
         return made
+
+    def _lines(self) -> list[str]:
+        """Of the manifest. Raises FolderError."""
+        path = self.out / MANIFEST
+        try:
+            with open_file(path) as file:
+                return file.read().decode("utf-8", errors="replace").splitlines()
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            raise FolderError(
+                f"{path}: wanted the list of what runs have made here, found {error.strerror}; name another folder "
+                "with --out, or mend its access"
+            ) from error
 
     def _forget_all_but(self, stays: Collection[Path]) -> None:
         manifest, names = self.out / MANIFEST, {self._name(path) for path in stays}
@@ -152,9 +166,9 @@ class RunFolder:
         else:
             manifest.unlink(missing_ok=True)
 
-    def _list(self, path: Path, content: bytes | memoryview) -> None:
+    def _list(self, path: Path, digest: str) -> None:
         """Before the file itself is there: one that is listed and missing does no harm. Raises WriteError."""
-        line, manifest = _entry(self._name(path), _digest(content)), self.out / MANIFEST
+        line, manifest = _entry(self._name(path), digest), self.out / MANIFEST
         try:
             manifest.parent.mkdir(parents=True, exist_ok=True)
             _append(manifest, line)

@@ -13,6 +13,7 @@ from meshes.quality import scaled_jacobians
 from solver import compat
 from solver.archive import Archive
 from solver.companion import Companion
+from solver.cost import Cost, Timings, keep_cost
 from solver.deformation import Deformation
 from solver.draw import Drawn, draw
 from solver.error_bars import with_errors
@@ -21,12 +22,11 @@ from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
 from solver.mesh_facts import MeshFacts, cells_across
-from solver.results import RunFacts, Timings, write_tables
+from solver.results import RunFacts, summary, write_summary, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
 from solver.run_start import Meshes, keep_scene
-from solver.run_warnings import warnings_of
 from solver.scene import Scene
 from solver.skips import skipped, wanted_output
 
@@ -64,6 +64,24 @@ class Companions:
     deformation: Deformation | None
 
 
+@dataclass(frozen=True)
+class Part:
+    """A run, or the last part of a resumed one."""
+
+    ranks: int
+    """MPI processes."""
+    begin: float
+    """When it began, as time.perf_counter() tells [s]."""
+    memory_MB: float
+    """Largest resident memory, summed over the ranks."""
+    earlier: Cost
+    """What earlier parts have cost."""
+
+    def cost(self, timings: Timings) -> Cost:
+        """Of the run up to now, of whose last part these are the times but for the total."""
+        return self.earlier + Cost(replace(timings, total=time.perf_counter() - self.begin), self.memory_MB)
+
+
 def timings_of(preparation: Preparation) -> Timings:
     """What preparing took."""
     parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
@@ -71,9 +89,8 @@ def timings_of(preparation: Preparation) -> Timings:
 
 
 def write_output(
-    scene: Scene, archive: Archive, sweep: Sweep, more: Companions, ranks: int, begin: float, memory: float,
-    log: RunLog,
-) -> None:  # fmt: skip
+    scene: Scene, archive: Archive, sweep: Sweep, more: Companions, part: Part, log: RunLog
+) -> None:
     """The tables, which say that the run is complete; then fields and pictures, whose failing costs nothing else.
 
     Raises WriteError, FolderError.
@@ -85,23 +102,24 @@ def write_output(
     keep_scene(scene, archive.files)  # a resumed run may ask for other output
 
     timings = replace(sweep.timings, error_bars=0.0 if companion is None else companion.seconds)
-    facts = facts_of(data, sweep.meshes, ranks, timings, memory)
 
-    def write() -> None:
-        now = time.perf_counter()
-        so_far = replace(timings, output=now - started, total=now - begin)
-        write_tables(archive.files, data, replace(facts, timings_s=so_far))
 
-    write()
+    def cost() -> Cost:
+        return part.cost(replace(timings, output=time.perf_counter() - started))
+
+    found = summary(data, facts_of(data, sweep.meshes, part.ranks, cost()))
+    write_tables(archive.files, found)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
     if more.deformation is not None:
         from solver.deformed_fields import write_deformed  # VTK takes a second
 
         log.info("fields: %s", write_deformed(data, more.deformation, archive.files))
-    write()  # with the time that pictures took
-    for sentence in warnings_of(data, facts.mesh):
+    whole = cost()  # pictures took time, too
+    write_summary(archive.files, replace(found, timings_s=whole.timings))
+    keep_cost(archive.files, whole)
+    for sentence in found.warnings:
         log.warning(sentence)
-    log.info("done in %.1f s, %.0f MB", time.perf_counter() - begin, memory)
+    log.info("done in %.1f s, %.0f MB", time.perf_counter() - part.begin, part.memory_MB)
 
 
 def whereabouts(out: Path) -> str:
@@ -135,7 +153,7 @@ def tell(drawn: Drawn, log: RunLog) -> None:
         log.warning(failure)
 
 
-def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory: float) -> RunFacts:
+def facts_of(data: RunData, meshes: Meshes, ranks: int, cost: Cost) -> RunFacts:
     """Of a run."""
     return RunFacts(
         versions=compat.versions(),
@@ -144,8 +162,8 @@ def facts_of(data: RunData, meshes: Meshes, ranks: int, timings: Timings, memory
         cells=sum(len(mesh.cells) for mesh in meshes),
         mesh=mesh_facts(data, meshes),
         skipped=skipped(data.scene),
-        timings_s=timings,
-        peak_memory_MB=memory,
+        timings_s=cost.timings,
+        peak_memory_MB=cost.memory_MB,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -12,25 +12,26 @@ from mpi4py import MPI
 
 from solver.archive import Archive
 from solver.closed_pitch import one_pitch, sweep_closed
+from solver.cost import Cost, Timings, keep_cost
 from solver.gear_model import Preparation, prepare_model
 from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from solver.parallel import on_first
 from solver.progress import CONDENSING, MESHING, POSITIONS, Progress
-from solver.results import Timings
 from solver.run_log import RunLog
-from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
+from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, peak_memory_MB, timings_of
 from solver.run_start import Start, open_archive, same_meshes
 from solver.scene import Scene
 from solver.skips import pitches, skips, switched_off, with_deflected_flanks
 
 
 def sweep_scene(
-    scene: Scene, out: Path, start: Start | None, comm: MPI.Comm, progress: Progress, log: RunLog
+    scene: Scene, out: Path, start: Start | None, earlier: Cost, comm: MPI.Comm, progress: Progress, log: RunLog
 ) -> tuple[Scene, Sweep]:
     """The scene whose positions are then in its archive: this one, or, where the energy of its pitch does not balance,
-    the one on deflected flanks. Raises what `run_scene` does, on all ranks."""
-    gears = _Gears(scene, comm, progress, log)
+    the one on deflected flanks. earlier: what earlier parts of the run have cost. Raises what `run_scene` does, on all
+    ranks."""
+    gears = _Gears(scene, earlier, comm, progress, log)
     sweep = _swept(scene, out, start, gears)
     loss = on_first(comm, lambda: _imbalance(scene, out))
     if loss is None:
@@ -40,11 +41,10 @@ def sweep_scene(
         raise loss
     log.info("%s", loss)
     log.info("solved again, on deflected flanks")
-    again = _swept(deflected, out, None, replace(gears, scene=deflected))
+    again = _swept(deflected, out, None, replace(gears, scene=deflected, earlier=earlier + Cost(sweep.timings)))
     if loss := on_first(comm, lambda: _imbalance(deflected, out)):
         raise loss
-    both = zip(astuple(sweep.timings), astuple(again.timings))
-    return deflected, Sweep(again.meshes, Timings(*(one + other for one, other in both)))
+    return deflected, Sweep(again.meshes, sweep.timings + again.timings)
 
 
 def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
@@ -58,9 +58,11 @@ def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
 
 @dataclass(frozen=True)
 class _Gears:
-    """A scene's gears on some ranks. kept: those that all friction coefficients share, for a second sweep."""
+    """A scene's gears on some ranks. earlier: what earlier parts of the run have cost. kept: those that all friction
+    coefficients share, for a second sweep."""
 
     scene: Scene
+    earlier: Cost
     comm: MPI.Comm
     progress: Progress
     log: RunLog
@@ -77,6 +79,10 @@ class _Gears:
         if len(friction_groups(self.scene)) == 1:
             self.kept.append(preparation)
         return preparation, timings_of(preparation)
+
+    def cost(self, timings: Timings) -> Cost:
+        """Of the run so far, this part of it included; all ranks must call it."""
+        return self.earlier + Cost(timings, self.comm.allreduce(peak_memory_MB()))
 
     def _meshed(self) -> None:
         self.log.begin()
@@ -113,10 +119,17 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears) -> Sweep
             yield position
 
     for k, position in enumerate(_together([solved(group) for group in groups]), len(done)):
-        on_first(comm, partial(archive.write_position, k, position))
+        cost = gears.cost(_total(made, time.perf_counter() - begun).timings)
+        on_first(comm, partial(_keep, archive, k, position, cost))
         log.info(_line(position))
         gears.progress.advance(more=not position.closes)
     return _total(made, time.perf_counter() - begun)
+
+
+def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> None:
+    """On disk. Raises WriteError, FolderError."""
+    archive.write_position(index, position)
+    keep_cost(archive.files, cost)
 
 
 def friction_groups(scene: Scene) -> list[slice]:
@@ -142,7 +155,7 @@ def _total(made: list[Sweep], seconds: float) -> Sweep:
     mesh, assemble, factor, preparing = (
         sum(getattr(each.timings, name) for each in made) for name in ("mesh", "assemble", "factor", "total")
     )
-    return Sweep(made[0].meshes, Timings(mesh, assemble, factor, seconds - preparing))
+    return Sweep(made[0].meshes, Timings(mesh, assemble, factor, positions=seconds - preparing, total=seconds))
 
 
 def pitch_of(scene: Scene) -> Pitch:

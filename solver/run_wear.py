@@ -6,6 +6,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -13,12 +14,13 @@ from mpi4py import MPI
 
 from meshes.data import MeshData
 from solver.archive import Archive
+from solver.cost import Cost, Timings, keep_cost
 from solver.draw import draw
-from solver.gear_model import GearModel, prepare_model
+from solver.gear_model import GearModel, Preparation, prepare_model
 from solver.gear_sweep import uniform_pitch
 from solver.parallel import on_first
 from solver.progress import CONDENSING, CYCLES, MESHING, Progress
-from solver.results import Timings, write_tables
+from solver.results import summary, write_tables
 from solver.run_data import run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
@@ -41,10 +43,10 @@ depths within 8e-4 of their volume (2.5e-3 with tip relief) whether its meshes f
 
 
 def wear_scene(
-    scene: Scene, archive: Archive, resume: bool, comm: MPI.Comm, progress: Progress, log: RunLog
+    scene: Scene, archive: Archive, resume: bool, earlier: Cost, comm: MPI.Comm, progress: Progress, log: RunLog
 ) -> Sweep:
     """All blocks of a scene with [wear]; in OUT the pair at the beginning as a sweep leaves it, in OUT/worn_N that
-    after N cycles. Raises what run_scene does."""
+    after N cycles. earlier: what earlier parts of the run have cost. Raises what run_scene does."""
     wear, begin = scene.wear, time.perf_counter()
     assert wear is not None
     kept = on_first(comm, lambda: read_study(archive) if resume else None)
@@ -70,12 +72,18 @@ def wear_scene(
     for stage in stages(gears, wear.reports, settings_of(wear), kept):
         certify_positions(stage.state.now)
         study = kept_of(gears, stage)
-        on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size))
+        spent = _timings(preparation, time.perf_counter() - begin)
+        cost = earlier + Cost(spent, comm.allreduce(peak_memory_MB()))
+        on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size, cost))
         log.info(_line(stage))
         progress.reach(round(study.cycles))
+    return Sweep(meshes, _timings(preparation, time.perf_counter() - begin))
+
+
+def _timings(preparation: Preparation, seconds: float) -> Timings:
+    """Of a study that has taken so long; what was not preparing were its blocks."""
     timings = timings_of(preparation)
-    spent = time.perf_counter() - begin - timings.total
-    return Sweep(meshes, Timings(timings.mesh, timings.assemble, timings.factor, spent))
+    return replace(timings, positions=seconds - timings.total, total=seconds)
 
 
 def write_wear(scene: Scene, out: Path, log: RunLog) -> None:
@@ -119,7 +127,7 @@ def certify_positions(state: PitchState) -> None:
 
 
 def _write(
-    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: Stage, study: Kept, ranks: int
+    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: Stage, study: Kept, ranks: int, cost: Cost
 ) -> None:
     """The pair where it is asked for; then what the study goes on from, whose being there says that it is whole."""
     state = stage.state
@@ -134,8 +142,10 @@ def _write(
         own = Archive(folder, worn)
         write_pitch(own, meshes, state.now.positions)
         data = run_data(worn, own.read_gears(), own.read_positions(worn.gear_pair()))
-        write_tables(RunFolder(folder), data, facts_of(data, meshes, ranks, Timings(), peak_memory_MB()))
+        write_tables(own.files, summary(data, facts_of(data, meshes, ranks, cost)))
+        keep_cost(own.files, cost)
     write_study(archive, study)
+    keep_cost(archive.files, cost)
 
 
 def _line(stage: Stage) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from solver.resolution import elements_per_contact_width
+from solver.modifications import folding_warnings, modification_warnings
+from solver.resolution import elements_per_contact_width, sector_resolutions
 from solver.scene import Scene
 
 FEWEST_CELLS = 2.0
@@ -26,6 +27,8 @@ def _expected(scene: Scene) -> Iterator[str]:
             "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
             "falls to 1e-3 and below, and those of order 1 bend too little; hexahedra of order 2 are the better choice."
         )
+    yield from modification_warnings(scene)
+    yield from folding_warnings(scene, sector_resolutions(scene))
 
 
 def few_cells() -> str:

@@ -11,16 +11,14 @@ from meshes.flank import nominal_angles
 from meshes.reference import corner_count
 from meshes.section import SectorResolution
 from meshes.sector import sector_mesh
+from solver.modifications import too_much_relief
 from solver.resolution import sector_resolutions
-from solver.scene import GEARS, Scene
-from solver.scene_errors import Problem, SceneError
+from solver.scene import Scene
+from solver.scene_errors import SceneError
 from solver.skips import is_plane
 
 Adaption = Callable[[SectorResolution], SectorResolution]
 
-FOLDING = 0.5
-"""Of the thin layers' depth: modifications above it may fold them. The papers' pairs at a tenth to ten times their
-loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
 PLANE_SHAPE = {"hexahedron": "quadrilateral", "tetrahedron": "triangle"}
 FACET_OF = {
     "hexahedron": "quadrilateral",
@@ -49,23 +47,10 @@ def gear_mesh(scene: Scene, index: int, plane: bool | None = None, adapted: Adap
     try:
         mesh = sector_mesh(scene.gear_pair().gears[index], resolution, shape)
     except MeshError as error:
-        if problem := _too_much_relief(scene, index, resolution):
+        if problem := too_much_relief(scene, index, resolution):
             raise SceneError([problem]) from error
         raise
     return mesh if scene.mesh.order == 2 else linear(mesh)
-
-
-def _too_much_relief(scene: Scene, index: int, resolution: SectorResolution) -> Problem | None:
-    """What is wrong where relief and crowning take most of the thin layers away that lie below the flank; else None."""
-    name, depth = GEARS[index], 1e3 * sum(resolution.layer_depths)
-    gear = getattr(scene, name)
-    taken = gear.tip_relief_um + gear.lead_crowning_um
-    if taken < FOLDING * depth:
-        return None
-    key = "tip_relief_um" if gear.tip_relief_um >= gear.lead_crowning_um else "lead_crowning_um"
-    found = f"{getattr(gear, key):g} (relief and crowning take {taken:.4g} µm off)"
-    allowed = f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine"
-    return Problem(f"{name}.{key}", found, allowed, "lower it, raise the torque, or take a chart as flank_csv")
 
 
 def linear(mesh: MeshData) -> MeshData:

@@ -161,7 +161,21 @@ def _together(meeting: Meeting, places: Places, pressed: Ints, share: Floats) ->
     normal = _normals(pair[0], found.facet1[pressed], found.xi1[pressed])
     gap = _gaps(meeting, pair, pressed, normal)
     overlap = float(-gap[np.isfinite(gap)].min(initial=0.0))
-    return moved[0], moved[1] + overlap * (share @ normal)
+    return moved[0], moved[1] + overlap * _free(meeting, pressed, share @ normal)
+
+
+def _free(meeting: Meeting, pressed: Ints, direction: Floats) -> Floats:
+    """A direction (d,) of the contact without what leads out of its planes of symmetry: the mean normal of half a
+    contact points to one side of its plane."""
+    free = direction
+    for surface, supports, facets in zip(meeting.placed, meeting.supports, _facets(meeting)):
+        held = supports.held[surface.facets[facets[pressed]]].any(axis=(0, 1))
+        free = free - supports.rotation @ np.where(held, supports.rotation.T @ free, 0.0)
+    return free if np.linalg.norm(free) > 0.5 * np.linalg.norm(direction) else direction
+
+
+def _facets(meeting: Meeting) -> tuple[Ints, Ints]:
+    return meeting.pairing.facet1, meeting.pairing.facet2
 
 
 def _carried(surface: Surface, supports: Supports, places: Floats, facets: Ints, xi: Floats, share: Floats) -> Floats:

@@ -22,7 +22,8 @@ RIGID = 1e-9  # how far a rotation's columns may be from orthonormal
 class Contact:
     """Two facet groups that may touch: (body index, group name) each.
 
-    first: carries the pressure; the coarser surface.
+    first: carries the pressure, unless its body is more than ten times as stiff as the other (solver/carrier.py); the
+        coarser surface.
     second: the other one, also of the same body.
     friction: Coulomb's μ.
     reach: the gap [mm] up to which a node can come into contact within a step; by default a tenth of the first

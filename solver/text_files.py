@@ -6,6 +6,7 @@ import codecs
 from pathlib import Path
 
 from meshes.errors import InputError
+from meshes.files import NoFile, open_file
 
 MEGABYTE = 1_000_000
 SAVE = "save the file as UTF-8 (plain ASCII is UTF-8 too)"
@@ -26,8 +27,10 @@ def read_text(path: Path, kind: str, megabytes: int) -> str:
     """
     wanted = f"a readable {kind} file"
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             content = file.read(megabytes * MEGABYTE + 1)
+    except NoFile as error:
+        raise UnreadableText(str(error.strerror), wanted, "write what it gives to a file, and name that one") from error
     except (OSError, ValueError) as error:  # ValueError: the path has a NUL
         found = error.strerror if isinstance(error, OSError) else "a path with a NUL character"
         raise UnreadableText(str(found), wanted, f"check the path {str(path)!r}") from error

@@ -145,8 +145,10 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "run: scene below a file": (
         ["run", "{scene}/x", "--out", "{folder}/out"], "scene file", "Not a directory", "check the path",
     ),
-    "run: endless scene": (["run", "/dev/zero", "--out", "{folder}/out"], "scene file", "more than 1 MB", "right file"),
-    "run: no scene at all": (["run", "/dev/null", "--out", "{folder}/out"], "pair", "nothing", "add a section"),
+    "run: endless scene": (["run", "/dev/zero", "--out", "{folder}/out"], "scene file", "a device", "to a file"),
+    "run: no scene at all": (
+        ["run", "/dev/null", "--out", "{folder}/out"], "scene file", "a device", "to a file",
+    ),
     "run: scene with a long name": (
         ["run", "a" * 5000, "--out", "{folder}/out"], "scene file", "name too long", "check the path",
     ),
@@ -204,7 +206,8 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "record: empty": (["wear-coefficient", "", *TEST], "RECORD.csv...", "an empty text", "columns sliding_distance_m"),
     "record: no such file": (["wear-coefficient", "no.csv", *TEST], "no.csv", "No such file", "check the path"),
     "record: a folder": (["wear-coefficient", "{folder}", *TEST], "{folder}", "Is a directory", "check the path"),
-    "record: endless": (["wear-coefficient", "/dev/zero", *TEST], "/dev/zero", "more than 20 MB", "right file?"),
+    "record: endless": (["wear-coefficient", "/dev/zero", *TEST], "/dev/zero", "a device", "to a file"),
+    "record: too large": (["wear-coefficient", "{large}", *TEST], "{large}", "more than 20 MB", "right file?"),
     "record: a scene": (["wear-coefficient", SCENE, *TEST], SCENE, "title", "one column named sliding_distance"),
     "record: second one missing": (["wear-coefficient", "{record}", "no.csv", *TEST], "no.csv", "No such file", ""),
     "record: no force": (["wear-coefficient", "{record}", *TEST[2:]], "--force-N", "nothing", "normal force on"),

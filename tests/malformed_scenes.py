@@ -173,6 +173,10 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
         "130",
         "where on the involute",
     ),
+    "relief of the whole tip": (
+        YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so",
+        "lower them",
+    ),
     "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (Hertz", "lower the torque"),
     # no TOML, no override
     "no TOML": (YANG + "\n= 3\n", [], "scene file", "no TOML", "mend that line"),
@@ -276,7 +280,7 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, [f'pinion.flank_csv="{"a" * 900}"'], "pinion.flank_csv", "name too long", "check the path",
     ),
     "chart with an endless name": (YANG, [f'pinion.flank_csv="{"a" * 5000}"'], "pinion.flank_csv", '"aaa', "delete"),
-    "chart without end": (YANG, ['pinion.flank_csv="/dev/zero"'], "pinion.flank_csv", "more than 20 MB", "right file"),
+    "chart without end": (YANG, ['pinion.flank_csv="/dev/zero"'], "pinion.flank_csv", "a device", "to a file"),
     # nested, repeated, endless
     "brackets in brackets": (YANG + "x = " + "[" * 5000, [], "scene file", "nested too deep", "mend that line"),
     "tables in tables": (YANG + "x = " + "{a=" * 5000, [], "scene file", "nested too deep", "mend that line"),

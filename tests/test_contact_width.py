@@ -14,6 +14,7 @@ from solver.body import Body, Fixed, Freedom, Rigid
 from solver.contact_width import CoarseContactWarning, width_of
 from solver.meeting import Meeting
 from solver.problem import Contact, Position, Problem, Step, prepare, solve
+from tests.contact_cases import rubber
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -71,6 +72,26 @@ def test_disc_and_ring():
     r = np.hypot(*(meeting.operator.points[:, :2] - 4.0).T)
     assert width_of(meeting, 1.0 * (r < 2.0)).width == pytest.approx(4.0, abs=0.3)
     assert width_of(meeting, 1.0 * ((r > 2.0) & (r < 3.2))).width == pytest.approx(1.2, abs=0.3)
+
+
+def test_coarse_at_the_edge():
+    """Rubber under a cylinder, cells of 0.3 mm over |x| <= 1.5 mm, which grow by 1.3 outside: the contact ends in the
+    second of them, 0.5 mm long. That one counts; by those in the middle the contact was 12 cells wide."""
+    contact = solve(rubber(0.3, 1.5)).contacts[0]
+    assert contact.width.cell == pytest.approx(0.3 * 1.3**2, rel=0.1)
+    assert contact.width.width == pytest.approx(4.0, abs=0.5)
+    assert contact.cells_across == pytest.approx(8.0, abs=1.0)
+
+
+def test_long_cells_at_the_ends_of_a_strip():
+    """A strip of 1.5 by 8 mm whose cells are 2 mm long along it and 0.25 mm across: 6 cells wide, up to its ends."""
+    upper = box((8.0, 8.0, 1.0), (32, 4, 1), 1)
+    lower = box((8.0, 8.0, 1.0), (32, 4, 1), 1, origin=(0.0, 0.0, -1.0))
+    bodies = Body(upper, supports=(Fixed("top"),)), Body(lower, supports=(Fixed("bottom"),))
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    strip = Position(problem, prepare(problem), Step()).meetings[0]
+    x = strip.operator.points[:, 0]
+    assert width_of(strip, 1.0 * ((x > 3.0) & (x < 4.5))).cells == pytest.approx(6.0, abs=0.7)
 
 
 @pytest.mark.parametrize(("supports", "width"), [((), 2.0), ((Fixed("left", "x"),), 4.0)])

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import re
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from malformed_inputs import CHART, CHARTS, OPTIONS, RECORD, RECORDS, SCENE_FILES, TEST
 from malformed_scenes import HE, MALFORMED, UNSUPPORTED, WEAR, YANG
 
+from meshes.data import MeshError
+from meshes.gmsh_io import read_msh
 from solver.cli import main
 from solver.scene import Scene, load_scene, scene_from_text
 from solver.scene_errors import keys_of
@@ -106,19 +111,70 @@ def test_options(case: str, refused: Refused, monkeypatch: pytest.MonkeyPatch) -
     """Options and arguments of every command; no machine has the memory for all that can be asked."""
     monkeypatch.setattr("solver.size.machine_megabytes", lambda: 24e3)
     arguments, key, found, words = OPTIONS[case]
-    names = {"{scene}": "scene.toml", "{record}": "record.csv", "{folder}": str(refused.folder)}
+    names = {"{scene}": "scene.toml", "{record}": "record.csv", "{folder}": str(refused.folder), "{large}": "large.csv"}
+    if "{large}" in arguments:
+        (refused.folder / "large.csv").write_bytes(b"1" * 20_000_001)
 
     def named(text: str) -> str:
         for name, value in names.items():
             text = text.replace(name, value)
         return text
 
-    if arguments[1:2] == ["/dev/null"]:  # a line for each section that is missing
-        assert main([named(argument) for argument in arguments]) == 2
-        return
     said = refused([named(argument) for argument in arguments])
     assert said["key"].endswith(named(key)) and named(found) in said["found"]
     assert words in said["allowed"] + said["remedy"]
+
+
+def pipe_without_writer(folder: Path, name: str) -> Path:
+    """Whoever reads it waits for ever."""
+    os.mkfifo(folder / name)
+    return folder / name
+
+
+@pytest.fixture
+def in_time() -> Iterator[None]:
+    """A test that hangs fails."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(20)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("name", ["scene.toml", "chart.csv", "record.csv"])
+def test_named_pipes(name: str, refused: Refused, in_time: None) -> None:
+    """A scene, a chart, a record that is a named pipe: refused at once."""
+    pipe = str(pipe_without_writer(refused.folder, f"pipe_{name}"))
+    scene = pipe if name == "scene.toml" else "scene.toml"
+    chart = ["--set", f"pinion.flank_csv={pipe}"] if name == "chart.csv" else []
+    each = [["check", scene, *chart], ["run", scene, "--out", "out", *chart], ["mesh", scene, "--out", "a.msh", *chart]]
+    for arguments in [["wear-coefficient", pipe, *TEST]] if name == "record.csv" else each:
+        said = refused(arguments)
+        assert "a named pipe" in said["found"] and "to a file" in said["remedy"]
+
+
+def test_pipe_for_a_mesh(tmp_path: Path, in_time: None) -> None:
+    """A named pipe is no mesh."""
+    with pytest.raises(MeshError, match="found what is no file at"):
+        read_msh(pipe_without_writer(tmp_path, "block.msh"))
+
+
+@pytest.mark.parametrize(("name", "words"), [
+    ("results/state.npz", "state.npz"), ("results/cost.json", "cost.json"), ("results/evolvent-files.jsonl", "list of"),
+])
+def test_pipes_in_a_folder(
+    name: str, words: str, folder: Path, capfd: pytest.CaptureFixture[str], in_time: None
+) -> None:  # fmt: skip
+    """Named pipes where a run keeps what it goes on from: refused by `run --resume`, never read."""
+    (folder / "out" / "results").mkdir(parents=True)
+    pipe_without_writer(folder / "out", name)
+    assert main(["run", "scene.toml", "--out", "out", "--resume"]) == 2
+    err = capfd.readouterr().err
+    assert words in err and "Traceback" not in err and not (folder / "out" / "run.log").exists()
 
 
 @pytest.mark.parametrize("case", UNSUPPORTED)

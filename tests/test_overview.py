@@ -50,6 +50,17 @@ def test_the_study_stands_where_it_is_asked_for() -> None:
         assert not any(word in text_of(name) for word in STUDY)
 
 
+@pytest.mark.parametrize("name", SCENES)
+def test_a_symbol_is_one_thing(name: str) -> None:
+    """No symbol stands for two quantities (b is the face width, b_H Hertz' half-width); a variant of the row above is
+    indented."""
+    rows = re.findall(r"^  (?! )(.{42})(\S+) {2,}", text_of(name), re.MULTILINE)
+    symbols = {symbol: what.strip() for what, symbol in rows}
+    assert len(rows) == len(symbols), sorted(symbol for _, symbol in rows)
+    assert symbols["b"] == "face width" and symbols["b_H"] == "Hertz half-width at the pitch point"
+    assert "width 2b_H " in text_of(name)
+
+
 def test_warnings_come_with_the_estimate() -> None:
     """Fewer than two elements across the contact, and tetrahedra, are warned of; a standard mesh is not."""
     assert "about 1.7 elements wide; below 2" in text_of("yang2022", "mesh.level=quick")

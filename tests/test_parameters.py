@@ -193,6 +193,7 @@ GEAR_ERRORS: list[tuple[str, dict[str, Any], str]] = [
     ("pressure angle in rad", {"normal_pressure_angle_deg": 0.349}, "normal_pressure_angle_deg"),
     ("shift in mm", {"profile_shift": math.nan}, "profile_shift"),
     ("relief without start", {"modifications": Modifications(tip_relief_um=10.0)}, "tip_relief_start_diameter"),
+    ("relief of the whole tip", {"modifications": Modifications(0.0, lead_crowning_um=2400.0)}, "lead_crowning_um"),
     ("negative crowning", {"modifications": Modifications(lead_crowning_um=-5.0)}, "lead_crowning_um"),
 ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +12,10 @@ import pytest
 from synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
 from solver.archive import Archive
+from solver.cost import Timings
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.mesh_facts import MeshFacts
-from solver.results import RunFacts, Timings, friction_rows, position_rows, summary, write_tables
+from solver.results import RunFacts, friction_rows, position_rows, summary, write_tables
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
 
@@ -35,7 +36,7 @@ def run() -> RunData:
 
 def test_summary_has_the_promised_keys(run: RunData) -> None:
     """Every key that users and later tools rely on is there, for every position and friction coefficient."""
-    found = json.loads(json.dumps(summary(run, FACTS)))
+    found = json.loads(json.dumps(asdict(summary(run, FACTS))))
     assert set(found) >= KEYS
     assert set(found["timings_s"]) >= {"mesh", "assemble", "factor", "positions", "output", "total"}
     assert len(found["positions"]) == 2 * 6
@@ -100,7 +101,7 @@ def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -
     assert all(np.isfinite(row.secant_stiffness_N_per_mm_um) for row in friction_rows(run))
     assert all(np.isnan(row.secant_stiffness_N_per_mm_um) for row in friction_rows(charted))
     assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
-    write_tables(RunFolder(tmp_path), charted, FACTS)
+    write_tables(RunFolder(tmp_path), summary(charted, FACTS))
     text = (tmp_path / "summary.json").read_text(encoding="utf-8")
     assert json.loads(text)["frictions"][0]["secant_stiffness_N_per_mm_um"] is None
 
@@ -121,7 +122,7 @@ def test_plane_run_is_reported_for_the_whole_width() -> None:
 def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
     """One line a position and friction in positions.csv, one more level down in teeth.csv; strict JSON (no NaN); no
     half-written file stays behind."""
-    write_tables(RunFolder(tmp_path), run, FACTS)
+    write_tables(RunFolder(tmp_path), summary(run, FACTS))
     with open(tmp_path / "positions.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     with open(tmp_path / "teeth.csv", encoding="utf-8") as stream:

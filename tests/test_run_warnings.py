@@ -16,7 +16,7 @@ from solver.cli import Exit, main
 from solver.companion import solved_run
 from solver.estimated_errors import EstimatedErrors, FigureErrors
 from solver.mesh_facts import MeshFacts, cells_across
-from solver.results import write_tables
+from solver.results import summary, write_tables
 from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
 from solver.run_sweep import pitch_of
@@ -74,7 +74,7 @@ def test_tip_edges_and_error_bars(quiet: RunData) -> None:
 
 def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
     """summary.json has the same sentences."""
-    write_tables(RunFolder(tmp_path), quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2)))
+    write_tables(RunFolder(tmp_path), summary(quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2))))
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
     assert found == list(warnings_of(quiet, MeshFacts(0.3, 1.2))) and "1.2 elements" in found[0]
 

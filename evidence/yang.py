@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from meshes.data import Floats
-from solver.engagement import Engagement, between, crossing, engagement, largest_peak
+from solver.engagement import Engagement, crossing, engagement, largest_peak
+from solver.line_peaks import between
 from solver.plots_lines import at_point
 from solver.plots_stress import relative_change, trends
 from solver.plots_teeth import YANG

@@ -11,9 +11,10 @@ from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
-from solver.engagement import largest_peak, pooled_peaks
+from solver.engagement import largest_peak
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import on_tip_edge
+from solver.line_peaks import pooled_peaks
 from solver.plain_text import signed
 from solver.plots_style import ABOVE, INK, PRESSURE_MAP, sheet
 from solver.run_data import RunData, SolvedPosition

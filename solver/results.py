@@ -230,13 +230,13 @@ def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> lis
 def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagement) -> FrictionRow:
     results = [each[index].result for each in run.positions]
     errors = 1e3 * np.array([result.transmission_error for result in results])
-    top = int(np.nanargmax(curve.max_pressure))
+    top = curve.peak
     loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
     return FrictionRow(
         friction=curve.friction,
-        max_pressure_MPa=float(curve.max_pressure[top]),
-        max_pressure_angle_deg=math.degrees(curve.angle[top]),
-        max_pressure_at_zone_end=bool(curve.at_zone_end[top]),
+        max_pressure_MPa=top.pressure,
+        max_pressure_angle_deg=math.degrees(top.angle),
+        max_pressure_at_zone_end=top.at_zone_end,
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),

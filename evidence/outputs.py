@@ -16,16 +16,8 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from evidence.report import table
 from solver.estimated_errors import FigureErrors
 from solver.mesh_facts import MeshFacts
-from solver.results import (
-    SCHEMA_VERSION,
-    ErrorBars,
-    FrictionRow,
-    PositionRow,
-    Summary,
-    Timings,
-    ToothRow,
-)
 from solver.skips import Skipped
+from solver.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, Timings, ToothRow
 from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
 
@@ -82,7 +74,7 @@ SECTIONS = (
     ("`timings_s`", Timings, ""),
     ("`estimated_error`", ErrorBars, ""),
     ("`frictions`, each entry", FrictionRow, ""),
-    ("`frictions`, `estimated_error` of an entry", FigureErrors, ""),
+    ("`frictions`, `estimated_error` and `spacing_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
     ("`wear.csv`", BlockRow, ""),

@@ -13,12 +13,12 @@ import numpy as np
 
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagement, largest_peak
+from solver.figure_rows import friction_rows
 from solver.line_peaks import between
 from solver.plots_lines import at_point
 from solver.plots_stress import relative_change, trends
 from solver.plots_teeth import YANG
 from solver.plots_yang import paper_points, paper_position
-from solver.results import friction_rows
 from solver.run_data import RunData, read_run
 
 Line = tuple[str, str]

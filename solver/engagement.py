@@ -7,7 +7,7 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class Engagement:
     at_zone_end: np.ndarray
     mean_pressure: Floats
     contact_length: Floats
-    zone_ends: tuple[TurnPeak, ...] = ()
+    zone_ends: tuple[TurnPeak, ...] = field(default=(), kw_only=True)
     """Where a spur pair enters the tip-edge zones, between two positions."""
 
     @property
@@ -95,8 +95,9 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index], inner)]
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
-    ends = tuple(TurnPeak(peak.ξ / run.pair.pinion.base_radius, peak.pressure, True) for peak in _zone_ends(run, index, inner))
-    return Engagement(run.frictions[index], angle, position, tooth, *values, ends)
+    radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
+    ends = tuple(TurnPeak(peak.ξ / radius, peak.pressure, True) for peak in entered)
+    return Engagement(run.frictions[index], angle, position, tooth, *values, zone_ends=ends)
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:

@@ -11,6 +11,7 @@ from meshes.parameters import GearPair
 from solver.gear_results import Slices
 from solver.tip_zones import AT_THE_END
 
+
 @dataclass(frozen=True)
 class LinePeak:
     """The largest peak pressure [MPa] along a contact line between the tip-edge zones, at the roll distance ξ [mm];

@@ -17,12 +17,12 @@ from solver.gear_results import balance_error
 from solver.gear_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from solver.parallel import on_first
 from solver.progress import CONDENSING, MESHING, POSITIONS, Progress
-from solver.results import Timings
 from solver.run_log import RunLog
 from solver.run_output import PitchImbalance, Sweep, certify, certify_pitch, timings_of
 from solver.run_start import Start, open_archive, same_meshes
 from solver.scene import Scene
 from solver.skips import pitches, skips, switched_off, with_deflected_flanks
+from solver.summary_rows import Timings
 
 
 def sweep_scene(

@@ -18,7 +18,7 @@ from solver.gear_model import GearModel, prepare_model
 from solver.gear_sweep import uniform_pitch
 from solver.parallel import on_first
 from solver.progress import CONDENSING, CYCLES, MESHING, Progress
-from solver.results import Timings, write_tables
+from solver.results import write_tables
 from solver.run_data import run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
@@ -27,6 +27,7 @@ from solver.run_start import Meshes, clear, keep_scene, same_meshes
 from solver.scene import Scene
 from solver.schema_wear import Wear
 from solver.skips import wanted_output
+from solver.summary_rows import Timings
 from wear.blocks import BlockSettings
 from wear.gears import Following, GearWear, PitchState
 from wear.law import Archard

@@ -12,11 +12,13 @@ import pytest
 from synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
 from solver.archive import Archive
+from solver.figure_rows import friction_rows, position_rows
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.mesh_facts import MeshFacts
-from solver.results import RunFacts, Timings, friction_rows, position_rows, summary, write_tables
+from solver.results import summary, write_tables
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
+from solver.summary_rows import RunFacts, Timings
 
 FACTS = RunFacts(
     {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5

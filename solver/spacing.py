@@ -9,8 +9,8 @@ misses what lies between two positions, so the larger one is taken of it and
   Where these lines meet there is a kink; where one lies above the other all over, the curve jumps, as pressures nearly
   do, in the middle on average. All pairs of positions are looked at: a peak may be narrower than their distance.
 - of a mean: what kinks or jumps change at an unknown place between two positions. A jump by J changes the mean of n by
-  at most J/2n, a kink that bends the curve by J from one position to the next by J/8n, and a step beside it shows half
-  of J only; those of all positions are independent of each other.
+  at most J/2n; a kink that bends the curve by J from one position to the next by J/12n on average, and the step that
+  it lies in shows about half of J. Those of all positions are independent of each other.
 
 The largest pressure is read from a tooth's engagement, which ends where it enters a tip-edge zone: if the curve rises
 up to there, then by how much it does in one step more. Pressures scatter from position to position as the contact lies
@@ -33,8 +33,8 @@ from solver.estimated_errors import FigureErrors
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from solver.run_data import RunData, SolvedPosition
 
-JUMP, KINK = 0.5, 0.25
-"""Share of a step's bend by which its mean moves at most with the place of a jump or a kink in it."""
+JUMP, KINK = 0.5, 1.0 / 6.0
+"""Share of a step's bend by which its mean moves with the place of a jump or a kink in it."""
 SCATTERS = 2.0
 """Standard deviations: the largest of a hundred values of a pressure's scatter over the largest of ten."""
 DEVIATIONS = 0.6745

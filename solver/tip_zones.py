@@ -29,20 +29,21 @@ def path_between_zones(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, f
     """Roll distances [mm] between which no slice bears on a tip edge. rows: transverse curvature radii [mm] at which
     the last row of facets before the tip begins, pinion and wheel."""
     start, end = pair.path_of_contact
+    if pair.pinion.base_helix_angle == 0.0:
+        return max(start, -_beginning(pair, cuts, rows, 1)), min(end, _beginning(pair, cuts, rows, 0))
     edges = np.concatenate([cut.ξ[cut.edge] for _, cut in cuts])
-    low, high = float(edges[edges < 0.0].max(initial=start)), float(edges[edges > 0.0].min(initial=end))
-    if pair.pinion.base_helix_angle != 0.0:
-        return low, high
-    return -_beginning(pair, cuts, rows, 1, -low), _beginning(pair, cuts, rows, 0, high)
+    return float(edges[edges < 0.0].max(initial=start)), float(edges[edges > 0.0].min(initial=end))
 
 
-def _beginning(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], gear: int, edge: float) -> float:
-    """Of the zone in which this gear's tip bears: the distance from the pitch point [mm] towards it. edge: the nearest
-    one at which it does, of all positions."""
+def _beginning(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], gear: int) -> float:
+    """Of the zone of a spur pair in which this gear's tip bears: the distance from the pitch point [mm] towards it,
+    infinite where it never does. At most the one of the nearest slice that bears, and more than those of all nearer
+    ones."""
     sign = 1.0 - 2.0 * gear
-    outside = [(sign * ξ, result, cut, k) for result, cut in cuts for k, ξ in enumerate(cut.ξ) if not cut.edge[k]]
-    outside = [each for each in outside if 0.0 < each[0] < edge]
-    if not outside or not any(np.any(cut.edge & (np.abs(sign * cut.ξ - edge) <= AT_THE_END)) for _, cut in cuts):
+    slices = [(sign * float(ξ), result, cut, k) for result, cut in cuts for k, ξ in enumerate(cut.ξ) if sign * ξ > 0.0]
+    edge = min((distance for distance, _, cut, k in slices if cut.edge[k]), default=np.inf)
+    outside = [each for each in slices if each[0] < edge]
+    if edge == np.inf or not outside:
         return edge
     last = max(distance for distance, *_ in outside)
     reached = min(_reached(pair, result, cut, k, gear, rows[gear]) for x, result, cut, k in outside if x == last)

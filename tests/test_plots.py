@@ -24,7 +24,7 @@ from solver.gear_results import on_tip_edge
 from solver.figure_rows import friction_rows
 from solver.plain_text import signed
 from solver.plots import figures, pictures
-from solver.plots_drive import even_share, line_load, load_sharing, missed_peaks
+from solver.plots_drive import even_share, line_load, load_sharing
 from solver.plots_flank import envelope, pressure_map, pressure_top
 from solver.plots_lines import at_point, path_points
 from solver.plots_stress import engagement_stress, few_cells_across, running_median, smoothed, tooth_stress
@@ -32,6 +32,7 @@ from solver.plots_style import ABOVE, OVER, PRESSURE_MAP, friction_colours, png,
 from solver.plots_yang import paper_points, paper_position
 from solver.run_data import RunData
 from solver.run_plot import plot_folder
+from solver.spacing import missed_peaks
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,10 @@ from meshes.data import Floats, Ints
 from solver.gear_results import Slices
 from solver.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
 from solver.run_data import RunData, SolvedPosition
+from solver.tip_zones import AT_THE_END
+
+BESIDE = 3.0 * AT_THE_END
+"""Roll distance [mm] from the end of a tip-edge zone within which a spur pair's position stands at it."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +100,13 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
     radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
-    ends = tuple(TurnPeak(peak.ξ / radius, peak.pressure, True) for peak in entered)
-    return Engagement(run.frictions[index], angle, position, tooth, *values, zone_ends=ends)
+    curve = Engagement(run.frictions[index], angle, position, tooth, *values)
+    there = [np.abs(radius * angle - peak.ξ) <= BESIDE for peak in entered]
+    return replace(
+        curve,
+        at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
+        zone_ends=tuple(TurnPeak(peak.ξ / radius, peak.pressure, True) for peak in entered),
+    )
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:
@@ -148,9 +157,14 @@ def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
 def largest_peak(run: RunData, index: int) -> LinePeak:
     """The largest pressure of all positions and teeth, and between positions where a spur pair enters a tip-edge
     zone."""
+    radius = run.pair.pinion.base_radius
+    if run.pair.pinion.base_helix_angle == 0.0:
+        curve = engagement(run, index)
+        if not np.isfinite(curve.max_pressure).any():
+            return NO_PEAK
+        return LinePeak(radius * curve.peak.angle, curve.peak.pressure, curve.peak.at_zone_end)
     lines = [(each[index].cut, tooth.tooth) for each in run.positions for tooth in each[index].teeth]
     found = [line_peak(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
-    found += _zone_ends(run, index, run.inner_path)
     return max((peak for peak in found if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
 
 

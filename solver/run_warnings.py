@@ -92,7 +92,7 @@ def _about_spacing(run: RunData, _: MeshFacts) -> Iterator[str]:
         yield (
             f"Positions are {step:.2g}° apart, and what may lie between them makes "
             f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(said)}; more of them "
-            "(sweep.positions) narrow it."
+            "(sweep.positions) make that less."
         )
 
 

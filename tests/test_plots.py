@@ -349,6 +349,19 @@ def test_extremes_between_positions() -> None:
     assert missed_peaks(x[:4]) == 0.0
 
 
+def test_few_positions_are_said_below_pressures() -> None:
+    """Problem: a made-up pitch whose pressures three positions cannot follow, and 24 can. Exact: one sentence below 02
+    and 03 of the first, with the share that summary.json has as spacing error; none of the second."""
+    few, many = (synthetic_run("contact.friction=0.1", f"sweep.positions={n}") for n in (3, 24))
+    row = friction_rows(few)[0]
+    share = 100.0 * row.spacing_error.max_pressure_MPa / row.max_pressure_MPa
+    for draw in (pressure_map, engagement_stress):
+        with styled():
+            words = [" ".join(text.get_text() for text in draw(each).findobj(Text)) for each in (few, many)]
+        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.2g} % larger" in words[0]
+        assert "too few" not in words[1]
+
+
 def test_points_lie_where_the_paper_says(run: RunData) -> None:
     """A, B, C on the line through the pitch circle: below, at, above it; D on the line near the root. All on the flank
     and under pressure."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from solver.engagement import largest_peak
 from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts
-from solver.plain_text import signed
+from solver.plain_text import brief, signed
 from solver.run_data import RunData
 from solver.scene_warnings import FEWEST_CELLS, FINER, few_cells
 from solver.summary_rows import FrictionRow
@@ -58,7 +58,7 @@ def _few_cells(run: RunData) -> str:
     bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
     return (
         f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for looking only; "
-        f"the largest one is known within its error bar, {bar:.2g} %; for better ones {FINER}."
+        f"the largest one is known within its error bar, {brief(bar)} %; for better ones {FINER}."
     )
 
 
@@ -90,7 +90,7 @@ def _about_spacing(run: RunData, _: MeshFacts) -> Iterator[str]:
     if said:
         step = math.degrees(run.pitch) / len(run.positions)
         yield (
-            f"Positions are {step:.2g}° apart, and what may lie between them makes "
+            f"Positions are {brief(step)}° apart, and what may lie between them makes "
             f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(said)}; more of them "
             "(sweep.positions) make that less."
         )
@@ -102,7 +102,7 @@ def _spaced(row: FrictionRow, name: str) -> str:
     if not _share(row, name) > SPACING_SAID or (bars is not None and part < 0.5 * getattr(bars, name)):
         return ""
     words, unit = NAMES[name]
-    return f"± {part:.2g} {unit} of the {words} ({100.0 * _share(row, name):.2g} %, μ = {row.friction:g})"
+    return f"± {brief(part)} {unit} of the {words} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
 
 
 def _share(row: FrictionRow, name: str) -> float:
@@ -116,4 +116,4 @@ def few_positions(row: FrictionRow) -> str:
     share = _share(row, "max_pressure_MPa")
     if not share > SPACING_SAID:
         return ""
-    return f"For looking only, positions are too few: between them pressures may be {100.0 * share:.2g} % larger."
+    return f"For looking only, positions are too few: between them pressures may be {brief(100.0 * share)} % larger."

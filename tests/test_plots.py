@@ -358,7 +358,7 @@ def test_few_positions_are_said_below_pressures() -> None:
     for draw in (pressure_map, engagement_stress):
         with styled():
             words = [" ".join(text.get_text() for text in draw(each).findobj(Text)) for each in (few, many)]
-        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.2g} % larger" in words[0]
+        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.1f} % larger" in words[0]
         assert "too few" not in words[1]
 
 

@@ -115,7 +115,7 @@ def test_few_positions_are_said(run: RunData) -> None:
     errors = estimated_errors(run, Companion(run, "", 0.0))
     for each, words in ((run, "makes errors"), (replace(run, errors=errors), "most of the error bars")):
         (said,) = [sentence for sentence in warnings_of(each, GOOD) if "sweep.positions" in sentence]
-        assert words in said and "MPa of the largest pressure (" in said and "Positions are 1° apart" in said
+        assert words in said and "MPa of the largest pressure (" in said and "Positions are 1.0° apart" in said
     smooth = synthetic_run("contact.friction=0.1", "sweep.positions=24")
     assert not any("sweep.positions" in sentence for sentence in warnings_of(smooth, GOOD))
 

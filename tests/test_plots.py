@@ -20,8 +20,8 @@ from evidence.tutorial import small
 from solver.cli import Exit, main
 from solver.display import off_screen
 from solver.engagement import engagement, engagements
-from solver.gear_results import on_tip_edge
 from solver.figure_rows import friction_rows
+from solver.gear_results import on_tip_edge
 from solver.plain_text import signed
 from solver.plots import figures, pictures
 from solver.plots_drive import even_share, line_load, load_sharing
@@ -32,7 +32,6 @@ from solver.plots_style import ABOVE, OVER, PRESSURE_MAP, friction_colours, png,
 from solver.plots_yang import paper_points, paper_position
 from solver.run_data import RunData
 from solver.run_plot import plot_folder
-from solver.spacing import missed_peaks
 
 
 @pytest.fixture(scope="module")
@@ -336,30 +335,6 @@ def test_a_single_pair_is_not_smoothed_away() -> None:
     known = np.isfinite(curve.max_pressure)
     np.testing.assert_allclose(line.max_pressure[known], curve.max_pressure[known], rtol=0.03)
     assert np.nanmax(running_median(curve.max_pressure)) < 0.9 * np.nanmax(curve.max_pressure)
-
-
-def test_extremes_between_positions() -> None:
-    """Exact: of a sawtooth with corners halfway between samples, half a step's rise and fall is missed at each end;
-    where samples meet the corners nothing is, and of a sine hardly anything."""
-    x = np.arange(20) / 20.0
-    for shift, missed in ((0.5, 0.05), (0.0, 0.0)):
-        wave = 1.0 - np.abs(2.0 * ((x + shift / 20.0) % 1.0) - 1.0)  # corners 0 and 1
-        assert missed_peaks(wave) == pytest.approx(2.0 * missed, abs=1e-12)
-    assert missed_peaks(np.sin(2.0 * np.pi * (x + 0.013))) < 0.2
-    assert missed_peaks(x[:4]) == 0.0
-
-
-def test_few_positions_are_said_below_pressures() -> None:
-    """Problem: a made-up pitch whose pressures three positions cannot follow, and 24 can. Exact: one sentence below 02
-    and 03 of the first, with the share that summary.json has as spacing error; none of the second."""
-    few, many = (synthetic_run("contact.friction=0.1", f"sweep.positions={n}") for n in (3, 24))
-    row = friction_rows(few)[0]
-    share = 100.0 * row.spacing_error.max_pressure_MPa / row.max_pressure_MPa
-    for draw in (pressure_map, engagement_stress):
-        with styled():
-            words = [" ".join(text.get_text() for text in draw(each).findobj(Text)) for each in (few, many)]
-        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.1f} % larger" in words[0]
-        assert "too few" not in words[1]
 
 
 def test_points_lie_where_the_paper_says(run: RunData) -> None:

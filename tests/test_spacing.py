@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from mpi4py import MPI
 from synthetic_run import synthetic_run
 from test_run_warnings import GOOD
@@ -16,6 +17,9 @@ from solver.companion import Companion, solved_run
 from solver.error_bars import errors_between, estimated_errors
 from solver.estimated_errors import added
 from solver.figure_rows import friction_rows
+from solver.plots_flank import pressure_map
+from solver.plots_stress import engagement_stress
+from solver.plots_style import styled
 from solver.run_data import RunData
 from solver.run_sweep import pitch_of
 from solver.run_warnings import SPACING_SAID, warnings_of
@@ -124,3 +128,27 @@ def test_a_single_position_has_no_spacing(run: RunData) -> None:
     """NaN, which is null in summary.json: nothing is known of what lies beside it."""
     alone = spacing_errors(replace(run, positions=run.positions[:1]), 0)
     assert np.isnan(alone.max_pressure_MPa) and np.isnan(alone.loss_percent)
+
+
+def test_extremes_between_positions() -> None:
+    """Exact: of a sawtooth with corners halfway between samples, half a step's rise and fall is missed at each end;
+    where samples meet the corners nothing is, and of a sine hardly anything."""
+    x = np.arange(20) / 20.0
+    for shift, missed in ((0.5, 0.05), (0.0, 0.0)):
+        wave = 1.0 - np.abs(2.0 * ((x + shift / 20.0) % 1.0) - 1.0)  # corners 0 and 1
+        assert missed_peaks(wave) == pytest.approx(2.0 * missed, abs=1e-12)
+    assert missed_peaks(np.sin(2.0 * np.pi * (x + 0.013))) < 0.2
+    assert missed_peaks(x[:4]) == 0.0
+
+
+def test_few_positions_are_said_below_pressures() -> None:
+    """Problem: a made-up pitch whose pressures three positions cannot follow, and 24 can. Exact: one sentence below 02
+    and 03 of the first, with the share that summary.json has as spacing error; none of the second."""
+    few, many = (synthetic_run("contact.friction=0.1", f"sweep.positions={n}") for n in (3, 24))
+    row = friction_rows(few)[0]
+    share = 100.0 * row.spacing_error.max_pressure_MPa / row.max_pressure_MPa
+    for draw in (pressure_map, engagement_stress):
+        with styled():
+            words = [" ".join(text.get_text() for text in draw(each).findobj(Text)) for each in (few, many)]
+        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.1f} % larger" in words[0]
+        assert "too few" not in words[1]

@@ -17,16 +17,9 @@ from evidence.report import table
 from solver.cost import Timings
 from solver.estimated_errors import FigureErrors
 from solver.mesh_facts import MeshFacts
-from solver.results import (
-    SCHEMA_VERSION,
-    ErrorBars,
-    FrictionRow,
-    PositionRow,
-    Summary,
-    ToothRow,
-)
 from solver.shaft_forces import ShaftForces
 from solver.skips import Skipped
+from solver.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
 
@@ -91,7 +84,7 @@ SECTIONS = (
     ("`estimated_error`", ErrorBars, ""),
     ("`frictions`, each entry", FrictionRow, ""),
     ("`frictions`, `forces_on_pinion` and `forces_on_wheel` of an entry", ShaftForces, FORCES),
-    ("`frictions`, `estimated_error` of an entry", FigureErrors, ""),
+    ("`frictions`, `estimated_error` and `spacing_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
     ("`wear.csv`", BlockRow, ""),

@@ -101,6 +101,12 @@ def _robust(docs: Path) -> Iterator[Promise]:
     yield Promise(
         "true error inside the error bar", f"{100 * HELD:.0f} %", f"{inside} of {len(bars)}", inside >= HELD * len(bars)
     )
+    spaced = read_rows(docs / "benchmark" / "spacing.csv", BarRow)
+    inside = sum(row.inside for row in spaced)
+    yield Promise(
+        "error of the spacing of positions inside its bar", f"{100 * HELD:.0f} %", f"{inside} of {len(spaced)}",
+        inside >= HELD * len(spaced),
+    )  # fmt: skip
     yield from _scenes(docs)
     free = measured(docs / "stress" / "independence.md")
     for what, start in (

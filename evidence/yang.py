@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.tables import read_rows, write_rows
-from solver.engagement import Engagement, between, crossing, engagement, largest_peak, pooled_peaks
+from solver.engagement import Engagement, crossing, engagement, largest_peak
+from solver.figure_rows import friction_rows
+from solver.line_peaks import between, pooled_peaks
 from solver.plots_lines import at_point
 from solver.plots_stress import relative_change, trends
 from solver.plots_teeth import YANG
 from solver.plots_yang import paper_points, paper_position
-from solver.results import friction_rows
 from solver.run_data import RunData, read_run
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,9 +73,8 @@ def _beside_hertz(run: RunData, index: int) -> Named:
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Named:
-    top = int(np.nanargmax(low.max_pressure))
-    yield "largest_MPa", float(low.max_pressure[top])
-    yield "largest_deg", float(np.degrees(low.angle[top]))
+    yield "largest_MPa", low.peak.pressure
+    yield "largest_deg", float(np.degrees(low.peak.angle))
     known = np.isfinite(low.max_pressure)
     angle, stress = np.degrees(low.angle[known]), low.max_pressure[known]
     yield "at_pitch_point_MPa", float(np.interp(0.0, angle, stress))
@@ -99,7 +99,9 @@ def _points(run: RunData, low: int, high: int) -> Named:
 
 
 def _whole_pair(run: RunData, name: str, index: int) -> Named:
-    row, curve, errors = friction_rows(run)[index], engagement(run, index), run.errors.figures[index]
+    row, curve = friction_rows(run)[index], engagement(run, index)
+    if (errors := row.estimated_error) is None:
+        raise ValueError(f"{run.errors.missing}: wanted a run with error bars, `run` with --resume computes them")
     teeth = np.bincount(curve.position[curve.force > 0.0])
     yield f"{name}_friction", row.friction
     yield f"{name}_largest_bar_MPa", errors.max_pressure_MPa

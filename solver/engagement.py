@@ -7,19 +7,30 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
 from meshes.data import Floats, Ints
-from meshes.parameters import GearPair
 from solver.gear_results import Slices
+from solver.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
 from solver.run_data import RunData, SolvedPosition
+from solver.tip_zones import AT_THE_END
 
-AT_THE_END = 0.01
-"""Roll distance [mm] within which a slice is at the end of a tip-edge zone. An end is the place of a slice that bears
-on the edge; at the same position another mesh or friction coefficient has its own a micrometre beside it, and
-round-off must not decide whether that counts."""
+BESIDE = 3.0 * AT_THE_END
+"""Roll distance [mm] from the end of a tip-edge zone within which a spur pair's position stands at it."""
+
+
+@dataclass(frozen=True)
+class TurnPeak:
+    """A pressure of an engagement."""
+
+    angle: float
+    """The tooth's own pinion rotation [rad]."""
+    pressure: float
+    """[MPa]."""
+    at_zone_end: bool
+    """It lies where a tip-edge zone begins, and pressure may rise on."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +53,22 @@ class Engagement:
     at_zone_end: np.ndarray
     mean_pressure: Floats
     contact_length: Floats
+    zone_ends: tuple[TurnPeak, ...] = field(default=(), kw_only=True)
+    """Where a spur pair enters the tip-edge zones, between two positions."""
+
+    @property
+    def peak(self) -> TurnPeak:
+        """The largest pressure. Raises ValueError where there is none."""
+        top = int(np.nanargmax(self.max_pressure))
+        own = TurnPeak(float(self.angle[top]), float(self.max_pressure[top]), bool(self.at_zone_end[top]))
+        return max(own, *self.zone_ends, key=lambda peak: peak.pressure) if self.zone_ends else own
+
+    @property
+    def pressure_curve(self) -> tuple[Floats, Floats]:
+        """(rotations [rad], largest pressures [MPa]), those at `zone_ends` among them."""
+        angle = np.append(self.angle, [end.angle for end in self.zone_ends])
+        order = np.argsort(angle, kind="stable")
+        return angle[order], np.append(self.max_pressure, [end.pressure for end in self.zone_ends])[order]
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -72,7 +99,23 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index], inner)]
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
-    return Engagement(run.frictions[index], angle, position, tooth, *values)
+    radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
+    curve = Engagement(run.frictions[index], angle, position, tooth, *values)
+    there = [np.abs(radius * angle - peak.ξ) <= BESIDE for peak in entered]
+    return replace(
+        curve,
+        at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
+        zone_ends=tuple(TurnPeak(peak.ξ / radius, peak.pressure, True) for peak in entered),
+    )
+
+
+def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:
+    """Of a spur pair; a helical line's own slices enter the zones one by one, see `line_peak`."""
+    if run.pair.pinion.base_helix_angle != 0.0:
+        return []
+    cuts = [each[index].cut for each in run.positions]
+    whole = Slices(*(np.concatenate([getattr(cut, each.name) for cut in cuts]) for each in fields(Slices)))
+    return zone_end_peaks(run.pair, whole, inner)
 
 
 def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:
@@ -99,20 +142,6 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
     ]
 
 
-@dataclass(frozen=True)
-class LinePeak:
-    """The largest peak pressure [MPa] along a contact line between the tip-edge zones, at the roll distance ξ [mm];
-    both NaN where nothing of the line lies there. at_zone_end: it lies where such a zone begins, and pressure may rise
-    on."""
-
-    ξ: float
-    pressure: float
-    at_zone_end: bool
-
-
-NO_PEAK = LinePeak(float("nan"), float("nan"), False)
-
-
 def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
     """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
     where a slice bears on a tip edge."""
@@ -125,100 +154,18 @@ def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
     return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
 
 
-def line_peak(pair: GearPair, cut: Slices, tooth: int, inner: tuple[float, float]) -> LinePeak:
-    """Along a tooth's contact line between the tip-edge zones, whose ends are the roll distances `inner` [mm].
-
-    The line is cut where it enters these zones: which slices happen to lie inside would make the maximum jump from
-    position to position, for the pressure is steepest there.
-    """
-    line = np.flatnonzero(cut.tooth == tooth)
-    line = line[np.argsort(cut.ξ[line])]
-    fitted = line[has_peak(cut)[line]]
-    if len(fitted) == 0:
-        return NO_PEAK
-    ξ, over = cut.ξ[fitted], _over_hertz(cut, fitted)
-    inside = between(ξ, inner)
-    limits = _zone_ends(cut, line, inner) if np.ptp(ξ) > 0.0 else np.zeros(0)
-    more = _hertz_at(limits, pair, cut, line, fitted) * np.interp(limits, ξ, over)
-    places, peaks = np.concatenate([ξ[inside], limits]), np.concatenate([(over * cut.hertz[fitted])[inside], more])
-    if len(peaks) == 0:
-        return NO_PEAK
-    top = int(np.argmax(peaks))
-    return LinePeak(float(places[top]), float(peaks[top]), bool(top >= inside.sum()))
-
-
 def largest_peak(run: RunData, index: int) -> LinePeak:
-    """The largest `line_peak` of all positions and teeth."""
+    """The largest pressure of all positions and teeth, and between positions where a spur pair enters a tip-edge
+    zone."""
+    radius = run.pair.pinion.base_radius
+    if run.pair.pinion.base_helix_angle == 0.0:
+        curve = engagement(run, index)
+        if not np.isfinite(curve.max_pressure).any():
+            return NO_PEAK
+        return LinePeak(radius * curve.peak.angle, curve.peak.pressure, curve.peak.at_zone_end)
     lines = [(each[index].cut, tooth.tooth) for each in run.positions for tooth in each[index].teeth]
     found = [line_peak(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
     return max((peak for peak in found if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
-
-
-def pooled_peaks(cut: Slices) -> Floats:
-    """The fitted peaks (n,) [MPa] of a position's slices as `line_peak` takes them, pooled with their neighbours on the
-    line; NaN where there is none."""
-    peaks = np.full(len(cut.peak), np.nan)
-    for tooth in np.unique(cut.tooth):
-        line = np.flatnonzero((cut.tooth == tooth) & has_peak(cut))
-        line = line[np.argsort(cut.ξ[line])]
-        if len(line) == 0:
-            continue
-        peaks[line] = _over_hertz(cut, line) * cut.hertz[line]
-    return peaks
-
-
-def _over_hertz(cut: Slices, fitted: Ints) -> Floats:
-    """Fitted peaks (m,) of the slices along a line over Hertz's for their loads, each slice pooled with its neighbours
-    in parts of 1, 2, 1.
-
-    A fit knows its slice's load well, and the width less so: that depends on how the contact lies in the cells, which
-    differs from slice to slice as the line crosses them. Widths' squares, the second moments, are pooled: where the
-    contact is 1.7 elements wide they are 8 % too large and too small by turns, and the largest of them would be taken.
-    """
-    square = (cut.hertz[fitted] / cut.peak[fitted]) ** 2
-    summed, parts = (np.convolve(np.pad(each, 1), (1.0, 2.0, 1.0), "valid") for each in (square, np.ones_like(square)))
-    return np.asarray(np.sqrt(parts / summed))
-
-
-def _zone_ends(cut: Slices, line: Ints, inner: tuple[float, float]) -> Floats:
-    """Those of the roll distances `inner` that a line, its slices in order, comes to."""
-    half, ends = 0.5 * np.max(np.diff(cut.ξ[line])), cut.ξ[line[[0, -1]]]
-    return np.array([limit for limit in inner if ends[0] - half <= limit <= ends[1] + half])
-
-
-def has_peak(cut: Slices) -> np.ndarray:
-    """(n,) bool: the slices that carry load and have a fitted peak."""
-    return np.asarray(np.isfinite(cut.peak) & (cut.hertz > 0.0))
-
-
-def between(ξ: Floats, inner: tuple[float, float]) -> np.ndarray:
-    """(n,) bool: whether slices at the roll distances ξ [mm] lie between the tip-edge zones, whose ends are `inner`; at
-    an end, one bears on the edge."""
-    return np.asarray((ξ > inner[0] + AT_THE_END) & (ξ < inner[1] - AT_THE_END))
-
-
-def _hertz_at(x: Floats, pair: GearPair, cut: Slices, line: Ints, fitted: Ints) -> Floats:
-    """Hertz's peak pressure [MPa] for the line load where a contact line has the roll distances x (m,) [mm].
-
-    The loads are known on tip edges too, where no peak can be fitted: continuing the peaks themselves would multiply
-    their scatter. A line's first and last slice on a tip edge are loaded over a part of their width: they are left out.
-    """
-    load = np.union1d(line[1:-1], fitted)
-    load = load[np.argsort(cut.ξ[load])]
-    even = np.interp(x, cut.ξ[load], cut.hertz[load] * _root_of_radius(pair, cut.ξ[load]))
-    return np.asarray(even / _root_of_radius(pair, x))
-
-
-def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
-    """√R [√mm] at roll distances; p0√R depends on the line load alone."""
-    return np.sqrt(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
-
-
-def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:
-    """Mean along the contact line of the fitted peak pressures [MPa] between the tip-edge zones, see `line_peak`; NaN
-    where no slice with a fitted peak is left."""
-    here = (cut.tooth == tooth) & has_peak(cut) & between(cut.ξ, inner)
-    return float(np.average(cut.peak[here], weights=cut.width[here])) if here.any() else float("nan")
 
 
 def sign_changes(x: Floats, y: Floats) -> Floats:

@@ -13,8 +13,8 @@ square difference of the curves.
   run's own mesh, as the figure is: the companion's larger cells see the edges from further away, but the loads beside
   them are known.
 
-A bar is about the mesh alone: both meshes stand at the same positions, so how finely these sample the pitch is not in
-it, nor is what the scene leaves out.
+Both meshes stand at the same positions: how finely these sample the pitch is a part of its own (`spacing`), which is
+added. What the scene leaves out is in none of them.
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ from meshes.data import Floats
 from solver.archive import Archive
 from solver.companion import Companion
 from solver.engagement import engagement, with_hertz
-from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors
-from solver.results import loss_percent, mesh_stiffness, secant_stiffness
-from solver.run_data import RunData, SolvedPosition
+from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, added, keep_errors, kept_errors
+from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from solver.run_data import RunData
+from solver.spacing import spacing_errors
 
 Reduction = Callable[[Floats], float]
 
@@ -64,13 +65,15 @@ def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
     if companion.run is None:
         return EstimatedErrors(missing=companion.failure)
     try:
-        return EstimatedErrors(errors_between(run, companion.run), METHOD, "")
+        mesh = errors_between(run, companion.run)
+        return EstimatedErrors(tuple(added(own, spacing_errors(run, k)) for k, own in enumerate(mesh)), METHOD, "")
     except (ValueError, IndexError) as error:  # a companion too coarse to have the figures, as without any contact
         return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
 
 
 def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
-    """The bars of `run`, one per friction coefficient; coarse: the same scene on elements of twice the size."""
+    """The mesh's part of the bars of `run`, one per friction coefficient; coarse: the same scene on elements of twice
+    the size."""
     return tuple(_errors(run, coarse, index) for index in range(len(run.frictions)))
 
 
@@ -79,9 +82,9 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     curves = [engagement(each, index, run.inner_path) for each in runs]
     error, tangent, secant, loss = (
         [Curve(each.angles, np.array([value(each, own[index]) for own in each.positions])) for each in (run, coarse)]
-        for value in (_transmission_error, mesh_stiffness, secant_stiffness, _loss)
+        for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
     )
-    peaks = [Curve(each.angle, each.max_pressure) for each in curves]
+    peaks = [Curve(*each.pressure_curve) for each in curves]
     means = [Curve(each.angle, each.mean_pressure) for each in curves]
     order = run.scene.mesh.order
     return FigureErrors(
@@ -114,13 +117,3 @@ def _relative(first: Curve, second: Curve) -> float:
         return float("nan")
     size = np.linalg.norm(one[known])
     return float(np.linalg.norm(one[known] - other[known]) / size) if size > 0.0 else 0.0
-
-
-def _transmission_error(_: RunData, solved: SolvedPosition) -> float:
-    """[µm]."""
-    return 1e3 * solved.result.transmission_error
-
-
-def _loss(_: RunData, solved: SolvedPosition) -> float:
-    """[%]."""
-    return loss_percent(solved)

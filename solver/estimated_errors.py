@@ -11,7 +11,8 @@ from solver.archive import Archive, ArchiveError, read_arrays
 
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
-    "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes"
+    "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes; plus, "
+    "of all figures, what may lie between the positions (spacing_error)"
 )
 
 
@@ -32,6 +33,11 @@ class FigureErrors:
     """Of the secant stiffness."""
     loss_percent: float
     """Of the loss."""
+
+
+def added(one: FigureErrors, other: FigureErrors) -> FigureErrors:
+    """The sums of two parts; NaN where one is not known."""
+    return FigureErrors(*(a + b for a, b in zip(astuple(one), astuple(other))))
 
 
 @dataclass(frozen=True)

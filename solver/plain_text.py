@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 
 def signed(value: float, digits: int = 1) -> str:
     """A number with its sign, a true minus; what rounds to zero has no sign."""
     return f"{value:+.{digits}f}".replace("-", "−") if round(value, digits) else fixed(value, digits)
+
+
+def brief(value: float, digits: int = 2) -> str:
+    """A number with so many significant digits, never as a power of ten; whole numbers keep theirs."""
+    places = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
+    return fixed(value, max(0, places))
 
 
 def fixed(value: float, digits: int) -> str:

@@ -14,6 +14,7 @@ from meshes.flank import contact_lines
 from solver.engagement import engagements, largest_peak
 from solver.estimated_errors import plus_minus
 from solver.estimates import HertzEstimate, hertz_estimate
+from solver.figure_rows import friction_rows
 from solver.hertz import LoadFactors
 from solver.mesh_facts import cells_across
 from solver.overview import paper_estimate
@@ -21,9 +22,10 @@ from solver.plain_text import signed
 from solver.plots_stress import OWN_ANGLE
 from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, note, sheet
 from solver.plots_teeth import compares_yang
-from solver.results import FrictionRow, friction_rows, loss_percent
+from solver.position_figures import loss_percent
 from solver.run_data import RunData
 from solver.scene_warnings import FEWEST_CELLS
+from solver.summary_rows import FrictionRow
 
 YANG_PRINTS = 1788.0
 """Yang et al. 2022, Table 4 [MPa]; their Eq. 4 gives it neither with nor without their factors."""
@@ -83,7 +85,7 @@ def transmission_error(run: RunData) -> Figure:
     see += "."
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
-    missed = missed_peaks(1e3 * np.array([each[low].result.transmission_error for each in run.positions]))
+    missed = rows[low].spacing_error.transmission_error_peak_to_peak_um
     text = f"{len(run.positions)} positions. Between them the curve may reach further: peak to peak up to"
     foot(figure, f"{text} {missed:.2f} µm more.")
     for index, colour in enumerate(friction_colours(run.frictions)):
@@ -99,24 +101,6 @@ def transmission_error(run: RunData) -> Figure:
     axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
-
-
-def missed_peaks(values: Floats) -> float:
-    """By how much the peak-to-peak value of a periodic curve may exceed that of its samples (n,): at the largest and at
-    the least, the straight lines through the two samples before and the two after it are continued to where they
-    meet; that is a corner's height, and more than a smooth curve's."""
-    if len(values) < 5:
-        return 0.0
-    return sum(_corner(np.roll(each, 2 - int(np.argmax(each)))[:5]) for each in (values, -values))
-
-
-def _corner(y: Floats) -> float:
-    """How far above y[2], the largest of five samples, the lines through y[0], y[1] and y[3], y[4] meet."""
-    rise, fall = float(y[1] - y[0]), float(y[3] - y[4])
-    if rise + fall <= 0.0:
-        return 0.0
-    x = (y[3] - y[1] + 2.0 * fall) / (rise + fall)  # steps from y[1]: y[1] + rise x = y[3] + fall (2 − x)
-    return max(0.0, float(y[1] + rise * x - y[2])) if 0.0 <= x <= 2.0 else 0.0
 
 
 def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
@@ -135,7 +119,7 @@ def losses(run: RunData) -> Figure:
     figure = sheet("Friction loss", f"Efficiency of the mesh over a pitch: {ends}.", (10.6, 4.8))
     over, total = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     for index, colour in enumerate(friction_colours(run.frictions)):
-        x, y = _closed(run, np.array([loss_percent(each[index]) for each in run.positions]))
+        x, y = _closed(run, np.array([loss_percent(run, each[index]) for each in run.positions]))
         over.plot(x, y, color=colour, label=f"μ = {run.frictions[index]:g}")
     over.set(xlabel=PINION_ANGLE, ylabel="friction power over input power [%]")
     over.set_ylim(bottom=-0.02 * over.get_ylim()[1])  # a line at 0 is seen

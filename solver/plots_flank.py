@@ -11,12 +11,15 @@ from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
-from solver.engagement import largest_peak, pooled_peaks
+from solver.engagement import largest_peak
+from solver.figure_rows import friction_rows
 from solver.flank_field import flank_field, flank_patch
 from solver.gear_results import on_tip_edge
+from solver.line_peaks import pooled_peaks
 from solver.plain_text import signed
-from solver.plots_style import ABOVE, INK, PRESSURE_MAP, sheet
+from solver.plots_style import ABOVE, INK, PRESSURE_MAP, foot, sheet
 from solver.run_data import RunData, SolvedPosition
+from solver.run_warnings import few_positions
 
 FACE = "face width z [mm]"
 ROLL = "roll distance ξ from the pitch point [mm]"
@@ -40,6 +43,8 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
     _diameters(axes[-1], run)
     bar = figure.colorbar(shown, ax=list(axes), location="bottom", shrink=0.5, aspect=45, pad=0.02, extend="max")
     bar.set_label(f"pressure [MPa]   ({ABOVE})")
+    if few := few_positions(friction_rows(run)[index]):
+        foot(figure, few)
     return figure
 
 

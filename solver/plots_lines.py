@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from meshes.data import Floats
 from meshes.parameters import GearPair
-from solver.engagement import pooled_peaks
 from solver.gear_results import Slices
+from solver.line_peaks import pooled_peaks
 from solver.plain_text import signed
 from solver.plots_flank import FACE, envelope
 from solver.plots_style import FAINT, foot, friction_colours, sheet

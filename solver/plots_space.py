@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from solver.engagement import Engagement, engagement
+from solver.figure_rows import position_row
 from solver.plots3d import gear_picture, pair_picture
 from solver.plots_flank import pressure_top
 from solver.plots_stress import OWN_ANGLE, STRESS
 from solver.plots_style import ABOVE, FAINT, PINION, PRESSURE_MAP, palette, reduced, sheet
-from solver.results import position_row
 from solver.run_data import RunData
 
 FRAME_MS = 110

@@ -17,11 +17,13 @@ from matplotlib.figure import Figure
 from meshes.data import Floats
 from solver.engagement import Engagement, crossing, engagement, engagements, with_hertz
 from solver.estimated_errors import plus_minus
+from solver.figure_rows import friction_rows
 from solver.mesh_facts import cells_across
 from solver.plain_text import signed
 from solver.plots_style import FAINT, INK, TEETH, foot, friction_colours, sheet
 from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
+from solver.run_warnings import few_positions
 from solver.scene_warnings import FEWEST_CELLS
 
 STRESS = "maximum contact stress [MPa]"
@@ -39,12 +41,12 @@ def engagement_stress(run: RunData) -> Figure:
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    foot(figure, f"Largest between the tip-edge zones, from ξ = {low} to {high} mm.", *_resolved(run))
+    foot(figure, f"Largest between the tip-edge zones, from ξ = {low} to {high} mm.", *_resolved(run), *_sampled(run))
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
-    values = np.concatenate([c.max_pressure for c in curves])
-    largest = np.nanmax(_lowest(curves).max_pressure) + np.array([-1.0, 1.0]) * bar  # NaN: no bar
+    values = np.concatenate([c.pressure_curve[1] for c in curves])
+    largest = _lowest(curves).peak.pressure + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
     main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
     main.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
@@ -139,6 +141,12 @@ def _resolved(run: RunData) -> list[str]:
     ]
 
 
+def _sampled(run: RunData) -> list[str]:
+    """What is to be said where positions are too few."""
+    said = few_positions(friction_rows(run)[int(np.argmin(run.frictions))])
+    return [said] if said else []
+
+
 def running_median(values: Floats) -> Floats:
     """Of `MEDIAN` values (n,) about each, fewer at the ends; NaN stays."""
     known = np.flatnonzero(np.isfinite(values))
@@ -151,7 +159,8 @@ def running_median(values: Floats) -> Floats:
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
     if here is None:
-        return np.degrees(curve.angle), curve.max_pressure
+        angle, pressure = curve.pressure_curve
+        return np.degrees(angle), pressure
     return np.degrees(curve.angle[here] - tooth * run.pitch), curve.max_pressure[here]
 
 
@@ -214,17 +223,16 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
 def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
     """The error bar [MPa] of the largest pressure, where there is one."""
     if np.isfinite(bar):
-        top = int(np.nanargmax(curve.max_pressure))
-        place = np.degrees(curve.angle[top]), curve.max_pressure[top]
+        place = np.degrees(curve.peak.angle), curve.peak.pressure
         axes.errorbar(*place, yerr=bar, color=INK, linewidth=1.2, capsize=4.0, zorder=5.0)
 
 
 def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float, bar: float) -> str:
     """bar: of the largest pressure [MPa], NaN where it is not known."""
     lowest, highest = _lowest(curves), _highest(curves)
-    top = int(np.nanargmax(lowest.max_pressure))
-    place = signed(float(np.degrees(lowest.angle[top])))
-    peak = f"Largest {plus_minus(lowest.max_pressure[top], bar, 0)} MPa at {place}° (μ = {lowest.friction:g})"
+    top = lowest.peak
+    place = signed(float(np.degrees(top.angle)))
+    peak = f"Largest {plus_minus(top.pressure, bar, 0)} MPa at {place}° (μ = {lowest.friction:g})"
     if len(curves) == 1:
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))

@@ -17,6 +17,7 @@ from solver.gear_position import PositionResult
 from solver.gear_results import Slices, ToothSummary, slices, tooth_summaries
 from solver.gear_sweep import SweptPosition
 from solver.scene import Scene, load_scene
+from solver.tip_zones import path_between_zones, row_before_tip
 
 
 @dataclass(frozen=True)
@@ -93,10 +94,10 @@ class RunData:
     @cached_property
     def inner_path(self) -> tuple[float, float]:
         """Roll distances [mm] between which no slice of any position bears on a tip edge."""
-        start, end = self.pair.path_of_contact
-        edges = np.concatenate([solved.cut.ξ[solved.cut.edge] for each in self.positions for solved in each])
-        before, after = edges[edges < 0.0], edges[edges > 0.0]
-        return float(before.max(initial=start)), float(after.min(initial=end))
+        cuts = [(solved.result, solved.cut) for each in self.positions for solved in each]
+        flanks = [flank_nodes(gear, shape) for gear, shape in zip(self.pair.gears, self.shapes)]
+        rows = [row_before_tip(flank.roll_length, self.scene.mesh.order) for flank in flanks]
+        return path_between_zones(self.pair, cuts, (rows[0], rows[1]))
 
     @cached_property
     def flank(self) -> FlankNodes:

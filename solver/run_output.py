@@ -22,13 +22,14 @@ from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
 from solver.mesh_facts import MeshFacts, cells_across
-from solver.results import RunFacts, summary, write_summary, write_tables
+from solver.results import summary, write_summary, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_folder import RunFolder
 from solver.run_log import RunLog
 from solver.run_start import Meshes, keep_scene
 from solver.scene import Scene
 from solver.skips import skipped, wanted_output
+from solver.summary_rows import RunFacts
 
 BALANCE_LIMIT = 1e-2
 """A pitch whose energy does not balance better is an error, not a result."""

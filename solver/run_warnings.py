@@ -2,27 +2,42 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from solver.engagement import largest_peak
+from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts
-from solver.plain_text import signed
+from solver.plain_text import brief, signed
 from solver.run_data import RunData
-from solver.scene_warnings import FEWEST_CELLS, few_cells
+from solver.scene_warnings import FEWEST_CELLS, FINER, few_cells
+from solver.summary_rows import FrictionRow
 
 WORST_CELL = 0.05
 """Least scaled Jacobian that needs no word: hexahedra of a sector have 0.3 and more, what is cut from them may not."""
 
+SPACING_SAID = 0.03
+"""Share of a figure that may lie between the positions without a word."""
+NAMES = {
+    "max_pressure_MPa": ("largest pressure", "MPa"),
+    "mean_pressure_MPa": ("mean pressure", "MPa"),
+    "transmission_error_peak_to_peak_um": ("peak-to-peak transmission error", "µm"),
+    "mesh_stiffness_N_per_mm_um": ("mesh stiffness", "N/(mm·µm)"),
+    "loss_percent": ("loss", "% of the input"),
+}
+"""Of the figures that have an error bar, and their units; the secant stiffness goes with the tangent."""
+
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Of a finished run."""
-    return tuple([*_about_the_mesh(run, mesh), *_about_tip_edges(run), *_about_error_bars(run)])
+    about = _about_the_mesh, _about_tip_edges, _about_error_bars, _about_spacing
+    return tuple(sentence for each in about for sentence in each(run, mesh))
 
 
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
     cells = mesh.cells_across_contact_width
     if not cells >= FEWEST_CELLS:
-        yield f"The contact is {cells:.1f} elements wide (median); {few_cells()}"
+        yield f"The contact is {cells:.1f} elements wide (median); {_few_cells(run)}"
     if not mesh.min_scaled_jacobian >= WORST_CELL:
         yield bad_cells(mesh.min_scaled_jacobian)
 
@@ -35,7 +50,19 @@ def bad_cells(quality: float) -> str:
     )
 
 
-def _about_tip_edges(run: RunData) -> Iterator[str]:
+def _few_cells(run: RunData) -> str:
+    """What fewer cells than `FEWEST_CELLS` mean for this run's figures."""
+    if not run.errors.figures:
+        return few_cells()
+    largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
+    bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
+    return (
+        f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for looking only; "
+        f"the largest one is known within its error bar, {brief(bar)} %; for better ones {FINER}."
+    )
+
+
+def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
     bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
     if not any(bears):
         return
@@ -52,6 +79,41 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
         )
 
 
-def _about_error_bars(run: RunData) -> Iterator[str]:
+def _about_error_bars(run: RunData, _: MeshFacts) -> Iterator[str]:
     if run.scene.output.error_bars and not run.errors.figures:
         yield f"There are no error bars. {run.errors.missing}"
+
+
+def _about_spacing(run: RunData, _: MeshFacts) -> Iterator[str]:
+    rows = friction_rows(run)
+    said = [words for name in NAMES if (words := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
+    if said:
+        step = math.degrees(run.pitch) / len(run.positions)
+        yield (
+            f"Positions are {brief(step)}° apart, and what may lie between them makes "
+            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(said)}; more of them "
+            "(sweep.positions) make that less."
+        )
+
+
+def _spaced(row: FrictionRow, name: str) -> str:
+    """The part of a figure's bar that comes from the spacing of positions, where it is large and most of it."""
+    part, bars = getattr(row.spacing_error, name), row.estimated_error
+    if not _share(row, name) > SPACING_SAID or (bars is not None and part < 0.5 * getattr(bars, name)):
+        return ""
+    words, unit = NAMES[name]
+    return f"± {brief(part)} {unit} of the {words} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
+
+
+def _share(row: FrictionRow, name: str) -> float:
+    """Of a figure that its spacing error is; 0 where there is none."""
+    part, value = getattr(row.spacing_error, name), getattr(row, name)
+    return part / abs(value) if value and math.isfinite(part) else 0.0
+
+
+def few_positions(row: FrictionRow) -> str:
+    """What has to be said below a picture of pressures where positions are too few for it; nothing where not."""
+    share = _share(row, "max_pressure_MPa")
+    if not share > SPACING_SAID:
+        return ""
+    return f"For looking only, positions are too few: between them pressures may be {brief(100.0 * share)} % larger."

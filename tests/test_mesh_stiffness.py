@@ -10,11 +10,12 @@ from gear_cases import helical_scene, model_of, spur_scene, with_load
 from mpi4py import MPI
 
 from solver.companion import solved_run
+from solver.figure_rows import friction_rows
 from solver.gear_model import GearModel
 from solver.gear_position import SearchedAt, searched_at, shared_position
-from solver.results import FrictionRow, friction_rows
 from solver.run_sweep import pitch_of
 from solver.sectors import gear_mesh
+from solver.summary_rows import FrictionRow
 
 STEP = 1e-4
 """Of the torque."""

@@ -20,7 +20,7 @@ import pyvista
 from evidence.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
 from evidence.pages import ROOT
 from solver.cli import main
-from solver.results import PositionRow, ToothRow
+from solver.summary_rows import PositionRow, ToothRow
 from wear.pair_study import BlockRow
 from wear.report import GearReport, PairReport, WearReport
 

@@ -20,16 +20,16 @@ from evidence.tutorial import small
 from solver.cli import Exit, main
 from solver.display import off_screen
 from solver.engagement import engagement, engagements
+from solver.figure_rows import friction_rows
 from solver.gear_results import on_tip_edge
 from solver.plain_text import signed
 from solver.plots import figures, pictures
-from solver.plots_drive import even_share, line_load, load_sharing, missed_peaks
+from solver.plots_drive import even_share, line_load, load_sharing
 from solver.plots_flank import envelope, pressure_map, pressure_top
 from solver.plots_lines import at_point, path_points
 from solver.plots_stress import engagement_stress, few_cells_across, running_median, smoothed, tooth_stress
 from solver.plots_style import ABOVE, OVER, PRESSURE_MAP, friction_colours, png, sheet, styled
 from solver.plots_yang import paper_points, paper_position
-from solver.results import friction_rows
 from solver.run_data import RunData
 from solver.run_plot import plot_folder
 
@@ -335,17 +335,6 @@ def test_a_single_pair_is_not_smoothed_away() -> None:
     known = np.isfinite(curve.max_pressure)
     np.testing.assert_allclose(line.max_pressure[known], curve.max_pressure[known], rtol=0.03)
     assert np.nanmax(running_median(curve.max_pressure)) < 0.9 * np.nanmax(curve.max_pressure)
-
-
-def test_extremes_between_positions() -> None:
-    """Exact: of a sawtooth with corners halfway between samples, half a step's rise and fall is missed at each end;
-    where samples meet the corners nothing is, and of a sine hardly anything."""
-    x = np.arange(20) / 20.0
-    for shift, missed in ((0.5, 0.05), (0.0, 0.0)):
-        wave = 1.0 - np.abs(2.0 * ((x + shift / 20.0) % 1.0) - 1.0)  # corners 0 and 1
-        assert missed_peaks(wave) == pytest.approx(2.0 * missed, abs=1e-12)
-    assert missed_peaks(np.sin(2.0 * np.pi * (x + 0.013))) < 0.2
-    assert missed_peaks(x[:4]) == 0.0
 
 
 def test_points_lie_where_the_paper_says(run: RunData) -> None:

@@ -13,11 +13,13 @@ from synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
 from solver.archive import Archive
 from solver.cost import Timings
+from solver.figure_rows import degrees, friction_rows, position_rows
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.mesh_facts import MeshFacts
-from solver.results import RunFacts, friction_rows, position_rows, summary, write_tables
+from solver.results import summary, write_tables
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
+from solver.summary_rows import RunFacts
 
 FACTS = RunFacts(
     {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
@@ -156,3 +158,17 @@ def store(run: RunData, folder: Path) -> None:
     state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))
     for k, each in enumerate(results):
         archive.write_position(k, SweptPosition(each[0].stand.angle, each, state))
+
+
+def test_angles_without_round_off(tmp_path: Path) -> None:
+    """Problem: a pinion of 17 teeth at six positions, whose steps are 60/17°, in radians and back again. Exact: no
+    angle has more than six decimals in summary.json, and each is within half of the last one; of a pinion of 24 teeth
+    with 20 positions they are multiples of 0.75 as they stand."""
+    run = synthetic_run("contact.friction=[0.0, 0.1]")
+    write_tables(RunFolder(tmp_path), run, FACTS)
+    found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    angles = [row["pinion_angle_deg"] for row in found["positions"]]
+    angles += [row["max_pressure_angle_deg"] for row in found["frictions"]]
+    assert all(len(repr(angle).partition(".")[2]) <= 6 for angle in angles)
+    np.testing.assert_allclose(angles[:12:2], np.arange(6) * 60 / 17, atol=5.1e-7)
+    assert [degrees(k * 2.0 * np.pi / 24 / 20) for k in range(-20, 20)] == [0.75 * k for k in range(-20, 20)]

@@ -15,6 +15,7 @@ from test_results import FACTS
 from solver.cli import Exit, main
 from solver.companion import solved_run
 from solver.estimated_errors import EstimatedErrors, FigureErrors
+from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts, cells_across
 from solver.results import summary, write_tables
 from solver.run_data import RunData, SolvedPosition
@@ -29,8 +30,8 @@ BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 1.0, 1.0, 1.0, 1.0),), "", "")
 
 @pytest.fixture(scope="module")
 def quiet() -> RunData:
-    """A made-up run that no tip edge bears in."""
-    run = replace(synthetic_run("contact.friction=0.1"), errors=BARS)
+    """A made-up run that no tip edge bears in, at positions near enough to follow it."""
+    run = replace(synthetic_run("contact.friction=0.1", "sweep.positions=24"), errors=BARS)
 
     def inside(solved: SolvedPosition) -> SolvedPosition:
         bare = tuple(replace(tooth, edge_pressure=0.0) for tooth in solved.teeth)
@@ -59,17 +60,27 @@ def test_the_mesh(mesh: MeshFacts, said: str, quiet: RunData) -> None:
 
 
 def test_tip_edges_and_error_bars(quiet: RunData) -> None:
-    """A pair whose tip edges bear at all six positions, and whose largest pressure stands where their zone begins: both
+    """A pair whose tip edges bear at all 24 positions, and whose largest pressure stands where their zone begins: both
     are said; so is a companion that failed, but not one that was not asked for."""
-    run = synthetic_run("contact.friction=0.1")
+    run = synthetic_run("contact.friction=0.1", "sweep.positions=24")
     bears, zone, bars = warnings_of(run, GOOD)
-    assert "bears at 6 of 6 positions" in bears and "relieve the tips" in bears
+    assert "bears at 24 of 24 positions" in bears and "relieve the tips" in bears
     assert f"ξ = −{-run.inner_path[0]:.2f} mm" in zone
     assert "There are no error bars" in bars
     failed = replace(quiet, errors=EstimatedErrors(missing="It rained."))
     assert warnings_of(failed, GOOD) == ("There are no error bars. It rained.",)
     without = failed.scene.model_copy(update={"output": failed.scene.output.model_copy(update={"error_bars": False})})
     assert warnings_of(replace(failed, scene=without), GOOD) == ()
+
+
+def test_what_is_said_of_a_coarse_mesh_agrees_with_the_bar(quiet: RunData) -> None:
+    """1.7 elements across and a bar of 4.6 % of the largest pressure: the sentence says what the bar is of, with its
+    number, and what it is not of."""
+    peak = friction_rows(quiet)[0].max_pressure_MPa
+    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, 1.0, 1.0, 1.0, 1.0),), "", "")
+    (said,) = warnings_of(replace(quiet, errors=bars), MeshFacts(0.3, 1.7))
+    assert "pressures of single positions may be off by 15 %" in said
+    assert "the largest one is known within its error bar, 4.6 %" in said
 
 
 def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ from scipy.integrate import trapezoid
 
 from meshes.data import Floats
 from solver.archive import Archive, ArchiveError
+from solver.figure_rows import friction_rows
 from solver.flank_chart import FlankChart
-from solver.results import friction_rows
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
 from solver.scene import GEARS, Scene, load_scene

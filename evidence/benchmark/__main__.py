@@ -1,5 +1,5 @@
-"""python -m evidence.benchmark [hertz2d|hertz3d|gears|pitches|scaling|profile|skips|spur|bars|wear|page|all] [--peers]
-[--small]
+"""python -m evidence.benchmark [hertz2d|hertz3d|gears|pitches|scaling|profile|skips|spur|bars|spacing|wear|page|all]
+[--peers] [--small]
 
 Writes docs/benchmark/*.csv, the figures in docs/pictures/benchmark/ and the page docs/benchmark.md. --small takes sizes
 that show that everything works, into --out.
@@ -13,11 +13,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmark import bars, gear_rows, page, pitches, precision, profile, scaling, skips, spur, wear
+from evidence.benchmark import bars, gear_rows, page, pitches, precision, profile, scaling, skips, spacing, spur, wear
 from evidence.benchmark.programs import PEERS, ROOT, Program
 from evidence.benchmark.tables import write_rows
 
-PARTS = ("hertz2d", "hertz3d", "gears", "pitches", "scaling", "profile", "skips", "spur", "bars", "wear")
+PARTS = ("hertz2d", "hertz3d", "gears", "pitches", "scaling", "profile", "skips", "spur", "bars", "spacing", "wear")
 WITHOUT_GEARS = ("Kratos",)  # its mortar contact with friction does not converge there
 
 
@@ -58,6 +58,11 @@ def _measure(part: str, peers: tuple[Program, ...], small: bool, out: Path, fold
         full = bars.spur_problem(), bars.helical_problem()
         problems = (bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1)),) if small else full
         _kept(out / "bars.csv", (row for problem in problems for row in bars.measure_bars(problem)))
+    elif part == "spacing":
+        pairs = list(spacing.problems())
+        counts, many = ((6, 12), 24) if small else (spacing.COUNTS, spacing.MANY)
+        pairs = pairs[:1] if small else pairs
+        _kept(out / "spacing.csv", (row for pair in pairs for row in spacing.measure_spacing(pair, counts, many)))
     elif part == "wear":
         _kept(out / "wear_cost.csv", wear.cost_rows(wear.SMALL_CASES if small else wear.CASES))
         few = wear.SMALL_CASES[0], wear.TOLERANCES[:2]

@@ -18,7 +18,7 @@ from meshes.section import SectorResolution
 from solver.companion import companion_mesh, solved_run
 from solver.error_bars import errors_between
 from solver.estimated_errors import FigureErrors
-from solver.results import friction_rows
+from solver.figure_rows import friction_rows
 from solver.run_data import RunData
 from solver.run_sweep import pitch_of
 from solver.scene import Scene, load_scene, scene_from_text

@@ -9,7 +9,7 @@ from pathlib import Path
 from evidence.benchmark import figures
 from evidence.benchmark.bars import BarRow
 from evidence.benchmark.gear_rows import GearRow
-from evidence.benchmark.page_savings import bars_section, skip_section, spur_section
+from evidence.benchmark.page_savings import bars_section, skip_section, spacing_section, spur_section
 from evidence.benchmark.page_wear import precision, wear_section
 from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import OverkillRow, Row
@@ -84,6 +84,7 @@ def parts(tables: Path) -> list[str]:
     found += skip_section(read_rows(tables / "skips.csv", SkipRow))
     found += spur_section(read_rows(tables / "spur.csv", SpurRow))
     found += bars_section(read_rows(tables / "bars.csv", BarRow))
+    found += spacing_section(read_rows(tables / "spacing.csv", BarRow))
     costs = read_rows(tables / "wear_cost.csv", WearCostRow)
     return found + wear_section(costs, read_rows(tables / "wear.csv", WearPrecisionRow))
 

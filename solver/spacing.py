@@ -1,0 +1,173 @@
+"""How far a run's figures may be off because its positions are so far apart: the part of the error bars that is known
+without another mesh.
+
+Curves over the pitch are smooth but for kinks and jumps, where a tooth enters or leaves, where a relief begins. Of any
+figure, the *thinned* one, of every other position, is off by more than that of all; how much more is one estimate. It
+misses what lies between two positions, so the larger one is taken of it and
+
+- of an extreme: how much further the curve may reach between two positions if it goes on straight from both sides.
+  Where these lines meet there is a kink; where one lies above the other all over, the curve jumps, as pressures nearly
+  do, in the middle on average. All pairs of positions are looked at: a peak may be narrower than their distance.
+- of a mean: what kinks or jumps change at an unknown place between two positions. A jump by J changes the mean of n by
+  at most J/2n; a kink that bends the curve by J from one position to the next by J/12n on average, and the step that
+  it lies in shows about half of J. Those of all positions are independent of each other.
+
+The largest pressure is read from a tooth's engagement, which ends where it enters a tip-edge zone: if the curve rises
+up to there, then by how much it does in one step more. Pressures scatter from position to position as the contact lies
+in the cells: of so many the largest is twice the scatter above what fewer show.
+
+evidence/benchmark/spacing.py holds these estimates against many positions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from meshes.data import Floats
+from solver.engagement import Engagement, TurnPeak, engagement
+from solver.estimated_errors import FigureErrors
+from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from solver.run_data import RunData, SolvedPosition
+
+JUMP, KINK = 0.5, 1.0 / 6.0
+"""Share of a step's bend by which its mean moves with the place of a jump or a kink in it."""
+SCATTERS = 2.0
+"""Standard deviations: the largest of a hundred values of a pressure's scatter over the largest of ten."""
+DEVIATIONS = 0.6745
+"""The median of the absolute value of a normal distribution, in standard deviations."""
+
+OfPosition = Callable[[RunData, SolvedPosition], float]
+Curve = tuple[Floats, Floats]
+"""Places and values."""
+
+
+def spacing_errors(run: RunData, index: int) -> FigureErrors:
+    """Of the figures at friction coefficient number `index`; NaN where a run has a single position."""
+    if len(run.positions) < 2:
+        return FigureErrors(*[float("nan")] * len(fields(FigureErrors)))
+    runs = run, *(replace(run, positions=run.positions[k::2]) for k in (0, 1))
+    curves = [engagement(each, index) for each in runs]
+    error, tangent, secant, loss = (
+        [_values(each, index, value) for each in runs]
+        for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
+    )
+    step = run.pitch / len(run.positions)
+    pressure = curves[0].max_pressure
+    return FigureErrors(
+        max_pressure_MPa=_larger(
+            _thinned(_largest, curves), _higher(curves[0], step), SCATTERS * scatter(pressure)
+        ),
+        mean_pressure_MPa=_larger(_thinned(_mean, [each.mean_pressure for each in curves]), _mean_bends(curves[0])),
+        transmission_error_peak_to_peak_um=_larger(_thinned(np.ptp, error), missed_peaks(error[0])),
+        mesh_stiffness_N_per_mm_um=_larger(_thinned(np.mean, tangent), JUMP * _pitch_bends(tangent[0])),
+        secant_stiffness_N_per_mm_um=_larger(_thinned(np.mean, secant), KINK * _pitch_bends(secant[0])),
+        loss_percent=_larger(_thinned(np.mean, loss), KINK * _pitch_bends(loss[0])),
+    )  # fmt: skip
+
+
+def missed_peaks(values: Floats) -> float:
+    """By how much the peak-to-peak value of a continuous, periodic curve may exceed that of its even samples (n,)."""
+    if len(values) < 5:
+        return 0.0
+    x, y = np.arange(len(values) + 3.0), np.concatenate([values, values[:3]])
+    return float(sum(reach((x, own), jumps=False) - own.max() for own in (y, -y)))
+
+
+def reach(curve: Curve, jumps: bool) -> float:
+    """The highest that a curve may be between its samples if it goes on straight from both sides of each two of them,
+    see above; NaN are passed over. jumps: whether it may jump between them."""
+    x, y = curve
+    if len(y) < 4:
+        return float(np.nanmax(y))
+    step, slope = np.diff(x), np.diff(y) / np.diff(x)
+    left, right = y[1:-2], y[2:-1]  # of each two samples, with one more on either side
+    onward, back = left + slope[:-2] * step[1:-1], right - slope[2:] * step[1:-1]
+    below, above = back - left, onward - right  # how far the line from the left lies below the other one, then above
+    ends = np.maximum(left, right)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meet = left + (onward - left) * below / (below + above)
+    top = np.where((below > 0.0) & (above > 0.0), meet, ends)
+    if jumps:
+        top = np.where(below * above < 0.0, 0.5 * (ends + np.fmax(ends, np.fmax(onward, back))), top)
+    return float(np.nanmax(np.append(top, y)))
+
+
+def bends(values: Floats) -> Floats:
+    """By how much a step of a curve (n,) differs from the more even one of its neighbours, (n − 3,): little where it is
+    smooth, a jump's height where it jumps."""
+    step = np.diff(values)
+    before, after = step[:-2], step[2:]
+    return np.abs(step[1:-1] - np.where(np.abs(before) < np.abs(after), before, after))
+
+
+def scatter(values: Floats) -> float:
+    """Standard deviation of what a curve (n,) has at random from sample to sample: of its third differences, in which
+    nothing is left of a parabola, and of those the median, for the sake of kinks; NaN are left out."""
+    known = values[np.isfinite(values)]
+    if len(known) < 8:
+        return 0.0
+    return float(np.median(np.abs(np.diff(known, 3)))) / DEVIATIONS / np.sqrt(20.0)
+
+
+def _higher(curve: Engagement, step: float) -> float:
+    """By how much the largest pressure may exceed the one that was found: between positions, and where the curve enters
+    a tip-edge zone. step: between positions [rad]."""
+    ends = [end.pressure + step * _rise(curve, end) for end in curve.zone_ends]
+    return max([reach(curve.pressure_curve, jumps=True), *ends]) - _largest(curve)
+
+
+def _rise(curve: Engagement, end: TurnPeak) -> float:
+    """The slope [MPa/rad], not negative, with which the curve goes into the end of a tip-edge zone: from the last
+    position but one to the last, or to the end."""
+    known = np.flatnonzero(np.isfinite(curve.max_pressure))
+    last, *before = known[np.argsort(np.abs(curve.angle[known] - end.angle), kind="stable")[:2]]
+    rise = [0.0]
+    for one in before:
+        for angle, pressure in ((end.angle, end.pressure), (curve.angle[last], curve.max_pressure[last])):
+            rise.append((pressure - curve.max_pressure[one]) / abs(angle - curve.angle[one]))
+    return float(max(rise))
+
+
+def _mean_bends(curve: Engagement) -> float:
+    """Of the mean pressure [MPa]: the engagement also begins and ends anywhere between two positions."""
+    known = curve.mean_pressure[np.isfinite(curve.mean_pressure)]
+    if len(known) < 4:
+        return 0.0
+    ends = known[[0, -1]] - np.mean(known)
+    return float(np.hypot(JUMP * np.linalg.norm(bends(known)), np.linalg.norm(ends))) / len(known)
+
+
+def _pitch_bends(values: Floats) -> float:
+    """Of all steps of a pitch (n,), which are independent of each other, in their mean: one before the first and two
+    after the last make the steps' neighbours."""
+    return float(np.linalg.norm(bends(np.concatenate([values[-1:], values, values[:2]])))) / len(values)
+
+
+def _values(run: RunData, index: int, value: OfPosition) -> Floats:
+    return np.array([value(run, each[index]) for each in run.positions])
+
+
+def _thinned(figure: Callable[[Any], Any], curves: Sequence[Any]) -> float:
+    """How far a figure of the second and the third of these, the halves, is from that of the first on average."""
+    whole, *halves = (float(figure(curve)) for curve in curves)
+    return float(np.mean([abs(half - whole) for half in halves]))
+
+
+def _larger(*estimates: float) -> float:
+    """NaN where there is none."""
+    return float(np.fmax.reduce(estimates))
+
+
+def _largest(curve: Engagement) -> float:
+    """NaN where there is none."""
+    return curve.peak.pressure if np.isfinite(curve.max_pressure).any() else float("nan")
+
+
+def _mean(values: Floats) -> float:
+    """Of those that are known; NaN where there is none."""
+    known = values[np.isfinite(values)]
+    return float(np.mean(known)) if len(known) else float("nan")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from evidence import outputs, promises, readme, tutorial
+from evidence import mutations, outputs, promises, readme, tutorial
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -22,6 +22,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
     parts = {
         root / "README.md": {"speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs)},
         docs / "evidence.md": {"bars": bars},
+        docs / "edges.md": {"seen": mutations.table(root)},
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
             "figures": tutorial.figures(docs),

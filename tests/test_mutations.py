@@ -35,16 +35,17 @@ def test_failures(tree: Path) -> None:
     """Of a program that divides by 4: a test fails if one of its cases does; one that cannot see it passes, one that
     fails for another reason (NameError) does not count. The program is as before."""
     tests = "test_half", "test_half[0.0]", "test_half[3.0]", "test_of_nothing", "test_other_name"
-    found = failures(replace(HALF, tests=tuple(f"test_program::{test}" for test in tests)), tree)
+    found, last = failures(replace(HALF, tests=tuple(f"test_program::{test}" for test in tests)), tree)
     assert set(found) == {"test_program::test_half", "test_program::test_half[3.0]"}
     assert "0.75 ==" in found["test_program::test_half"]
+    assert last.startswith("2 failed, 2 passed")
     assert (tree / "program.py").read_text() == PROGRAM
     assert sorted(path.name for path in tree.iterdir() if path.is_file()) == ["program.py"]
 
 
 def test_a_program_that_cannot_be_imported_is_no_failure(tree: Path) -> None:
     """A mutation that breaks the import: its test is not seen to fail."""
-    assert failures(replace(HALF, new="import"), tree) == {}
+    assert failures(replace(HALF, new="import"), tree)[0] == {}
 
 
 def test_the_old_text_stands_once(tree: Path) -> None:

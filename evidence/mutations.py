@@ -2,8 +2,9 @@
 whether they fail.
 
 A mutation of mutations.toml exchanges one line of the program, in a copy of the tree, for one that undoes what the page
-says; each test that it names has to fail then. What was seen goes into docs/edges_seen.csv, from which `make pages`
-writes the table of the page. All of them take about an hour on one core; a name runs the mutations that begin with it.
+says; each test that it names has to fail then, and to pass before. What was seen goes into docs/edges_seen.csv, from
+which `make pages` writes the table of the page. All of them take more than an hour on one core; a name runs the
+mutations that begin with it.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[1]
 LIST, SEEN = Path("evidence/mutations.toml"), Path("docs/edges_seen.csv")
-PATIENCE = 900.0  # seconds; a test that hangs has not failed
+PATIENCE = 900.0  # seconds a test; one that hangs has not failed
 NOT_THE_EDGE = ("ImportError", "ModuleNotFoundError", "NameError", "SyntaxError")
 Seen = set[tuple[str, str, str]]
 """Name of a mutation, its fingerprint, a test that failed."""
@@ -84,27 +86,32 @@ def table(root: Path = ROOT) -> str:
 
 
 def failures(mutation: Mutation, tree: Path) -> tuple[dict[str, str], str]:
-    """Tests of a mutation that fail with it -> what they say; and pytest's last line. tree: a copy, which is as before
-    afterwards."""
-    whole, report = (tree / mutation.file).read_bytes(), tree / "report.xml"
-    nodes = [f"tests/{test.replace('::', '.py::', 1)}" for test in mutation.tests]
+    """`failing` of a mutation's tests with it. tree: a copy, which is as before afterwards."""
+    file = tree / mutation.file
+    whole = file.read_bytes()
+    file.write_text(mutation.applied(tree), encoding="utf-8")
+    try:
+        return failing(mutation.tests, tree)
+    finally:
+        file.write_bytes(whole)
+
+
+def failing(tests: Sequence[str], tree: Path) -> tuple[dict[str, str], str]:
+    """Which of these tests fail in a tree -> what they say; and pytest's last line."""
+    nodes, report = [f"tests/{test.replace('::', '.py::', 1)}" for test in tests], tree / "report.xml"
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}", *nodes]
-    (tree / mutation.file).write_text(mutation.applied(tree), encoding="utf-8")
     try:
         done = subprocess.run(
             command, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"},
-            capture_output=True, text=True, timeout=PATIENCE, check=False,
+            capture_output=True, text=True, timeout=PATIENCE * len(tests), check=False,
         )  # fmt: skip
         said = _said(report) if report.exists() else {}
     except subprocess.TimeoutExpired:
-        return {}, f"more than {PATIENCE:g} s"
+        return {}, f"not done after {PATIENCE * len(tests):g} s"
     finally:
-        (tree / mutation.file).write_bytes(whole)
         report.unlink(missing_ok=True)
-    found = {
-        test: [text for case, text in said.items() if case == test or case.startswith(f"{test}[")]
-        for test in mutation.tests
-    }
+    found = {test: [text for case, text in said.items() if case == test or case.startswith(f"{test}[")]
+             for test in tests}  # fmt: skip
     last = (done.stdout + done.stderr).strip().rpartition("\n")[2]
     return {test: texts[0] for test, texts in found.items() if texts}, last
 
@@ -140,19 +147,26 @@ def keep(mutation: Mutation, failed: dict[str, str]) -> None:
 
 
 def main(names: list[str]) -> int:
-    survived = 0
+    chosen = [each for each in mutations() if not names or each.name.startswith(tuple(names))]
     with tempfile.TemporaryDirectory() as folder:
-        copied(Path(folder))
-        for each in mutations():
-            if not names or each.name.startswith(tuple(names)):
-                failed, last = failures(each, Path(folder))
-                keep(each, failed)
-                survived += len(each.tests) - len(failed)
-                for test in each.tests:
-                    text = failed[test].partition("\n")[0] if test in failed else f"NOT SEEN TO FAIL: {last}"
-                    print(f"{each.name}: {test}: {text[:150]}", flush=True)
-    print(f"{survived} tests were not seen to fail")
-    return 1 if survived else 0
+        tree = Path(folder)
+        copied(tree)
+        before, last = failing(list(dict.fromkeys(test for each in chosen for test in each.tests)), tree)
+        print(f"the program as it is: {last}", flush=True)
+        unseen = sum(see(each, tree, before) for each in chosen)
+    print(f"{unseen} tests were not seen to fail")
+    return 1 if unseen else 0
+
+
+def see(mutation: Mutation, tree: Path, before: Collection[str]) -> int:
+    """How many of a mutation's tests are not seen to fail; those of `before` fail without it too."""
+    found, last = failures(mutation, tree)
+    failed = {test: text for test, text in found.items() if test not in before}
+    keep(mutation, failed)
+    for test in mutation.tests:
+        text = failed[test].partition("\n")[0] if test in failed else f"NOT SEEN TO FAIL: {last}"
+        print(f"{mutation.name}: {test}: {text[:150]}", flush=True)
+    return len(mutation.tests) - len(failed)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from evidence import mutations
 from evidence.mutations import Mutation, failures
 
 PROGRAM = "def half(x: float) -> float:\n    return x / 2.0\n"
@@ -46,6 +47,15 @@ def test_failures(tree: Path) -> None:
 def test_a_program_that_cannot_be_imported_is_no_failure(tree: Path) -> None:
     """A mutation that breaks the import: its test is not seen to fail."""
     assert failures(replace(HALF, new="import"), tree)[0] == {}
+
+
+@pytest.mark.parametrize("before", [(), ("test_program::test_half",)])
+def test_what_fails_anyway_is_not_seen(before: tuple[str, ...], tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A test that fails with the mutation is kept as seen, but not where it fails on the program as it is, too."""
+    kept: list[str] = []
+    monkeypatch.setattr(mutations, "keep", lambda mutation, failed: kept.extend(failed))
+    assert mutations.see(HALF, tree, before) == len(before)
+    assert kept == [test for test in HALF.tests if test not in before]
 
 
 def test_the_old_text_stands_once(tree: Path) -> None:

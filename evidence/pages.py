@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from evidence import outputs, promises, readme, tutorial, yang_page
+from evidence import mutations, outputs, promises, readme, tutorial, yang_page
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -27,6 +27,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "scene.md": {"levels": yang_page.levels(docs)},
         docs / "yang2022.md": {"accuracy": yang_page.accuracy(docs), "points": yang_page.points(docs)},
         docs / "evidence.md": {"bars": bars},
+        docs / "edges.md": {"seen": mutations.table(root)},
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
             "figures": tutorial.figures(docs),

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Run
-from gear_cases import spur_scene
+from gear_cases import helical_scene, model_of, spur_scene
 
 from meshes.files import write_bytes
 from solver.archive import Archive, ArchiveError, arrays_bytes, fingerprint, read_arrays
+from solver.gear_sweep import Pitch, initial_state, sweep_pitch
 from solver.scene import load_scene
 
 SCENE = "demos/he2022.toml"
@@ -92,6 +93,22 @@ def test_killed_and_resumed(how: str, whole: Path, run_script: Run, tmp_path: Pa
     done = run_script("tests/broken_run.py", "ok", *arguments(out, "--resume"), ranks=ranks)
     assert done.returncode == 0, done.stderr
     assert_same(out, whole)
+
+
+def test_friction_is_remembered(tmp_path: Path) -> None:
+    """Problem: two positions of a helical pair at μ = 0.3, parts of whose contact stick; on a spur pair all slides. The
+    second one after the first as it was archived is the second one of the sweep; it is another one without a past."""
+    scene, μ = helical_scene("contact.friction=0.3"), [0.3]
+    model, pitch = model_of(scene), Pitch(tuple(np.radians([0.0, 0.5])))
+    first, second = sweep_pitch(model, pitch, μ, initial_state(μ))
+    archive = Archive(tmp_path, scene)
+    archive.write_position(0, first)
+    state = archive.read_state(scene.gear_pair())
+    assert state is not None
+    resumed, bare = (next(sweep_pitch(model, pitch, μ, past, begin=1)) for past in (state, initial_state(μ)))
+    wanted = second.results[0].friction_loss
+    assert resumed.results[0].friction_loss == pytest.approx(wanted, rel=1e-8)
+    assert bare.results[0].friction_loss != pytest.approx(wanted, rel=1e-5)
 
 
 def test_complete_run_is_only_drawn_again(whole: Path, run_script: Run, tmp_path: Path) -> None:

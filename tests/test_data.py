@@ -193,7 +193,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"none\.msh"):
         read_msh(tmp_path / "none.msh")
     (tmp_path / "bad.msh").write_text("no mesh at all")
-    with pytest.raises(MeshError):
+    with pytest.raises(MeshError, match="MSH format"):
         read_msh(tmp_path / "bad.msh")
 
 

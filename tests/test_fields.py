@@ -43,8 +43,8 @@ def test_series_opens_with_its_times_and_arrays(run: RunData, tmp_path: Path) ->
 
 def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
     """Problem: 20,000 MPa at all contact points and nodes in layers that bear on a tip edge, as a corner leaves. Exact:
-    the pressure that ParaView scales its colours by has none of them, on either gear, and NaN where they are; they
-    stand in edge_pressure_MPa. Layers that bear on no edge keep theirs, and NaN is nowhere else."""
+    pressure and traction that ParaView scales its colours by have none of them, on either gear, and NaN where they are;
+    they stand in edge_pressure_MPa. Layers that bear on no edge keep theirs, and NaN is nowhere else."""
 
     def singular(solved: SolvedPosition) -> SolvedPosition:
         result, bears = solved.result, np.zeros(len(solved.result.node), dtype=bool)
@@ -65,6 +65,9 @@ def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
             assert 1000.0 < np.nanmax(pressure[own]) < 3500.0
             assert edge[own].max() > 1.5e4
         np.testing.assert_array_equal(np.isnan(pressure), edge > 0.0)
+        traction = arrays[f"traction_MPa (mu={each.result.friction:g})"]
+        np.testing.assert_array_equal(np.isnan(traction).all(axis=1), edge > 0.0)
+        assert np.nanmax(np.abs(traction)) < 3500.0
         assert np.isfinite(pressure[arrays["gear"] == 0]).mean() > 0.98
 
 

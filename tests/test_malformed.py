@@ -198,6 +198,13 @@ def test_byte_order_mark(tmp_path: Path) -> None:
     for text in (HE, HE.replace("\n", "\r\n")):
         (tmp_path / "scene.toml").write_bytes(b"\xef\xbb\xbf" + text.encode())
         assert load_scene(tmp_path / "scene.toml") == scene_from_text(HE)
+    (tmp_path / "chart.csv").write_text(CHART, encoding="utf-8")
+    setting = f"pinion.flank_csv={tmp_path / 'chart.csv'}"
+    plain = load_scene(tmp_path / "scene.toml", [setting]).flank_chart("pinion")
+    for text in (CHART, CHART.replace("\n", "\r\n")):
+        (tmp_path / "chart.csv").write_bytes(b"\xef\xbb\xbf" + text.encode())
+        marked = load_scene(tmp_path / "scene.toml", [setting]).flank_chart("pinion")
+        assert plain is not None and marked is not None and marked.text() == plain.text()
 
 
 def test_paths_of_overrides(folder: Path) -> None:

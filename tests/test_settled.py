@@ -57,13 +57,14 @@ def test_ample_reach_changes_nothing():
     assert found.searches == 1
 
 
-def half_discs(share: float, placed: bool) -> tuple[Problem, Step]:
+def half_discs(share: float, placed: bool, force: float | None = None) -> tuple[Problem, Step]:
     """Two half-discs, 10 mm radius, meshed alike, the upper one pressed to an approach of 2a²/R, a = share·R: by a
-    prescribed motion of its flat side, or by where it is placed."""
+    prescribed motion of its flat side, or by where it is placed; with a force [N/mm] instead, pressed by it."""
     radius, a = 10.0, 10.0 * share
     approach = 2.0 * a**2 / radius
     mesh = cylinder_2d(radius, a / 8.0, 1.5 * a)
-    upper = Body(mesh, rigid=Rigid("top", (Freedom("y", displacement=0.0 if placed else -approach),)))
+    motion = Freedom("y", displacement=0.0 if placed else -approach)
+    upper = Body(mesh, rigid=Rigid("top", (motion if force is None else Freedom("y", load=-force),)))
     lower = Body(mesh, supports=(Fixed("top"),))
     problem = Problem((upper, lower), (Contact((0, "arc"), (1, "arc"), reach=3 * approach),))
     above = Placement(np.eye(2), np.array([0.0, -approach if placed else 0.0]))
@@ -80,12 +81,16 @@ def fitted(contact: ContactResult) -> tuple[float, float]:
 
 @pytest.mark.parametrize("share", [0.05, 0.2])
 def test_placed_in_overlap(share):
-    """Pressed by a placement in overlap and by a prescribed motion from where they touch: the same force, peak pressure
-    and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 they were 7 % apart in the peak, 10 % in the width.
-    Half-spheres are a rung of the ladder."""
+    """Pressed by a placement in overlap, by a prescribed motion from where they touch, and by the force that takes: the
+    same approach, force, peak pressure and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 the first two are
+    7 % and 10 % off in peak and width. Half-spheres are a rung of the ladder."""
     moved, placed = (solve(*half_discs(share, by)).contacts[0] for by in (False, True))
-    assert np.linalg.norm(placed.force) == pytest.approx(np.linalg.norm(moved.force), rel=5e-3)
-    assert fitted(placed) == pytest.approx(fitted(moved), rel=5e-3)
+    force = float(np.linalg.norm(moved.force))
+    loaded = solve(*half_discs(share, False, force))
+    assert loaded.motions[0][0] == pytest.approx(-20.0 * share**2, rel=5e-3)
+    assert np.linalg.norm(placed.force) == pytest.approx(force, rel=5e-3)
+    for found in (placed, loaded.contacts[0]):
+        assert fitted(found) == pytest.approx(fitted(moved), rel=5e-3)
 
 
 def half_of(body: Body, side: float) -> Body:

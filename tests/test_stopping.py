@@ -15,13 +15,22 @@ from solver.stopping import Stopped, stoppable
 ROOT = Path(__file__).parents[1]
 
 
+def output_of(process: subprocess.Popen[str], seconds: float) -> tuple[str, str]:
+    """Stdout and stderr of a process that ends within so many seconds. Raises TimeoutExpired for one that does not, and
+    kills it, or the test would wait for it."""
+    try:
+        return process.communicate(timeout=seconds)
+    finally:
+        process.kill()
+
+
 def ask(out: Path, number: signal.Signals) -> subprocess.CompletedProcess[str]:
     """A run that is sent a signal once it has kept two positions."""
     with started(out) as process:
         while process.poll() is None and not (out / "results" / "position_0001.npz").exists():
             pass
         process.send_signal(number)
-        output, errors = process.communicate(timeout=60)
+        output, errors = output_of(process, 60.0)
     return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
 
 
@@ -65,7 +74,7 @@ def test_deep_in_a_computation(tmp_path: Path) -> None:
     ) as process:
         assert process.stdout is not None and process.stdout.readline() == "ready\n"
         process.send_signal(signal.SIGTERM)
-        output, errors = process.communicate(timeout=30)
+        output, errors = output_of(process, 30.0)
     assert process.returncode == 1
     assert output == "ended\n"
     assert errors == "evolvent: stopped by SIGTERM; go on later\n"

@@ -1,8 +1,8 @@
-"""Two half-spheres, pressed by a prescribed motion and by where they are placed."""
+"""Two half-spheres, pressed by a prescribed motion, by where they are placed, and by a force."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,9 +29,10 @@ NORMALS = "small displacements take gaps and pressure along the normals before d
 TURNED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])  # x and y change places, z turns over
 PROBLEM = f"""
 Two steel half-spheres of {RADIUS:g} mm radius, quarters of them, without friction, brought nearer by 2a²/R, once by a
-prescribed motion from where they touch, once by placing them in overlap. Both state one problem. Second-order
-hexahedra of a/{CELLS} in rings, alike on both, cut off {SIDE:g} mm from the contact. Points are paired as the surfaces
-meet, not as they overlap: paired in overlap, the two ways were 6 % apart in the peak at a/R = 0.14.
+prescribed motion from where they touch, once by placing them in overlap, once by the force that the motion takes. All
+state one problem. Second-order hexahedra of a/{CELLS} in rings, alike on both, cut off {SIDE:g} mm from the contact.
+Points are paired as the surfaces meet, not as they overlap: paired in overlap, the first two ways were 6 % apart in the
+peak at a/R = 0.14. The force starts from where the spheres touch, so that its approach is found and not known.
 
 What is exact within linear elasticity says Signorini's problem of one of them on the plane between both, solved in the
 section r, z with cells of a/{FINE}, an active set and nothing of this contact solver (evidence/ladder/axisymmetric.py).
@@ -105,6 +106,15 @@ def pressed(share: float, way: str) -> Found:
     return Found.of(solve(*stated(share, way)).contacts[0])
 
 
+def by_force(share: float, force: float) -> tuple[Found, float]:
+    """Pressed by a force [N] on the whole contact, and the approach [mm]; share: a/R of the mesh."""
+    problem, step = stated(share, WAYS[0])
+    upper, lower = problem.bodies
+    loaded = replace(upper, rigid=Rigid("top", (Freedom("z", load=-0.25 * force),)))
+    solution = solve(replace(problem, bodies=(loaded, lower)), step)
+    return Found.of(solution.contacts[0]), -float(solution.motions[0][0])
+
+
 def stated(share: float, way: str) -> tuple[Problem, Step]:
     """share: a/R of the approach."""
     a = share * RADIUS
@@ -120,16 +130,21 @@ def stated(share: float, way: str) -> tuple[Problem, Step]:
 
 
 def measure() -> Rung:
-    """Solves three sizes in both ways."""
+    """Solves three sizes in all ways."""
     found = {share: (*(pressed(share, way) for way in WAYS), exact(share)) for share in SHARES}
+    forced = {share: by_force(share, moved.force) for share, (moved, *_) in found.items()}
     along, largest = along_axis(SHARES[-1]), found[SHARES[-1]]
     return Rung(
         "half_spheres",
-        "Two half-spheres, pressed in two ways",
+        "Two half-spheres, pressed in three ways",
         PROBLEM,
-        (*(claim for share in SHARES for claim in _claims(share, *found[share])), *_along(along, largest[-1])),
+        (
+            *(claim for share in SHARES for claim in _claims(share, *found[share])),
+            *(claim for share in SHARES for claim in _by_force(share, found[share][0], *forced[share])),
+            *_along(along, largest[-1]),
+        ),
         lambda figure: draw(figure, found, along),
-        "Both ways of loading give one contact; the line is exact, what is above it comes from undeflected normals",
+        "All ways of loading give one contact; the line is exact, what is above it comes from undeflected normals",
     )
 
 
@@ -138,6 +153,16 @@ def _along(found: Found, exact: Found) -> list[Claim]:
         Claim.relative(f"{name}, a/R = {SHARES[-1]:g}, {ALONG}", value, wanted, 0.01, Reference.OVERKILL, SOURCE)
         for name, value, wanted in (("force [N]", found.force, exact.force), ("p0 [MPa]", found.peak, exact.peak))
     ]
+
+
+def _by_force(share: float, moved: Found, forced: Found, approach: float) -> list[Claim]:
+    both = (("approach [mm]", approach, 2.0 * share**2 * RADIUS), ("p0 [MPa]", forced.peak, moved.peak),
+            ("a [mm]", forced.radius, moved.radius))  # fmt: skip
+    return [
+        Claim.relative(f"{name} by force, a/R = {share:g}", value, own, 0.005, Reference.ANALYTICAL,
+                       "the same by a prescribed motion")
+        for name, value, own in both
+    ]  # fmt: skip
 
 
 def _claims(share: float, moved: Found, placed: Found, exact: Found) -> list[Claim]:

@@ -165,7 +165,7 @@ def test_angles_without_round_off(tmp_path: Path) -> None:
     angle has more than six decimals in summary.json, and each is within half of the last one; of a pinion of 24 teeth
     with 20 positions they are multiples of 0.75 as they stand."""
     run = synthetic_run("contact.friction=[0.0, 0.1]")
-    write_tables(RunFolder(tmp_path), run, FACTS)
+    write_tables(RunFolder(tmp_path), summary(run, FACTS))
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     angles = [row["pinion_angle_deg"] for row in found["positions"]]
     angles += [row["max_pressure_angle_deg"] for row in found["frictions"]]

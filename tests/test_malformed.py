@@ -16,6 +16,7 @@ from malformed_scenes import HE, MALFORMED, UNSUPPORTED, WEAR, YANG
 from meshes.data import MeshError
 from meshes.gmsh_io import read_msh
 from solver.cli import main
+from solver.run_folder import RunFolder
 from solver.scene import Scene, load_scene, scene_from_text
 from solver.scene_errors import keys_of
 
@@ -133,15 +134,15 @@ def pipe_without_writer(folder: Path, name: str) -> Path:
 
 @pytest.fixture
 def in_time() -> Iterator[None]:
-    """A test that hangs fails."""
+    """A test that hangs fails, which no command can take for an error of its own and say."""
 
     def late(*_: object) -> None:
-        raise TimeoutError
+        pytest.fail("still waits for the pipe's writer")
 
     before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(20)
+    signal.setitimer(signal.ITIMER_REAL, 20.0, 20.0)  # again: what ends a command may wait, too
     yield
-    signal.alarm(0)
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
     signal.signal(signal.SIGALRM, before)
 
 
@@ -169,8 +170,8 @@ def test_pipe_for_a_mesh(tmp_path: Path, in_time: None) -> None:
 def test_pipes_in_a_folder(
     name: str, words: str, folder: Path, capfd: pytest.CaptureFixture[str], in_time: None
 ) -> None:  # fmt: skip
-    """Named pipes where a run keeps what it goes on from: refused by `run --resume`, never read."""
-    (folder / "out" / "results").mkdir(parents=True)
+    """Named pipes in place of a run's own files, from which it goes on: refused by `run --resume`, never read."""
+    RunFolder(folder / "out").write(name, b"").unlink()
     pipe_without_writer(folder / "out", name)
     assert main(["run", "scene.toml", "--out", "out", "--resume"]) == 2
     err = capfd.readouterr().err

@@ -193,7 +193,17 @@ GEAR_ERRORS: list[tuple[str, dict[str, Any], str]] = [
     ("pressure angle in rad", {"normal_pressure_angle_deg": 0.349}, "normal_pressure_angle_deg"),
     ("shift in mm", {"profile_shift": math.nan}, "profile_shift"),
     ("relief without start", {"modifications": Modifications(tip_relief_um=10.0)}, "tip_relief_start_diameter"),
-    ("relief of the whole tip", {"modifications": Modifications(0.0, lead_crowning_um=2400.0)}, "lead_crowning_um"),
+    ("crowning above 1 mm", {"modifications": Modifications(lead_crowning_um=1001.0)}, "lead_crowning_um"),
+    (  # whose thickness is 336 µm
+        "crowning of the whole tip",
+        {"tip_diameter": 160.0, "modifications": Modifications(lead_crowning_um=337.0)},
+        "lead_crowning_um",
+    ),
+    (
+        "relief and crowning of the whole tip",
+        {"tip_diameter": 160.0, "modifications": Modifications(200.0, 155.0, lead_crowning_um=137.0)},
+        "tip_relief_um",
+    ),
     ("negative crowning", {"modifications": Modifications(lead_crowning_um=-5.0)}, "lead_crowning_um"),
 ]
 

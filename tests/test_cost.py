@@ -67,8 +67,8 @@ def test_finished_run_resumed(more: tuple[str, ...], tmp_path: Path) -> None:
 
 
 def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Stopped before its second position: what it has spent by then is there. Set to 1000 s of each part and 1 TB, it is
-    in what the resumed run says."""
+    """Stopped before its second position: what it has spent by then is there. Set to 1000 s of each part and 1 TB, it
+    is in what the resumed run says."""
     write = Archive.write_position
 
     def stopped(self: Archive, index: int, position: Any) -> None:

@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from meshes.data import CELL_DIMENSION, Floats, Ints, MeshError
 from meshes.reference import node_count
 from meshes.sound import check_cells
-from solver.jit import compiling, form_directory, root_logger_kept
+from solver.jit import compiling, form_directory, logging_kept
 from solver.petsc import PETSc  # before dolfinx, which would start it
 
-with root_logger_kept():  # FFCx 0.4 gives it a handler
+with logging_kept():  # FFCx gives the root logger a handler, and warnings to it
     import dolfinx
     import dolfinx.fem.petsc
     from dolfinx import cpp, fem

@@ -2,8 +2,8 @@
 
 FFCx 0.4 (Debian 12) gives the root logger a handler when it is imported, later ones exchange its handlers while they
 compile, and setuptools, by which they do, sets that logger to INFO and adds handlers where there are none
-(`setuptools.logging.configure`): every command of the compiler would be shown. An application's own logging is left as
-it is.
+(`setuptools.logging.configure`): every command of the compiler would be shown. All of them hand Python's warnings to
+the logging, where nobody may listen. An application's own logging is left as it is.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ import errno
 import fcntl
 import logging
 import shutil
+import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,15 +32,23 @@ class CompileError(EvolventError, OSError):
 
 
 @contextmanager
-def root_logger_kept() -> Iterator[None]:
-    """The root logger has the level and the handlers afterwards that it had before."""
+def logging_kept() -> Iterator[None]:
+    """The root logger has the level and the handlers afterwards that it had before, and warnings go where they went;
+    to the terminal where FFCx was imported earlier and handed them to a logging without handlers."""
     root = logging.getLogger()
-    level, handlers = root.level, list(root.handlers)
+    level, handlers, showing, earlier = root.level, list(root.handlers), warnings.showwarning, "ffcx" in sys.modules
     try:
         yield
     finally:
         root.setLevel(level)
         root.handlers[:] = handlers
+        if warnings.showwarning is not showing or (earlier and not _warnings_are_heard()):
+            logging.captureWarnings(False)
+
+
+def _warnings_are_heard() -> bool:
+    loggers = logging.getLogger("py.warnings"), logging.getLogger()
+    return any(not isinstance(each, logging.NullHandler) for logger in loggers for each in logger.handlers)
 
 
 def form_directory(version: str) -> Path:
@@ -80,7 +90,7 @@ def _silent_compiler() -> Iterator[None]:
     def of_others(record: logging.LogRecord) -> bool:
         return record.levelno >= level and not set(COMPILER_PACKAGES) & set(Path(record.pathname).parts)
 
-    with root_logger_kept():
+    with logging_kept():
         root.addFilter(of_others)
         try:
             yield

@@ -10,8 +10,13 @@ OURS = tuple(str(Path(__file__).resolve().parents[1] / package) + "/" for packag
 
 
 def warn_user(message: str, category: type[Warning]) -> None:
-    """A warning at the line that called into the packages, however deep it is raised."""
-    frame, level = sys._getframe(), 1
+    """A warning at the line that called into the packages, however deep it is raised.
+
+    Python shows a warning of the same words once a line; in a loop over meshes each is meant. Filters that an
+    application sets hold as ever.
+    """
+    frame = sys._getframe()
     while frame.f_back is not None and frame.f_code.co_filename.startswith(OURS):
-        frame, level = frame.f_back, level + 1
-    warnings.warn(message, category, stacklevel=level)
+        frame = frame.f_back
+    name = frame.f_globals.get("__name__", "__main__")
+    warnings.warn_explicit(message, category, frame.f_code.co_filename, frame.f_lineno, module=name)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from solver.jit import root_logger_kept
+from solver.jit import logging_kept
 
 ROOT = Path(__file__).resolve().parents[1]
 NOWHERE = "/proc/nowhere"  # a home that nobody can write to, not even root
@@ -61,13 +61,30 @@ def test_an_application_logs_as_it_likes(before: bool, first: str, tmp_path: Pat
     assert "gcc" not in done.stderr + done.stdout and "build" not in done.stderr + done.stdout
 
 
+@pytest.mark.parametrize("first", ["", "import ffcx\n"])
+def test_warnings_are_shown(first: str, tmp_path: Path) -> None:
+    """A program that has not set up any logging, and one that has imported FFCx before: its own warning and the
+    solver's stand on the standard error."""
+    words = "import warnings; warnings.warn('own')\nfrom solver.said import warn_user; warn_user('ours', UserWarning)"
+    done = python(first + FORM + words, XDG_CACHE_HOME=str(tmp_path))
+    assert "UserWarning: own" in done.stderr
+    assert "UserWarning: ours" in done.stderr
+
+
+def test_an_application_logs_its_warnings(tmp_path: Path) -> None:
+    """One that has asked for its warnings in its log has them there."""
+    own = "import logging; logging.basicConfig(format='log: %(message).30s'); logging.captureWarnings(True)\n"
+    done = python(own + FORM + "\nimport warnings; warnings.warn('own')", XDG_CACHE_HOME=str(tmp_path))
+    assert done.stderr.startswith("log: <string>")
+
+
 def test_the_root_logger_is_kept_through_failures() -> None:
     """A compilation that fails after it has exchanged the handlers, as FFCx 0.9's may: level and handlers are those of
     before."""
     root = logging.getLogger()
     level, handlers = root.level, list(root.handlers)
 
-    @root_logger_kept()
+    @logging_kept()
     def failing() -> None:
         root.handlers = [logging.NullHandler()]
         root.setLevel(1)

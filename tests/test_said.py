@@ -26,3 +26,14 @@ def test_where(call: Callable[[], object]) -> None:
     ours = [w for w in caught if issubclass(w.category, CoarseContactWarning | NearlyIncompressibleWarning)]
     assert {w.category for w in ours} == {CoarseContactWarning, NearlyIncompressibleWarning}
     assert {w.filename for w in ours} == {__file__}
+
+
+def test_each_of_a_loop() -> None:
+    """The same warning of the same line, twice: with Python's own filters, which show a warning of a line once, both
+    are seen; an application that ignores them sees none."""
+    for action, count in (("default", 2), ("ignore", 0)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter(action)  # type: ignore[arg-type]
+            for _ in range(2):
+                solve(COARSE)
+        assert sum(issubclass(w.category, CoarseContactWarning) for w in caught) == count

@@ -9,6 +9,7 @@ that is fine in the middle may be coarse. The ends of a long patch are left out:
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +36,7 @@ class CoarseContactWarning(UserWarning):
 class Width:
     """Of the patch of a contact that has the fewest cells across.
 
-    width: of the patch [mm].
+    width: of the patch [mm]; 0 where nothing presses.
     cell: the size [mm] of the longest cell that presses there, across the patch.
     """
 
@@ -44,15 +45,15 @@ class Width:
 
     @property
     def cells(self) -> float:
-        """Cells across; infinite where nothing presses."""
-        return self.width / self.cell if self.cell > 0.0 else np.inf
+        """Cells across; 0 where nothing presses."""
+        return self.width / self.cell if self.width > 0.0 else 0.0
 
 
 def width_of(meeting: Meeting, pressure: Floats) -> Width:
     """From the pressure (q,) at a meeting's points."""
     pressed = np.flatnonzero(pressure > 0.0)
     if not len(pressed):
-        return Width(np.inf, 0.0)
+        return Width(0.0, 0.0)
     found, points = meeting.pairing, meeting.operator.points
     bounds = np.concatenate([points[pressure <= 0.0], _ends(meeting, np.unique(found.facet1[pressed]))])
     distance, nearest = cKDTree(bounds).query(points[pressed])
@@ -122,10 +123,11 @@ def _largest(surface: Surface, facets: Ints, directions: Floats) -> float:
 
 
 def warn_if_coarse(name: str, width: Width) -> None:
-    """CoarseContactWarning for a contact of less than two cells; name: which."""
-    if width.cells < ENOUGH:
+    """CoarseContactWarning for a contact of less than two cells, not for none; name: which."""
+    if 0.0 < width.cells < ENOUGH:
+        cells = math.floor(100.0 * width.cells) / 100.0  # 1.999 is less than 2
         warn_user(
-            f"{name}: wanted a contact at least {ENOUGH:g} cells wide, found {width.cells:.1f}, {width.width:.3g} mm "
+            f"{name}: wanted a contact at least {ENOUGH:g} cells wide, found {cells:g}, {width.width:.3g} mm "
             f"with cells of {width.cell:.3g} mm; its pressure may be off by half. Mesh it with cells of at most "
             f"{width.width / ENOUGH:.2g} mm on both surfaces, better {width.width / 8:.2g} mm",
             CoarseContactWarning,

@@ -174,8 +174,19 @@ class Position:
             found = frictional(system, μ, slip, unknown, start)
         except NotConverged:
             start = stuck(system, slip)
-            found = frictional(system, μ, slip, unknown, start)
+            found = self._held_by_friction(system, μ, slip, start)
         return replace(found, iterations=start.iterations + found.iterations)
+
+    def _held_by_friction(self, system: CondensedSystem, μ: Floats, slip: Floats, start: Equilibrium) -> Equilibrium:
+        try:
+            return frictional(system, μ, slip, np.zeros((len(μ), self.d - 1)), start)
+        except NotConverged as failure:
+            if not system.load.any():
+                raise
+            raise NotConverged(
+                f"{failure}. Or there is no equilibrium: where friction alone holds a load, bodies slide once it is "
+                "more than μ times the force between them; prescribe that motion instead (Freedom with a displacement)"
+            ) from failure
 
     def _forces(self, found: Equilibrium) -> Floats:
         force = np.zeros((len(found.force), self.d))

@@ -109,11 +109,15 @@ class Sweep:
         self._before = before
         self.solved += 1
         for contact, result in zip(self.problem.contacts, solution.contacts):
-            name = f"contact of {contact.first} with {contact.second}"
+            name = f"contact of {self._named(contact.first)} with {self._named(contact.second)}"
             warn_if_coarse(name, result.width)
             warn_if_scattered(name, result.peak_scatter)
         LOG.info("step %d: %s", self.solved, _line(solution))
         return solution
+
+    def _named(self, side: Side) -> str:
+        index, group = side
+        return f"{group!r} (body {index}, {self.problem.bodies[index].name!r})"
 
 
 def solve(problem: Problem, step: Step | None = None) -> Solution:

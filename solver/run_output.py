@@ -21,7 +21,7 @@ from solver.fields import write_fields
 from solver.gear_model import Preparation
 from solver.gear_position import PositionResult
 from solver.gear_results import balance_error, pitch_imbalance
-from solver.mesh_facts import MeshFacts, cells_across
+from solver.mesh_facts import NARROW, MeshFacts, cells_across
 from solver.results import summary, write_summary, write_tables
 from solver.run_data import RunData, run_data
 from solver.run_folder import RunFolder
@@ -170,7 +170,8 @@ def facts_of(data: RunData, meshes: Meshes, ranks: int, cost: Cost) -> RunFacts:
 
 def mesh_facts(data: RunData, meshes: Meshes) -> MeshFacts:
     """Of a run's meshes."""
-    return MeshFacts(min(float(scaled_jacobians(mesh).min()) for mesh in meshes), cells_across(data))
+    quality = min(float(scaled_jacobians(mesh).min()) for mesh in meshes)
+    return MeshFacts(quality, cells_across(data), cells_across(data, NARROW))
 
 
 def certify(results: Iterable[PositionResult]) -> None:

@@ -16,6 +16,10 @@ from solver.summary_rows import FrictionRow
 WORST_CELL = 0.05
 """Least scaled Jacobian that needs no word: hexahedra of a sector have 0.3 and more, what is cut from them may not."""
 
+FEWEST_NARROW = 1.0
+"""Cells across the narrowest tenth of the contact that need no word: with fewer, peaks were found twice too large."""
+LARGE_BAR = 0.5
+"""Of a figure, beyond which it is not known."""
 SPACING_SAID = 0.03
 """Share of a figure that may lie between the positions without a word."""
 NAMES = {
@@ -30,14 +34,15 @@ NAMES = {
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Of a finished run."""
-    about = _about_the_mesh, _about_tip_edges, _about_error_bars, _about_spacing
+    about = _about_the_mesh, _about_tip_edges, _about_large_bars, _about_error_bars, _about_spacing
     return tuple(sentence for each in about for sentence in each(run, mesh))
 
 
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
-    cells = mesh.cells_across_contact_width
-    if not cells >= FEWEST_CELLS:
-        yield f"The contact is {cells:.1f} elements wide (median); {_few_cells(run)}"
+    cells, narrow = mesh.cells_across_contact_width, mesh.cells_across_narrow_contact
+    if not (cells >= FEWEST_CELLS and narrow >= FEWEST_NARROW):
+        wide = f"{cells:.1f} elements wide (median; {narrow:.1f} in its narrowest tenth)"
+        yield f"The contact is {wide}; {_few_cells(run)}"
     if not mesh.min_scaled_jacobian >= WORST_CELL:
         yield bad_cells(mesh.min_scaled_jacobian)
 
@@ -58,7 +63,8 @@ def _few_cells(run: RunData) -> str:
     bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
     return (
         f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for looking only; "
-        f"the largest one is known within its error bar, {brief(bar)} %; for better ones {FINER}."
+        f"the largest one is known within its error bar, {brief(bar)} %, but not where it occurs; for better ones "
+        f"{FINER}."
     )
 
 
@@ -77,6 +83,23 @@ def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
             f"The largest pressure stands where the zone of a tip edge begins (ξ = {signed(ξ, 2)} mm) and would be "
             "larger further in: its value depends on where that is, and so on the mesh; relieve the tips."
         )
+
+
+def _about_large_bars(run: RunData, _: MeshFacts) -> Iterator[str]:
+    said = [words for row in friction_rows(run) for name in NAMES if (words := _unknown(row, name))]
+    if said:
+        yield (
+            f"Not known, for the error bar is more than half of it: {', '.join(said)}; nor is where a largest pressure "
+            "occurs. Take a finer mesh (mesh.level), or more positions (sweep.positions) where spacing_error is large."
+        )
+
+
+def _unknown(row: FrictionRow, name: str) -> str:
+    value, bars = getattr(row, name), row.estimated_error
+    if bars is None or not getattr(bars, name) > LARGE_BAR * abs(value) > 0.0:
+        return ""
+    words, unit = NAMES[name]
+    return f"{words} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
 
 
 def _about_error_bars(run: RunData, _: MeshFacts) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from solver.modifications import folding_warnings, modification_warnings
-from solver.resolution import elements_per_contact_width, sector_resolutions
+from solver.resolution import STIFF_ELEMENTS, elements_per_contact_width, has_stiff_pinion, sector_resolutions
 from solver.scene import Scene
 
 FEWEST_CELLS = 2.0
@@ -22,6 +22,12 @@ def _expected(scene: Scene) -> Iterator[str]:
     count = elements_per_contact_width(scene)
     if count < FEWEST_CELLS:
         yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
+    if count < STIFF_ELEMENTS and has_stiff_pinion(scene):
+        yield (
+            "The pinion, which carries the pressure, is much stiffer than the wheel: with fewer than "
+            f"{STIFF_ELEMENTS:g} elements across the contact single pressures may be several times too large; leave "
+            "mesh.elements_per_contact_width out, or make the softer gear the pinion."
+        )
     if scene.mesh.shape == "tetrahedron":
         yield (
             "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "

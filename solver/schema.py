@@ -225,7 +225,7 @@ class Mesh(Section):
         "how fine", '"quick", "standard" or "fine"', "quick is for looking, standard for results", default="standard"
     )
     elements_per_contact_width: float | None = key(
-        "elements across the Hertz width 2b_H; quick 1.7, standard 3, fine 6 by default",
+        "elements across the Hertz width 2b_H; quick 1.7, standard 3, fine 6 by default, on a stiff pinion at least 3",
         f"a number from {FEWEST_ELEMENTS:g} to 24",
         "delete the key for the level's own",
         default=None,

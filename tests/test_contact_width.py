@@ -11,7 +11,7 @@ import pytest
 
 from meshes.blocks import box, cylinder_2d, graded_rectangle, rectangle
 from solver.body import Body, Fixed, Freedom, Rigid
-from solver.contact_width import CoarseContactWarning, width_of
+from solver.contact_width import CoarseContactWarning, Width, warn_if_coarse, width_of
 from solver.meeting import Meeting
 from solver.problem import Contact, Position, Problem, Step, prepare, solve
 from tests.contact_cases import rubber
@@ -62,8 +62,18 @@ def test_whole_surface(meeting):
 
 
 def test_nothing_presses(meeting):
-    """An open contact has no width, and is not too coarse."""
-    assert width_of(meeting, np.zeros(len(meeting.operator.weights))).cells == np.inf
+    """An open contact is 0 mm and 0 cells wide, and not too coarse."""
+    width = width_of(meeting, np.zeros(len(meeting.operator.weights)))
+    assert (width.width, width.cells) == (0.0, 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_if_coarse("contact", width)
+
+
+def test_what_is_less_than_two_is_not_said_to_be_two(meeting):
+    """1.9996 cells: said as 1.99."""
+    with pytest.warns(CoarseContactWarning, match=r"found 1\.99, 2 mm"):
+        warn_if_coarse("contact", Width(1.9996, 1.0))
 
 
 def test_disc_and_ring():
@@ -117,7 +127,7 @@ def test_hertz():
 
 def test_warning():
     """0.66 mm on cells of 0.5 mm: warned, with the contact, the cells and the size that would do; on finer ones not."""
-    said = r"\(0, 'arc'\) with \(1, 'top'\).*2 cells wide, found 1\.\d, .*at most 0\.\d+ mm on both"
+    said = r"'arc' \(body 0, 'body'\) with 'top' .*2 cells wide, found 0\.99, .*at most 0\.\d+ mm on both"
     with pytest.warns(CoarseContactWarning, match=said):
         solve(roller(0.5))
     with warnings.catch_warnings():

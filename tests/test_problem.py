@@ -202,8 +202,9 @@ def test_one_place_for_all_names():
 
 
 def test_on_after_a_step_that_failed():
-    """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium. The same
-    sweep takes a smaller push instead, and gives what a sweep without the failure gives, history included."""
+    """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium, which
+    is said. The same sweep takes a smaller push instead, and gives what a sweep without the failure gives, history
+    included."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
 
     def push(share: float) -> Step:
@@ -212,7 +213,7 @@ def test_on_after_a_step_that_failed():
     run, plain = Sweep(problem), Sweep(problem)
     for each in (run, plain):
         each.solve(Step())
-    with pytest.raises(NotConverged):
+    with pytest.raises(NotConverged, match=r"no equilibrium.*more than μ times.*prescribe that motion"):
         run.solve(push(1.5))
     assert run.solved == plain.solved == 1
     after, wanted = run.solve(push(0.5)), plain.solve(push(0.5))

@@ -22,7 +22,7 @@ from solver.run_folder import RunFolder
 from solver.summary_rows import RunFacts
 
 FACTS = RunFacts(
-    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
+    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
 )
 KEYS = {"scene", "versions", "ranks", "dofs", "cells", "mesh", "skipped", "timings_s", "peak_memory_MB", "positions"}
 POSITION_KEYS = {

@@ -17,6 +17,7 @@ from solver.companion import solved_run
 from solver.estimated_errors import EstimatedErrors, FigureErrors
 from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts, cells_across
+from solver.plain_text import brief
 from solver.results import summary, write_tables
 from solver.run_data import RunData, SolvedPosition
 from solver.run_folder import RunFolder
@@ -24,8 +25,8 @@ from solver.run_sweep import pitch_of
 from solver.run_warnings import warnings_of
 from solver.sectors import gear_mesh
 
-GOOD = MeshFacts(0.3, 3.1)
-BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 1.0, 1.0, 1.0, 1.0),), "", "")
+GOOD = MeshFacts(0.3, 3.1, 2.0)
+BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 0.1, 0.1, 0.1, 0.1),), "", "")
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +49,10 @@ def test_nothing_to_say(quiet: RunData) -> None:
 @pytest.mark.parametrize(
     ("mesh", "said"),
     [
-        (MeshFacts(0.3, 1.7), "The contact is 1.7 elements wide (median); below 2"),
-        (MeshFacts(0.3, float("nan")), "elements wide"),
-        (MeshFacts(2.8e-4, 3.1), "The least scaled Jacobian of a cell is 0.0003, below 0.05"),
+        (MeshFacts(0.3, 1.7, 1.2), "The contact is 1.7 elements wide (median; 1.2 in its narrowest tenth); below 2"),
+        (MeshFacts(0.3, 2.1, 0.9), "The contact is 2.1 elements wide (median; 0.9 in its narrowest tenth); below 2"),
+        (MeshFacts(0.3, float("nan"), float("nan")), "elements wide"),
+        (MeshFacts(2.8e-4, 3.1, 2.0), "The least scaled Jacobian of a cell is 0.0003, below 0.05"),
     ],
 )
 def test_the_mesh(mesh: MeshFacts, said: str, quiet: RunData) -> None:
@@ -77,17 +79,28 @@ def test_what_is_said_of_a_coarse_mesh_agrees_with_the_bar(quiet: RunData) -> No
     """1.7 elements across and a bar of 4.6 % of the largest pressure: the sentence says what the bar is of, with its
     number, and what it is not of."""
     peak = friction_rows(quiet)[0].max_pressure_MPa
-    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, 1.0, 1.0, 1.0, 1.0),), "", "")
-    (said,) = warnings_of(replace(quiet, errors=bars), MeshFacts(0.3, 1.7))
+    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, 1e-3, 1e-3, 1e-3, 1e-3),), "", "")
+    (said,) = warnings_of(replace(quiet, errors=bars), MeshFacts(0.3, 1.7, 1.2))
     assert "pressures of single positions may be off by 15 %" in said
-    assert "the largest one is known within its error bar, 4.6 %" in said
+    assert "the largest one is known within its error bar, 4.6 %, but not where it occurs" in said
+
+
+def test_what_is_not_known(quiet: RunData) -> None:
+    """A bar of 1.1 times the largest pressure, of 0.4 times the mean one: the first is said not to be known, with both
+    numbers; the second is not mentioned."""
+    row = friction_rows(quiet)[0]
+    bars = FigureErrors(1.1 * row.max_pressure_MPa, 0.4 * row.mean_pressure_MPa, 1e-3, 1e-3, 1e-3, 1e-3)
+    (said,) = warnings_of(replace(quiet, errors=EstimatedErrors((bars,), "", "")), GOOD)
+    known = f"largest pressure {brief(row.max_pressure_MPa)} ±"
+    assert said.startswith(f"Not known, for the error bar is more than half of it: {known}")
+    assert "mean" not in said
 
 
 def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
     """summary.json has the same sentences."""
-    write_tables(RunFolder(tmp_path), summary(quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2))))
+    write_tables(RunFolder(tmp_path), summary(quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2, 0.8))))
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
-    assert found == list(warnings_of(quiet, MeshFacts(0.3, 1.2))) and "1.2 elements" in found[0]
+    assert found == list(warnings_of(quiet, MeshFacts(0.3, 1.2, 0.8))) and "1.2 elements" in found[0]
 
 
 @pytest.mark.parametrize("order", [1, 2])

@@ -29,7 +29,7 @@ SHOWN = (
      "helical, mean of the pitch"),
     ("the same, on deflected flanks", "Torque ratio of frictionless gears",
      "helical on deflected flanks, mean of the pitch"),
-    ("spur pair: load share in double contact (Pedrero)", "Contact ratio and load sharing of a spur pair",
+    ("spur pair: load share in double contact, rms off Pedrero's", "Contact ratio and load sharing of a spur pair",
      "share in double contact, rms off Pedrero's"),
 )  # fmt: skip
 """What it is called here, the rung, what the ladder's page calls it."""

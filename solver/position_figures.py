@@ -19,8 +19,9 @@ def loss_percent(_: RunData, solved: SolvedPosition) -> float:
 
 
 def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction, see mesh_stiffness.py;
-    its mean over the pitch is c_γ of ISO 6336-1. F: torque over base radius and face width, δ: transmission error."""
+    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction, see mesh_stiffness.py. F:
+    torque over base radius and face width, δ: transmission error. Its mean over the pitch is c_γ of ISO 6336-1 where
+    the gear bodies are stiff."""
     return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
 
 

@@ -9,7 +9,7 @@ from solver.engagement import largest_peak
 from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts
 from solver.plain_text import brief, signed
-from solver.run_data import RunData
+from solver.run_data import RunData, SolvedPosition
 from solver.scene_warnings import FEWEST_CELLS, FINER, few_cells
 from solver.summary_rows import FrictionRow
 
@@ -72,9 +72,11 @@ def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
     bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
     if not any(bears):
         return
+    share = max(_edge_share(solved) for each in run.positions for solved in each)
     yield (
-        f"A tip edge bears at {sum(bears)} of {len(bears)} positions: the pressure there is singular, grows with every "
-        "finer mesh, and is reported apart (edge_pressure_MPa); relieve the tips (tip_relief_um)."
+        f"A tip edge bears at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
+        "the load: the pressure there is singular, grows with every "
+        "finer mesh, and is reported apart (edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
     )
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
@@ -83,6 +85,12 @@ def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
             f"The largest pressure stands where the zone of a tip edge begins (ξ = {signed(ξ, 2)} mm) and would be "
             "larger further in: its value depends on where that is, and so on the mesh; relieve the tips."
         )
+
+
+def _edge_share(solved: SolvedPosition) -> float:
+    """Of the load, on the tooth that carries most of those that bear on a tip edge."""
+    edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
+    return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
 
 
 def _about_large_bars(run: RunData, _: MeshFacts) -> Iterator[str]:

@@ -46,7 +46,8 @@ class ToothRow:
     force_N: float
     """Normal force on the pair."""
     max_pressure_MPa: float
-    """Largest contact pressure, fitted over each slice, between the tip-edge zones; null where no slice lies there."""
+    """Largest contact pressure between the tip-edge zones, fitted over each slice and, on a helical line, averaged with
+    the slices beside it (1:2:1); null where no slice lies there."""
     contact_length_mm: float
     """Length of the contact line that bears."""
     edge_pressure_MPa: float
@@ -78,7 +79,8 @@ class PositionRow:
     tip_edge: bool
     """Whether a tooth bears on a tip's edge, where the pressure is singular."""
     loss_percent: float
-    """Friction power, of the input power."""
+    """Friction power, of the input power, with the sliding of rigid gears; where a contact lies across the pitch line a
+    few hundredths of a per cent below 0 may be found."""
     newton_iterations: int
     """Iterations of Newton's method at this position."""
     balance_error: float
@@ -107,7 +109,8 @@ class FrictionRow:
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangent, mean of the pitch: c_γ of ISO 6336-1."""
+    """Tangent, mean of the pitch. As c_γ of ISO 6336-1, but of the whole gears, rims, webs and their tilting under the
+    axial force included, on rigid bores; ISO's is that of the teeth."""
     secant_stiffness_N_per_mm_um: float
     """Secant, mean of the pitch; null where a flank has a chart."""
     loss_percent: float

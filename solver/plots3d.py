@@ -117,11 +117,12 @@ def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top
 
 
 def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> None:
+    """Without light: a shaded colour would be another value's on the scale."""
     mesh = poly_data(surface)
     mesh["values"] = values.ravel()
     scene.add_mesh(
         mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, above_color=OVER,
-        show_scalar_bar=False, smooth_shading=True, interpolate_before_map=True, **LIGHT,
+        show_scalar_bar=False, interpolate_before_map=True, lighting=False,
     )  # fmt: skip
 
 

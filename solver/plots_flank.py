@@ -49,12 +49,14 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
 
 
 def pressure_top(run: RunData, index: int) -> float:
-    """Upper end of the colours [MPa]: of the fitted peaks and the nodes' pressures between the tip-edge zones the
-    largest, rounded up. Layers that bear on a tip edge do not count: their pressure is singular, also beside it."""
+    """Upper end of the colours [MPa]: of the headline, the envelope and the nodes' pressures between the tip-edge zones
+    the largest, rounded up. Layers that bear on a tip edge do not count: their pressure is singular, also beside it."""
     low, high = run.inner_path
-    found = [0.0]
+    headline = largest_peak(run, index).pressure
+    found = [headline if np.isfinite(headline) else 0.0]
+    _, over_face = envelope(run, index, _path(run))
+    found.append(float(over_face[np.isfinite(over_face)].max(initial=0.0)))
     for cut, result in ((each[index].cut, each[index].result) for each in run.positions):
-        found += cut.peak[(low <= cut.ξ) & (cut.ξ <= high) & np.isfinite(cut.peak)].tolist()
         ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
         for tooth in np.unique(result.tooth):
             away = (result.tooth == tooth) & (low <= ξ) & (ξ <= high)
@@ -85,8 +87,13 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
     return heights, np.column_stack(columns)
 
 
+def _path(run: RunData) -> Floats:
+    """Roll distances (480,) [mm] of the envelope's map."""
+    return np.linspace(*run.inner_path, 480)
+
+
 def _envelope_map(axes: Axes, run: RunData, index: int, top: float) -> QuadMesh:
-    ξ = np.linspace(*run.inner_path, 480)
+    ξ = _path(run)
     z = np.linspace(-0.5, 0.5, 320) * run.pair.face_width
     fine = envelope_between(run, index, ξ, z)
     shown = axes.pcolormesh(z, ξ, fine, cmap=PRESSURE_MAP, vmin=0.0, vmax=top, shading="nearest", rasterized=True)

@@ -1,0 +1,38 @@
+"""The colour scale of the pressures on the flank."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from synthetic_run import synthetic_run
+
+from solver.engagement import largest_peak
+from solver.figure_rows import friction_rows
+from solver.plots_flank import pressure_top
+from solver.run_data import RunData
+
+
+def steep_run(file: str = "demos/he2022.toml", *more: str) -> RunData:
+    """A spur pair whose load on the tip edges is three times the evenly spread one, so that the pressure rises
+    between the last position and the beginning of a tip-edge zone, above that of all positions."""
+    even = synthetic_run("sweep.positions=7", *more, file=file)
+    return replace(
+        even,
+        positions=[
+            tuple(
+                replace(each, cut=replace(each.cut, hertz=np.where(each.cut.edge, 3.0, 1.0) * each.cut.hertz))
+                for each in position
+            )
+            for position in even.positions
+        ],
+    )
+
+
+def test_scale_reaches_the_headline() -> None:
+    """Problem: the largest pressure of a spur pair is where a tip-edge zone begins, between two positions, and in none
+    of their slices. Exact: the colours of 01 and 02 reach it, to a hundred MPa."""
+    run = steep_run()
+    headline, slices = friction_rows(run)[0].max_pressure_MPa, [each[0].cut.peak for each in run.positions]
+    assert largest_peak(run, 0).at_zone_end and headline > 100.0 + np.nanmax(np.concatenate(slices))
+    assert headline <= pressure_top(run, 0) < headline + 100.0

@@ -15,7 +15,7 @@ from solver.fields import poly_data
 from solver.flank_field import Patch, flank_field, flank_patch
 from solver.gear_position import PositionResult
 from solver.gear_surfaces import Polygons, all_teeth, place, placed_teeth
-from solver.plots_style import OVER, PINION_BODY, PRESSURE_MAP, WHEEL_BODY
+from solver.plots_style import FAINT, OVER, PINION_BODY, PRESSURE_MAP, WHEEL_BODY
 from solver.run_data import RunData
 
 Image = NDArray[np.uint8]
@@ -124,6 +124,8 @@ def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> 
         mesh, scalars="values", cmap=PRESSURE_MAP, clim=(0.0, top), n_colors=256, above_color=OVER,
         show_scalar_bar=False, interpolate_before_map=True, lighting=False,
     )  # fmt: skip
+    rim = mesh.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
+    scene.add_mesh(rim, color=FAINT, line_width=1.5, lighting=False)
 
 
 def _picture(scene: Any, camera: Camera) -> Image:

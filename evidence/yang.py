@@ -18,8 +18,9 @@ from solver.engagement import Engagement, crossing, engagement, largest_peak
 from solver.figure_rows import friction_rows
 from solver.line_peaks import between, pooled_peaks
 from solver.plots_lines import at_point
-from solver.plots_stress import relative_change, trends
+from solver.plots_stress import relative_change
 from solver.plots_teeth import YANG
+from solver.plots_trend import trends
 from solver.plots_yang import paper_points, paper_position
 from solver.run_data import RunData, read_run
 

@@ -7,6 +7,7 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
@@ -31,6 +32,8 @@ class TurnPeak:
     """[MPa]."""
     at_zone_end: bool
     """It lies where a tip-edge zone begins, and pressure may rise on."""
+    tooth: int
+    """The tooth pair of the pitch that has it."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +62,20 @@ class Engagement:
     @property
     def peak(self) -> TurnPeak:
         """The largest pressure. Raises ValueError where there is none."""
-        top = int(np.nanargmax(self.max_pressure))
-        own = TurnPeak(float(self.angle[top]), float(self.max_pressure[top]), bool(self.at_zone_end[top]))
-        return max(own, *self.zone_ends, key=lambda peak: peak.pressure) if self.zone_ends else own
+        return self._largest(np.flatnonzero(np.isfinite(self.max_pressure)), self.zone_ends)
+
+    def peak_of(self, tooth: int) -> TurnPeak:
+        """The largest pressure of a tooth pair in the pitch. Raises ValueError where there is none."""
+        here = np.flatnonzero(np.isfinite(self.max_pressure) & (self.tooth == tooth))
+        return self._largest(here, [end for end in self.zone_ends if end.tooth == tooth])
+
+    def _largest(self, here: Ints, ends: Iterable[TurnPeak]) -> TurnPeak:
+        """Of the entries `here` and the ends of zones."""
+        top = here[int(np.argmax(self.max_pressure[here]))]
+        own = TurnPeak(
+            float(self.angle[top]), float(self.max_pressure[top]), bool(self.at_zone_end[top]), int(self.tooth[top])
+        )
+        return max([own, *ends], key=lambda peak: peak.pressure)
 
     @property
     def pressure_curve(self) -> tuple[Floats, Floats]:
@@ -105,7 +119,10 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     return replace(
         curve,
         at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
-        zone_ends=tuple(TurnPeak(peak.ξ / radius, peak.pressure, True) for peak in entered),
+        zone_ends=tuple(
+            TurnPeak(peak.ξ / radius, peak.pressure, True, int((peak.ξ / radius - run.angles[0]) // run.pitch))
+            for peak in entered
+        ),
     )
 
 

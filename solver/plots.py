@@ -9,11 +9,13 @@ from matplotlib.figure import Figure
 
 from solver.display import off_screen
 from solver.draw import Picture
-from solver.plots_drive import hertz_comparison, line_load, load_sharing, losses, transmission_error
+from solver.plots_drive import line_load, load_sharing, losses, transmission_error
 from solver.plots_flank import pressure_map
+from solver.plots_hertz import hertz_comparison
 from solver.plots_lines import has_lines, has_path_points, line_pressure_over_z, points_over_friction
-from solver.plots_stress import engagement_stress, friction_trend, tooth_stress
+from solver.plots_stress import engagement_stress, tooth_stress
 from solver.plots_style import png, styled
+from solver.plots_trend import friction_trend
 from solver.run_data import RunData
 
 Draw = Callable[[RunData], Figure]

@@ -1,4 +1,4 @@
-"""What the pair does as a drive: load sharing, transmission error, losses, line load, and the Hertz estimates."""
+"""What the pair does as a drive: load sharing, transmission error, losses, line load and sliding."""
 
 from __future__ import annotations
 
@@ -7,32 +7,24 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from meshes.data import Floats
 from meshes.flank import contact_lines
-from solver.engagement import engagements, largest_peak
+from solver.engagement import engagements
 from solver.estimated_errors import plus_minus
-from solver.estimates import HertzEstimate, hertz_estimate
+from solver.estimates import hertz_estimate
 from solver.figure_rows import friction_rows
-from solver.hertz import LoadFactors
-from solver.mesh_facts import cells_across
-from solver.overview import paper_estimate
-from solver.plain_text import signed
+from solver.plain_text import brief, signed
 from solver.plots_stress import OWN_ANGLE
-from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, note, sheet
-from solver.plots_teeth import compares_yang
+from solver.plots_style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, sheet
 from solver.position_figures import loss_percent
 from solver.run_data import RunData
-from solver.scene_warnings import FEWEST_CELLS
 from solver.summary_rows import FrictionRow
 
-YANG_PRINTS = 1788.0
-"""Yang et al. 2022, Table 4 [MPa]; their Eq. 4 gives it neither with nor without their factors."""
-HERTZ = "#c98a1b"
-WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 PINION_ANGLE = "pinion rotation φ [°]"
 EVEN = 600  # rotations at which rigid flanks share: the share of a spur pair jumps
+MOST_SLIDING = 8.0
+"""Specific sliding is drawn down to its negative: near a base circle it has no bound."""
 
 
 def load_sharing(run: RunData) -> Figure:
@@ -85,22 +77,22 @@ def transmission_error(run: RunData) -> Figure:
     see += "."
     figure = sheet("Loaded transmission error over a pitch", see)
     axes = figure.subplots()
-    missed = rows[low].spacing_error.transmission_error_peak_to_peak_um
-    text = f"{len(run.positions)} positions. Between them the curve may reach further: peak to peak up to"
-    foot(figure, f"{text} {missed:.2f} µm more.")
+    foot(figure, _between(len(run.positions), rows[low], bars[low]))
     for index, colour in enumerate(friction_colours(run.frictions)):
         x, y = _closed(run, np.array([1e3 * each[index].result.transmission_error for each in run.positions]))
-        axes.plot(
-            x,
-            y,
-            color=colour,
-            marker=".",
-            markersize=5,
-            label=f"μ = {run.frictions[index]:g}  (p-p {sizes[index]} µm)",
-        )
+        axes.plot(x, y, color=colour, marker=".", markersize=5, label=f"μ = {run.frictions[index]:g}")
     axes.set(xlabel=PINION_ANGLE, ylabel="transmission error $r_{b1}φ_1 − r_{b2}φ_2$ [µm]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=7)
     return figure
+
+
+def _between(positions: int, row: FrictionRow, bar: float) -> str:
+    """What the curve may do between the positions; bar: of the peak to peak [µm], of which that is a part, or NaN."""
+    missed = row.spacing_error.transmission_error_peak_to_peak_um
+    if np.isfinite(bar):
+        part = f"Of the error bar at μ = {row.friction:g}, {brief(missed)} µm"
+        return f"{part} are for what the curve may do between the {positions} positions."
+    return f"Between the {positions} positions the curve may reach further: peak to peak up to {brief(missed)} µm more."
 
 
 def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
@@ -113,8 +105,7 @@ def losses(run: RunData) -> Figure:
     """Power lost to friction over a pitch, and the efficiency over μ."""
     rows = sorted(friction_rows(run), key=lambda row: row.friction)
     ends = " and ".join(
-        f"{_efficiency(row)} at μ = {row.friction:g}"
-        for row in {r.friction: r for r in (rows[0], rows[-1])}.values()
+        f"{_efficiency(row)} at μ = {row.friction:g}" for row in {r.friction: r for r in (rows[0], rows[-1])}.values()
     )
     figure = sheet("Friction loss", f"Efficiency of the mesh over a pitch: {ends}.", (10.6, 4.8))
     over, total = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
@@ -170,8 +161,11 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     upper.set_ylim(-0.02 * float(np.max(load)), 1.3 * float(np.max(load)))
     upper.legend(loc="upper center", ncols=4)
     _sliding(lower, run)
+    ends = min(start, float(ξ.min())), max(end, float(ξ.max()))
+    margin = 0.03 * (ends[1] - ends[0])
     lower.set(
-        xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)", xlim=(start - 0.5, end + 0.5)
+        xlabel="roll distance ξ from the pitch point [mm]   (pinion root → pinion tip)",
+        xlim=(ends[0] - margin, ends[1] + margin),
     )
     return figure
 
@@ -181,90 +175,25 @@ def _sliding(axes: Axes, run: RunData) -> None:
     ξ = np.linspace(*run.pair.path_of_contact, 300)
     ρ1, ρ2 = run.pair.curvature_radii(ξ)
     v1, v2 = ρ1, ρ2 / run.pair.ratio
-    axes.plot(ξ, 1.0 - v2 / v1, color=PINION, label="pinion")
-    axes.plot(ξ, 1.0 - v1 / v2, color=WHEEL, label="wheel")
+    with np.errstate(divide="ignore"):  # at a base circle
+        curves = (("pinion", PINION, 1.0 - v2 / v1, 0), ("wheel", WHEEL, 1.0 - v1 / v2, -1))
+    for name, colour, sliding, end in curves:
+        axes.plot(ξ, sliding, color=colour, label=name)
+        if sliding[end] < -MOST_SLIDING:
+            _cut_off(axes, float(ξ[end]), float(sliding[end]), colour)
     axes.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     axes.set_ylabel("specific sliding [–]")
-    axes.set_ylim(bottom=max(-4.0, float(min((1.0 - v2 / v1).min(), (1.0 - v1 / v2).min())) - 0.2))
+    least = max(-MOST_SLIDING, min(float(sliding.min()) for _, _, sliding, _ in curves))
+    axes.set_ylim(1.08 * least, 1.3)
     axes.legend(loc="lower center")  # both curves fall towards an end of the path
 
 
-def hertz_comparison(run: RunData, index: int = 0) -> Figure:
-    """Peak pressures of all slices beside Hertz for their own line load, and beside estimates."""
-    cuts = [each[index].cut for each in run.positions]
-    ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "peak", "hertz"))
-    start, end = run.pair.path_of_contact
-    inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
-    ratio = peak[inside] / hertz[inside] - 1.0
-    middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
-    see = f"Difference from Hertz for a slice's own line load: median {middle} %"
-    see += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
-    count = cells_across(run)
-    if not count >= FEWEST_CELLS:
-        see += f" For looking only: {count:.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
-    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
-    along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
-    along.plot(
-        ξ[inside],
-        peak[inside],
-        ".",
-        color=PINION,
-        markersize=dot_size(len(ξ)),
-        alpha=0.5,
-        label="computed, every slice",
-    )
-    along.plot(
-        ξ[inside],
-        hertz[inside],
-        ".",
-        color="#c98a1b",
-        markersize=dot_size(len(ξ)) - 1,
-        alpha=0.5,
-        label="Hertz, the slice's line load",
-    )
-    estimate, line = hertz_estimate(run.scene), np.linspace(start, end, 200)
-    along.plot(
-        line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length"
-    )
-    along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
-    along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
-    along.set_ylim(bottom=0.0)
-    along.legend(loc="best", markerscale=2)
-    _estimates(bars, run, index, ξ, peak)
-    return figure
-
-
-def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
-    """Bars: a study's estimates, Hertz at the pitch point, and what was computed there."""
-    estimate = hertz_estimate(run.scene)
-    near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
-    shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
-    rows = [
-        *(_yang_estimates(estimate) if compares_yang(run.scene) else ()),
-        ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), HERTZ),
-        ("Hertz at the pitch point,\nshortest line", shortest, HERTZ),
-        *([("computed near the\npitch line, median", float(np.median(peak[near])), PINION)] if near.any() else ()),
-        ("computed, largest", largest_peak(run, index).pressure, PINION),
-    ]
-    places = np.arange(len(rows))[::-1]
-    axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)
-    for place, (_, value, _) in zip(places, rows):
-        beside = {"xytext": (5, 0), "textcoords": "offset points"}
-        axes.annotate(f"{value:.0f}", (value, place), va="center", fontsize=9, bbox=WHITE, **beside)
-    axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
-    axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.18 * max(row[1] for row in rows)))
-    axes.grid(axis="y", visible=False)
-    if compares_yang(run.scene):
-        axes.axvline(YANG_PRINTS, color=INK, linestyle="--", linewidth=1.0)
-        note(axes, f"dashed: {YANG_PRINTS:.0f} MPa, as the paper prints it", 0.0, 1.05)
-
-
-def _yang_estimates(estimate: HertzEstimate) -> list[tuple[str, float, str]]:
-    """Eq. 4 of Yang et al. 2022 with and without its load factors."""
-    factors = LoadFactors()
-    named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
-    return [
-        ("Yang Eq. 4, $K_A K_v K_α K_β$ =\n" + named, paper_estimate(estimate, factors), "#b9bec7"),
-        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
-    ]
+def _cut_off(axes: Axes, ξ: float, sliding: float, colour: str) -> None:
+    """An arrow where a curve leaves the axes, with the value at its end."""
+    value = f"{signed(sliding)} at the end" if np.isfinite(sliding) else "without bound"
+    inwards = 1.0 if ξ < 0.0 else -1.0
+    axes.annotate(
+        value, (ξ, -MOST_SLIDING), (36.0 * inwards, 0.0), textcoords="offset points", color=colour, fontsize=9,
+        ha="left" if ξ < 0.0 else "right", va="bottom",
+    )  # fmt: skip
+    axes.plot(ξ, -MOST_SLIDING, marker="v", color=colour, markersize=7.0, clip_on=False)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,10 +22,17 @@ from solver.plots_yang import Point, has_two_lines, paper_points, paper_position
 from solver.run_data import RunData
 
 MOST_LINES = 4
-PATH_POINTS = (
-    "A, E: start and end of the path of contact; B, D: inner and outer point of single pair contact; C: pitch point;"
-    " in the transverse section (ISO 21771)."
-)
+PATH_POINTS = {
+    "A": "start of the path of contact",
+    "AC": "halfway from A to C",
+    "B": "inner point of single pair contact",
+    "C": "pitch point",
+    "CE": "halfway from C to E",
+    "D": "outer point of single pair contact",
+    "E": "end of the path of contact",
+}
+"""In the transverse section (ISO 21771)."""
+BESIDE = 0.06  # of the width of the axes, between labels that stand side by side
 COLOURS, MARKERS = ("#3b7a57", "#2d6fb0", "#8a5a9e", "#c98a1b", "#b03a5b"), "osD^v"
 
 
@@ -63,22 +70,41 @@ def line_pressure_over_z(run: RunData) -> Figure:
     k = telling_position(run)
     teeth, title = _teeth_at(run, k), f"Pressure along the contact lines at φ = {np.degrees(run.angles[k]):.2f}°"
     figure = sheet(title, _see_lines(run, k, teeth), (11.0, 5.2))
-    axes = figure.subplots(1, len(teeth), sharey=True, squeeze=False)[0]
+    axes, shown = figure.subplots(1, len(teeth), sharey=True, squeeze=False)[0], set[str]()
     for ax, tooth in zip(axes, teeth):
         for solved, colour in zip(run.positions[k], friction_colours(run.frictions)):
             z, _, peak = line_of(solved.cut, tooth)
             ax.plot(z, peak, color=colour, label=f"μ = {solved.result.friction:g}")
-        for number, (name, place) in enumerate(_marks(run, k, tooth)):
+        marks = _marks(run, k, tooth)
+        shown.update(name for name, _ in marks)
+        rows = label_rows([place for _, place in marks], BESIDE * len(teeth) * run.pair.face_width)
+        for (name, place), row in zip(marks, rows):
             ax.axvline(place, color=FAINT, linestyle=":", linewidth=1.0)
-            height = 0.97 - 0.05 * (number % 2)  # points may lie close together
+            height = 0.97 - 0.05 * row
             ax.text(place, height, name, transform=ax.get_xaxis_transform(), ha="center", fontweight="bold")
         ax.set_title(short_name(run, tooth), fontsize=10)
         ax.set(xlabel=FACE, xlim=(-0.5 * run.pair.face_width, 0.5 * run.pair.face_width))
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
-    foot(figure, "Nothing is drawn where a line bears on a tip edge.")
+    said = [] if compares_yang(run.scene) or not shown else [_points_named(shown)]
+    foot(figure, *said, "Nothing is drawn where a line bears on a tip edge.")
     return figure
+
+
+def label_rows(places: Sequence[float], beside: float) -> list[int]:
+    """The row, 0 the first, in which each place's label stands, so that no two in a row are nearer than `beside`."""
+    rows: list[int] = []
+    for k, place in enumerate(places):
+        taken = {rows[j] for j in range(k) if abs(places[j] - place) < beside}
+        rows.append(min(set(range(k + 1)) - taken))
+    return rows
+
+
+def _points_named(names: Collection[str]) -> str:
+    """What the letters of these points mean."""
+    said = "; ".join(f"{name}: {what}" for name, what in PATH_POINTS.items() if name in names)
+    return f"{said}; in the transverse section (ISO 21771)."
 
 
 def _marks(run: RunData, k: int, tooth: int) -> list[tuple[str, float]]:
@@ -94,10 +120,15 @@ def _marks(run: RunData, k: int, tooth: int) -> list[tuple[str, float]]:
 def path_points(pair: GearPair) -> list[tuple[str, float]]:
     """Names and roll distances [mm] of the points A to E of the path of contact in the transverse section (ISO 21771):
     A, E its start and end; C the pitch point; B and D the inner and outer point of single pair contact, which there are
-    with a transverse contact ratio from 1 to 2 only."""
+    with a transverse contact ratio above 1 and a total one below 2 only."""
     (start, end), pitch = pair.path_of_contact, pair.pinion.transverse_base_pitch
-    single = [("B", end - pitch), ("D", start + pitch)] if 1.0 < pair.transverse_contact_ratio < 2.0 else []
+    single = [("B", end - pitch), ("D", start + pitch)] if _single_pair(pair) else []
     return sorted([("A", start), ("C", 0.0), ("E", end), *single], key=lambda point: point[1])
+
+
+def _single_pair(pair: GearPair) -> bool:
+    """Whether a single tooth pair bears at times."""
+    return pair.transverse_contact_ratio > 1.0 and pair.total_contact_ratio < 2.0
 
 
 def points_over_friction(run: RunData) -> Figure:
@@ -128,7 +159,7 @@ def points_over_friction(run: RunData) -> Figure:
     below.set(xlabel="friction coefficient μ", ylabel=f"change against μ = {μ[0]:g} [%]")
     _table(side, series, heads)
     if not compares_yang(run.scene):
-        foot(figure, PATH_POINTS)
+        foot(figure, _points_named([each.name for each in series]))
     return figure
 
 
@@ -137,9 +168,17 @@ def _of_study(run: RunData, k: int, point: Point, order: np.ndarray) -> Series:
     return Series(point.name, (f"{2 - point.tooth}", signed(point.z, 2), signed(point.ξ, 2)), values)
 
 
+def _points_to_follow(pair: GearPair) -> list[tuple[str, float]]:
+    """The points of the path of contact; where there are no B and D, those halfway from its pitch point to its ends in
+    their place."""
+    points, (start, end) = path_points(pair), pair.path_of_contact
+    halfway = [] if _single_pair(pair) else [("AC", 0.5 * start), ("CE", 0.5 * end)]
+    return sorted([*points, *halfway], key=lambda point: point[1])
+
+
 def _of_path(run: RunData, order: np.ndarray) -> list[Series]:
-    """Those of the points A to E that have a pressure at mid-face: A and E often bear on a tip edge."""
-    names, ξ = zip(*path_points(run.pair))
+    """Those of the points to follow that have a pressure at mid-face: A and E often bear on a tip edge."""
+    names, ξ = zip(*_points_to_follow(run.pair))
     maps = [envelope(run, int(index), np.array(ξ)) for index in order]
     middle = int(np.argmin(np.abs(maps[0][0])))
     found = np.array([peak[:, middle] for _, peak in maps])

@@ -36,7 +36,9 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     figure = sheet(f"{run.scene.title}: pressure on the flanks", see, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
     _image(
-        figure.add_subplot(grid[:, 0]), pair_picture(run, result, top, (1500, 1060)), "the pair, wheel drawn as glass, which tints colours"
+        figure.add_subplot(grid[:, 0]),
+        pair_picture(run, result, top, (1500, 1060)),
+        "the pair, wheel drawn as glass, which tints colours",
     )
     _image(
         figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (960, 560)), "pinion flanks, wheel taken away"

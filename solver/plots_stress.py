@@ -1,4 +1,4 @@
-"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 to 10).
+"""Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 and 9).
 
 Where the contact is fewer than two elements wide, peaks scatter with the way it lies in the cells. Then the pictures
 say so, show points as computed, and as a line Hertz's stress for the same loads times the median of five ratios to it:
@@ -8,19 +8,20 @@ loads are known well, and what they do, as where a single pair bears, stays.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from meshes.data import Floats
-from solver.engagement import Engagement, crossing, engagement, engagements, with_hertz
+from solver.engagement import Engagement, TurnPeak, crossing, engagement, engagements, with_hertz
 from solver.estimated_errors import plus_minus
 from solver.figure_rows import friction_rows
 from solver.mesh_facts import cells_across
 from solver.plain_text import signed
-from solver.plots_style import FAINT, INK, TEETH, foot, friction_colours, sheet
+from solver.plots_style import AT_ZONE_END, FAINT, HOLLOW, INK, foot, friction_colours, sheet
 from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
 from solver.run_warnings import few_positions
@@ -34,7 +35,7 @@ MEDIAN = 5  # positions that a running median takes where the mesh does not reso
 def engagement_stress(run: RunData) -> Figure:
     """Maximum contact stress of one tooth over its whole engagement for every μ; the crossing enlarged (Fig. 9)."""
     curves = engagements(run)
-    cross = _crossing_deg(curves)
+    cross = _crossing_deg(run, curves)
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
     see = _see_engagement(run, curves, cross, bar)
     figure = sheet("Contact stress of a tooth over its engagement", see, (10.4, 6.2))
@@ -42,6 +43,9 @@ def engagement_stress(run: RunData) -> Figure:
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
     foot(figure, f"Largest between the tip-edge zones, from ξ = {low} to {high} mm.", *_resolved(run), *_sampled(run))
+    for curve, colour in zip(curves, friction_colours(run.frictions)):
+        for end in _zone_ends(curve):
+            main.plot(np.degrees(end.angle), end.pressure, color=colour, **HOLLOW)
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
     main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
@@ -49,7 +53,9 @@ def engagement_stress(run: RunData) -> Figure:
     largest = _lowest(curves).peak.pressure + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
     main.set_ylim(max(0.0, 0.92 * bottom), 1.06 * top)
-    main.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
+    handles = [*main.get_legend_handles_labels()[0], *_keys(run, any(_zone_ends(curve) for curve in curves))]
+    columns = 3 if len(handles) in (5, 6) else 4
+    main.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns)
     if detail is not None:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
         place = "where they cross" if np.isfinite(cross) else "at the pitch point"
@@ -79,31 +85,6 @@ def tooth_stress(run: RunData) -> Figure:
     return figure
 
 
-def friction_trend(run: RunData) -> Figure:
-    """Average and maximum contact stress of the teeth over μ, and their changes (Fig. 10)."""
-    curves = sorted(engagements(run), key=lambda c: c.friction)
-    found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
-    each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
-    changes = ", ".join(f"{name} by {signed(change)} %" for name, change in each)
-    see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
-    figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
-    grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
-    for trend, colour, marker in zip(found, TEETH, "osD^"):
-        for column, values in enumerate((trend.average, trend.largest)):
-            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
-            grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
-    for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
-        grid[0, column].set_title(title, fontsize=10)
-        grid[0, column].set_ylim(0.0, 1.5 * max(np.max(t.largest) for t in found))
-        grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
-        grid[1, column].set_xlabel("friction coefficient μ")
-        grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
-    grid[0, 0].set_ylabel("contact stress [MPa]")
-    grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
-    grid[0, 1].legend(loc="upper right")
-    return figure
-
-
 def _curves(
     axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
 ) -> None:
@@ -115,6 +96,21 @@ def _curves(
         axes.plot(*_shown(run, curve, here, tooth), color=colour, marker=".", markersize=4.0 - (not coarse), **points)
         if coarse:
             axes.plot(*_shown(run, line, here, tooth), color=colour, label=label)
+
+
+def _zone_ends(curve: Engagement) -> list[TurnPeak]:
+    """The pressures where a tip-edge zone begins: a spur pair's, and the largest if it is one."""
+    return list(dict.fromkeys([*curve.zone_ends, *([curve.peak] if curve.peak.at_zone_end else [])]))
+
+
+def _keys(run: RunData, zone_ends: bool) -> list[Line2D]:
+    """What the legend says of dots, lines and hollow dots."""
+    coarse = [
+        Line2D([], [], color=FAINT, linestyle="", marker=".", markersize=6.0, label="computed"),
+        Line2D([], [], color=FAINT, label="Hertz × running median"),
+    ]
+    hollow = [Line2D([], [], color=FAINT, label=AT_ZONE_END, **HOLLOW)]
+    return [*(coarse if few_cells_across(run) else ()), *(hollow if zone_ends else ())]
 
 
 def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
@@ -189,9 +185,12 @@ def _highest(curves: Sequence[Engagement]) -> Engagement:
     return max(curves, key=lambda c: c.friction)
 
 
-def _crossing_deg(curves: Sequence[Engagement]) -> float:
-    """Where the curves of the least and of the most friction cross [°]; NaN: nowhere."""
-    return float(np.degrees(crossing(_lowest(curves), _highest(curves)))) if len(curves) > 1 else float("nan")
+def _crossing_deg(run: RunData, curves: Sequence[Engagement]) -> float:
+    """Where the curves of the least and of the most friction cross [°]; NaN: nowhere, or not known, because the scatter
+    of the peaks moves it by degrees."""
+    if len(curves) == 1 or few_cells_across(run):
+        return float("nan")
+    return float(np.degrees(crossing(_lowest(curves), _highest(curves))))
 
 
 def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: float, half: float) -> None:
@@ -237,10 +236,9 @@ def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float, ba
         return peak + "."
     angle, change = relative_change(highest, lowest, np.ones(len(highest.angle), dtype=bool))
     before, after = (signed(100 * float(np.nanmean(change[side]))) for side in (angle < 0.0, angle > 0.0))
-    what = "points" if few_cells_across(run) else "curves"
-    where = f"the {what} cross at {signed(cross)}°" if np.isfinite(cross) else f"the {what} do not cross"
+    where = f"the curves cross at {signed(cross)}°" if np.isfinite(cross) else "the curves do not cross"
     means = f"μ = {highest.friction:g} changes it by {before} % on average before the pitch point, {after} % after it"
-    return f"{peak}; {means}; {where}."
+    return f"{peak}; {means}" + ("." if few_cells_across(run) else f"; {where}.")
 
 
 def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
@@ -253,24 +251,3 @@ def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
         low, high = (signed(100 * float(bound)) for bound in (np.nanmin(change), np.nanmax(change)))
         parts.append(f"{short_name(run, tooth)} by {low} to {high} %")
     return f"From μ = {lowest.friction:g} to {highest.friction:g} the stress changes: " + ", ".join(parts) + "."
-
-
-@dataclass(frozen=True)
-class Trend:
-    """Over μ ascending: average and maximum contact stress [MPa] of a tooth over the pitch."""
-
-    tooth: int
-    average: Floats
-    largest: Floats
-
-
-def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
-    """Of these teeth; the average is along the contact line, then over the positions."""
-    return [
-        Trend(
-            tooth,
-            np.array([np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]),
-            np.array([np.nanmax(c.max_pressure[c.tooth == tooth]) for c in curves]),
-        )
-        for tooth in teeth
-    ]

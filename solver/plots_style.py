@@ -6,6 +6,7 @@ import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -26,6 +27,9 @@ INK, FAINT = "#222222", "#8a8f98"
 OVER = "#1f6fd0"
 """Beyond the upper end of a colour scale."""
 ABOVE = "blue: above the scale, at a tip edge"
+AT_ZONE_END = "where a tip-edge zone begins"
+HOLLOW: dict[str, Any] = {"marker": "o", "markersize": 6.0, "markerfacecolor": "white", "linestyle": "", "zorder": 4.0}
+"""A pressure there."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
 ).with_extremes(over=OVER)

@@ -10,7 +10,7 @@ so torques, energy and the friction trend are known in closed form, and every fi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -27,7 +27,7 @@ from solver.gear_sweep import SweepState, SweptPosition
 from solver.hertz import line_half_width, line_peak_pressure, line_pressure
 from solver.kinematics import Stand
 from solver.resolution import sector_resolutions
-from solver.run_data import RunData, run_data
+from solver.run_data import RunData, SolvedPosition, run_data
 from solver.scene import Scene, load_scene
 from solver.skips import is_plane
 from solver.surface import Surface, surface_of
@@ -50,6 +50,18 @@ def synthetic_run(*overrides: str, file: str = "demos/yang2022.toml") -> RunData
     scene = synthetic_scene(*overrides, file=file)
     shapes, flank = synthetic_shapes(scene)
     return run_data(scene, shapes, synthetic_sweep(scene, flank))
+
+
+def steep_run(*overrides: str) -> RunData:
+    """He's spur pair whose load on the tip edges is three times the evenly spread one, so that the pressure rises
+    between the last position and the beginning of a tip-edge zone, above that of all positions."""
+    even = synthetic_run("sweep.positions=7", *overrides, file="demos/he2022.toml")
+    return replace(even, positions=[tuple(map(_with_loaded_edges, position)) for position in even.positions])
+
+
+def _with_loaded_edges(solved: SolvedPosition) -> SolvedPosition:
+    cut = solved.cut
+    return replace(solved, cut=replace(cut, hertz=np.where(cut.edge, 3.0, 1.0) * cut.hertz))
 
 
 def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface]:

@@ -2,31 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
-from synthetic_run import synthetic_run
+from synthetic_run import steep_run
 
 from solver.engagement import largest_peak
 from solver.figure_rows import friction_rows
 from solver.plots_flank import pressure_top
-from solver.run_data import RunData
-
-
-def steep_run(file: str = "demos/he2022.toml", *more: str) -> RunData:
-    """A spur pair whose load on the tip edges is three times the evenly spread one, so that the pressure rises
-    between the last position and the beginning of a tip-edge zone, above that of all positions."""
-    even = synthetic_run("sweep.positions=7", *more, file=file)
-    return replace(
-        even,
-        positions=[
-            tuple(
-                replace(each, cut=replace(each.cut, hertz=np.where(each.cut.edge, 3.0, 1.0) * each.cut.hertz))
-                for each in position
-            )
-            for position in even.positions
-        ],
-    )
 
 
 def test_scale_reaches_the_headline() -> None:

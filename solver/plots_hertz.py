@@ -15,7 +15,7 @@ from solver.hertz import LoadFactors
 from solver.mesh_facts import cells_across
 from solver.overview import paper_estimate
 from solver.plain_text import signed
-from solver.plots_style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, note, sheet
+from solver.plots_style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
 from solver.plots_teeth import compares_yang
 from solver.run_data import RunData
 from solver.scene_warnings import FEWEST_CELLS
@@ -69,12 +69,13 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     along.set_ylim(0.0, 1.32 * along.get_ylim()[1])  # the legend lies above the curves
     along.legend(loc="upper right")
     _estimates(bars, run, index, ξ, peak)
+    if not run.plane:
+        foot(figure, "In the largest a slice counts together with its neighbours on the line: single ones may lie above.")
     return figure
 
 
 def _largest(axes: Axes, run: RunData, index: int) -> None:
-    """The largest pressure that the run reports, with its error bar: it may lie between two positions, and a slice
-    counts in it together with its neighbours on the line."""
+    """The largest pressure that the run reports, with its error bar; it may lie between two positions."""
     top, bar = largest_peak(run, index), run.errors.bar("max_pressure_MPa", index)
     face = {"markerfacecolor": "white" if top.at_zone_end else INK}
     label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")

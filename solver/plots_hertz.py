@@ -70,7 +70,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     along.legend(loc="upper right")
     _estimates(bars, run, index, ξ, peak)
     if not run.plane:
-        foot(figure, "In the largest a slice counts with its neighbours on the line: single ones may lie above.")
+        foot(figure, "The largest counts a slice together with its neighbours on the line; single slices scatter about it.")
     return figure
 
 

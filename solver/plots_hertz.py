@@ -70,7 +70,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     along.legend(loc="upper right")
     _estimates(bars, run, index, ξ, peak)
     if not run.plane:
-        foot(figure, "The largest counts a slice together with its neighbours on the line; single slices scatter about it.")
+        pooled = "The largest counts a slice together with its neighbours on the line"
+        foot(figure, f"{pooled}; single slices scatter about it.")
     return figure
 
 

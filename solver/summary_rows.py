@@ -117,7 +117,7 @@ class FrictionRow:
     """Friction work of the pitch, of the input."""
     crossing_deg: float
     """The tooth's rotation at which its curve of maximum pressure crosses that of the smallest coefficient; null where
-    it does not."""
+    it does not, or where the contact is less than two elements wide."""
     balance_error: float
     """Input less output less friction work, over the input, of the pitch. A run ends with status 3 above 0.01."""
     forces_on_pinion: ShaftForces

@@ -2,7 +2,8 @@
 without another mesh.
 
 Curves over the pitch are smooth but for kinks and jumps, where a tooth enters or leaves, where a relief begins. Of any
-figure, the *thinned* one, of every other position, is off by more than that of all; how much more is one estimate. It
+figure, the *thinned* one, of every other position, is off by more than that of all; how much more is one estimate. Of an
+odd number two neighbours are kept, and means weight each position with its share of the closed pitch. The estimate
 misses what lies between two positions, so the larger one is taken of it and
 
 - of an extreme: how much further the curve may reach between two positions if it goes on straight from both sides.
@@ -23,11 +24,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
-from typing import Any
 
 import numpy as np
 
-from meshes.data import Floats
+from meshes.data import Floats, Ints
 from solver.engagement import Engagement, TurnPeak, engagement
 from solver.estimated_errors import FigureErrors
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
@@ -49,24 +49,45 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
     """Of the figures at friction coefficient number `index`; NaN where a run has a single position."""
     if len(run.positions) < 2:
         return FigureErrors(*[float("nan")] * len(fields(FigureErrors)))
-    runs = run, *(replace(run, positions=run.positions[k::2]) for k in (0, 1))
-    curves = [engagement(each, index) for each in runs]
+    count = len(run.positions)
+    whole, halves = engagement(run, index), [every_other(count, first) for first in (0, 1)]
+    thin = [engagement(replace(run, positions=tuple(run.positions[k] for k in kept)), index) for kept in halves]
     error, tangent, secant, loss = (
-        [_values(each, index, value) for each in runs]
-        for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
+        _values(run, index, value) for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
     )
-    step = run.pitch / len(run.positions)
-    pressure = curves[0].max_pressure
+    largest = _apart(_largest(whole), [_largest(curve) for curve in thin])
+    mean = [_mean(curve.mean_pressure, shares(kept, count)[curve.position]) for curve, kept in zip(thin, halves)]
     return FigureErrors(
-        max_pressure_MPa=_larger(
-            _thinned(_largest, curves), _higher(curves[0], step), SCATTERS * scatter(pressure)
+        max_pressure_MPa=_larger(largest, _higher(whole, run.pitch / count), SCATTERS * scatter(whole.max_pressure)),
+        mean_pressure_MPa=_larger(_apart(_mean(whole.mean_pressure), mean), _mean_bends(whole)),
+        transmission_error_peak_to_peak_um=_larger(
+            _apart(float(np.ptp(error)), [float(np.ptp(error[kept])) for kept in halves]), missed_peaks(error)
         ),
-        mean_pressure_MPa=_larger(_thinned(_mean, [each.mean_pressure for each in curves]), _mean_bends(curves[0])),
-        transmission_error_peak_to_peak_um=_larger(_thinned(np.ptp, error), missed_peaks(error[0])),
-        mesh_stiffness_N_per_mm_um=_larger(_thinned(np.mean, tangent), JUMP * _pitch_bends(tangent[0])),
-        secant_stiffness_N_per_mm_um=_larger(_thinned(np.mean, secant), KINK * _pitch_bends(secant[0])),
-        loss_percent=_larger(_thinned(np.mean, loss), KINK * _pitch_bends(loss[0])),
-    )  # fmt: skip
+        mesh_stiffness_N_per_mm_um=_larger(thinned_mean(tangent), JUMP * _pitch_bends(tangent)),
+        secant_stiffness_N_per_mm_um=_larger(thinned_mean(secant), KINK * _pitch_bends(secant)),
+        loss_percent=_larger(thinned_mean(loss), KINK * _pitch_bends(loss)),
+    )
+
+
+def every_other(count: int, first: int) -> Ints:
+    """Numbers of every other position of a closed pitch of `count`, ascending, from the `first` on; of an odd count the
+    last one is a neighbour of the first."""
+    return np.sort((first + 2 * np.arange((count + 1) // 2)) % count)
+
+
+def shares(kept: Ints, count: int) -> Floats:
+    """What part (k,) of a closed pitch of `count` even steps belongs to each of the positions `kept` (k,), ascending:
+    half the way between its two neighbours, as the trapezoidal rule has it."""
+    gaps = np.diff(np.append(kept, kept[0] + count))
+    return np.asarray((gaps + np.roll(gaps, 1)) / (2.0 * count))
+
+
+def thinned_mean(values: Floats) -> float:
+    """How far the mean of a periodic curve, even samples (n,), moves on average where every other one is left out: of
+    an odd number it depends on which."""
+    count = len(values)
+    sets = [every_other(count, first) for first in range(count)]
+    return _apart(float(np.mean(values)), [float(values[kept] @ shares(kept, count)) for kept in sets])
 
 
 def missed_peaks(values: Floats) -> float:
@@ -151,10 +172,9 @@ def _values(run: RunData, index: int, value: OfPosition) -> Floats:
     return np.array([value(run, each[index]) for each in run.positions])
 
 
-def _thinned(figure: Callable[[Any], Any], curves: Sequence[Any]) -> float:
-    """How far a figure of the second and the third of these, the halves, is from that of the first on average."""
-    whole, *halves = (float(figure(curve)) for curve in curves)
-    return float(np.mean([abs(half - whole) for half in halves]))
+def _apart(whole: float, thinned: Sequence[float]) -> float:
+    """How far these are from the first on average."""
+    return float(np.mean([abs(each - whole) for each in thinned]))
 
 
 def _larger(*estimates: float) -> float:
@@ -167,7 +187,8 @@ def _largest(curve: Engagement) -> float:
     return curve.peak.pressure if np.isfinite(curve.max_pressure).any() else float("nan")
 
 
-def _mean(values: Floats) -> float:
+def _mean(values: Floats, weights: Floats | None = None) -> float:
     """Of those that are known; NaN where there is none."""
-    known = values[np.isfinite(values)]
-    return float(np.mean(known)) if len(known) else float("nan")
+    known = np.isfinite(values)
+    own = None if weights is None else weights[known]
+    return float(np.average(values[known], weights=own)) if known.any() else float("nan")

@@ -2,8 +2,8 @@
 without another mesh.
 
 Curves over the pitch are smooth but for kinks and jumps, where a tooth enters or leaves, where a relief begins. Of any
-figure, the *thinned* one, of every other position, is off by more than that of all; how much more is one estimate. Of an
-odd number two neighbours are kept, and means weight each position with its share of the closed pitch. The estimate
+figure, the *thinned* one, of every other position, is off by more than that of all; how much more is one estimate. Of
+an odd number two neighbours are kept, and means weight each position with its share of the closed pitch. The estimate
 misses what lies between two positions, so the larger one is taken of it and
 
 - of an extreme: how much further the curve may reach between two positions if it goes on straight from both sides.
@@ -14,8 +14,9 @@ misses what lies between two positions, so the larger one is taken of it and
   it lies in shows about half of J. Those of all positions are independent of each other.
 
 The largest pressure is read from a tooth's engagement, which ends where it enters a tip-edge zone: if the curve rises
-up to there, then by how much it does in one step more. Pressures scatter from position to position as the contact lies
-in the cells: of so many the largest is twice the scatter above what fewer show.
+up to there, then by how much it does in one step more. Where a linear tip relief begins, the largest pressure over that
+kink is known without a position there (`relief_kinks`), and the bar goes up to it. Pressures scatter from position to
+position as the contact lies in the cells: of so many the largest is twice the scatter above what fewer show.
 
 evidence/benchmark/spacing.py holds these estimates against many positions.
 """
@@ -31,6 +32,7 @@ from meshes.data import Floats, Ints
 from solver.engagement import Engagement, TurnPeak, engagement
 from solver.estimated_errors import FigureErrors
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from solver.relief_kinks import relief_kinks
 from solver.run_data import RunData, SolvedPosition
 
 JUMP, KINK = 0.5, 1.0 / 6.0
@@ -57,8 +59,10 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
     )
     largest = _apart(_largest(whole), [_largest(curve) for curve in thin])
     mean = [_mean(curve.mean_pressure, shares(kept, count)[curve.position]) for curve, kept in zip(thin, halves)]
+    kinks = [kink.pressure - _largest(whole) for kink in relief_kinks(run, index)]
+    scattered = SCATTERS * scatter(whole.max_pressure)
     return FigureErrors(
-        max_pressure_MPa=_larger(largest, _higher(whole, run.pitch / count), SCATTERS * scatter(whole.max_pressure)),
+        max_pressure_MPa=_larger(largest, _higher(whole, run.pitch / count), scattered, *kinks),
         mean_pressure_MPa=_larger(_apart(_mean(whole.mean_pressure), mean), _mean_bends(whole)),
         transmission_error_peak_to_peak_um=_larger(
             _apart(float(np.ptp(error)), [float(np.ptp(error[kept])) for kept in halves]), missed_peaks(error)

@@ -99,8 +99,8 @@ def test_means_of_even_and_odd_numbers(n: int) -> None:
 
 
 def test_an_odd_number_of_positions_has_no_wider_bars() -> None:
-    """Problem: a made-up pair whose transmission error is a sine. Exact: the mean secant stiffness has next to no error,
-    and 21 positions no wider a bar for it than 20."""
+    """Problem: a made-up pair whose transmission error is a sine. Exact: the mean secant stiffness has next to no
+    error, and 21 positions no wider a bar for it than 20."""
     bars = [
         spacing_errors(synthetic_run("contact.friction=0.1", f"sweep.positions={n}"), 0).secant_stiffness_N_per_mm_um
         for n in (20, 21)

@@ -17,6 +17,7 @@ from solver.run_sweep import pitch_of
 from solver.run_warnings import warnings_of
 from solver.scene import scene_from_text
 from solver.sectors import gear_mesh
+from solver.spacing import known_on_kinks
 
 LIGHT = """
 [pair]
@@ -98,6 +99,13 @@ def test_a_peak_between_positions(missed: RunData) -> None:
     assert row.max_pressure_at_relief_start
     (said,) = [sentence for sentence in warnings_of(missed, GOOD) if WORDS in sentence]
     assert "ξ = −4.04 mm" in said and "0.22 mm apart" in said and "parabolic" in said
+
+
+def test_bars_on_a_kink_are_no_wider_than_it(missed: RunData) -> None:
+    """Samples on the wheel's kink and far from any: what lines reach, 2000 MPa, is cut down to the pressure
+    over the kink where the contact lies on it, and nowhere else."""
+    known = known_on_kinks(np.array([-4.5, -4.3, -4.1, -3.9, 0.0, 0.2, 0.4]), np.full(4, 2e3), relief_kinks(missed, 0))
+    assert known[:3] == pytest.approx(relief_kinks(missed, 0)[1].pressure) and known[3] == 2e3
 
 
 def test_nothing_is_said_without_a_kink() -> None:

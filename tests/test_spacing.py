@@ -25,7 +25,17 @@ from solver.run_sweep import pitch_of
 from solver.run_warnings import SPACING_SAID, warnings_of
 from solver.scene import scene_from_text
 from solver.sectors import gear_mesh
-from solver.spacing import bends, every_other, missed_peaks, reach, scatter, shares, spacing_errors, thinned_mean
+from solver.spacing import (
+    bends,
+    every_other,
+    missed_peaks,
+    reach,
+    roundness,
+    scatter,
+    shares,
+    spacing_errors,
+    thinned_mean,
+)
 
 COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")
 
@@ -51,6 +61,23 @@ def test_kink_between_samples() -> None:
         y = 3.2 - np.where(x < top, 1.0, 0.5) * np.abs(x - top)
         assert reach((x, y), jumps=False) == pytest.approx(3.2)
         assert reach((x, -y), jumps=False) == pytest.approx(-y.min())
+
+
+def test_smooth_top_between_samples() -> None:
+    """A parabola with its top, 0, halfway between samples a step apart: a bend that is as large all around is no kink,
+    and the top is found exactly, a quarter of the way up to where straight lines meet. Half of a step's bend is seen at
+    either sample of a kink, and none beside them: the lines meet in it."""
+    x = np.arange(8.0)
+    assert reach((x, -((x - 3.5) ** 2)), jumps=False) == pytest.approx(0.0, abs=1e-12)
+    assert roundness(np.diff(-((x - 3.5) ** 2)))[2] == 1.0 and roundness(np.diff(-np.abs(x - 3.5)))[2] == 0.0
+
+
+def test_lines_go_no_further_than_their_step() -> None:
+    """Two samples a hundredth of a step apart, as where a position stands beside the end of a tip-edge zone, the second
+    0.1 higher, then a fall: no line rises by more than that 0.1, which would be 10 over a whole step, and the jump that
+    it may be goes half of it up."""
+    x, y = np.array([0.0, 0.99, 1.0, 2.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.1, 0.9, 0.6, 0.3])
+    assert 1.1 <= reach((x, y), jumps=True) <= 1.2
 
 
 def test_jump_between_samples() -> None:

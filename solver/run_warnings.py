@@ -90,6 +90,12 @@ def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
         )
 
 
+def _edge_share(solved: SolvedPosition) -> float:
+    """Of the load, on the tooth that carries most of those that bear on a tip edge."""
+    edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
+    return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
+
+
 def _about_relief(run: RunData, _: MeshFacts) -> Iterator[str]:
     curves = engagements(run)
     found = [
@@ -107,12 +113,6 @@ def _about_relief(run: RunData, _: MeshFacts) -> Iterator[str]:
         'far it rises is a matter of how sharp the kink is made; take tip_relief_form = "parabolic", or more positions '
         "(sweep.positions)."
     )
-
-
-def _edge_share(solved: SolvedPosition) -> float:
-    """Of the load, on the tooth that carries most of those that bear on a tip edge."""
-    edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
-    return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
 
 
 def _about_large_bars(run: RunData, _: MeshFacts) -> Iterator[str]:

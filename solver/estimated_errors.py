@@ -12,7 +12,7 @@ from solver.archive import Archive, ArchiveError, read_arrays
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
     "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes; plus, "
-    "of all figures, what may lie between the positions (spacing_error)"
+    "of all figures, what may lie between the positions, on the start of a linear relief too (spacing_error)"
 )
 
 

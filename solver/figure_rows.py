@@ -11,6 +11,7 @@ from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
 from solver.line_peaks import line_peak
 from solver.mesh_facts import cells_across
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from solver.relief_kinks import peak_over_kink
 from solver.run_data import RunData, SolvedPosition
 from solver.scene_warnings import FEWEST_CELLS
 from solver.shaft_forces import shaft_forces
@@ -76,6 +77,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         max_pressure_MPa=top.pressure,
         max_pressure_angle_deg=degrees(top.angle),
         max_pressure_at_zone_end=top.at_zone_end,
+        max_pressure_at_relief_start=peak_over_kink(run, index, top) is not None,
         mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
         transmission_error_peak_to_peak_um=float(np.ptp(errors)),
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from solver.engagement import largest_peak
+import numpy as np
+
+from solver.engagement import engagements, largest_peak
 from solver.figure_rows import friction_rows
 from solver.mesh_facts import MeshFacts
 from solver.plain_text import brief, signed
+from solver.relief_kinks import peak_over_kink
 from solver.run_data import RunData, SolvedPosition
 from solver.scene_warnings import FEWEST_CELLS, FINER, few_cells
 from solver.summary_rows import FrictionRow
@@ -34,7 +37,7 @@ NAMES = {
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Of a finished run."""
-    about = _about_the_mesh, _about_tip_edges, _about_large_bars, _about_error_bars, _about_spacing
+    about = _about_the_mesh, _about_tip_edges, _about_relief, _about_large_bars, _about_error_bars, _about_spacing
     return tuple(sentence for each in about for sentence in each(run, mesh))
 
 
@@ -91,6 +94,25 @@ def _edge_share(solved: SolvedPosition) -> float:
     """Of the load, on the tooth that carries most of those that bear on a tip edge."""
     edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
     return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
+
+
+def _about_relief(run: RunData, _: MeshFacts) -> Iterator[str]:
+    curves = engagements(run)
+    found = [
+        peak_over_kink(run, k, curve.peak) for k, curve in enumerate(curves) if np.isfinite(curve.max_pressure).any()
+    ]
+    kinks = [kink for kink in found if kink is not None]
+    if not kinks:
+        return
+    kink = max(kinks, key=lambda kink: kink.pressure)
+    step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
+    yield (
+        f"The largest pressure stands, or may stand between positions, where a linear tip relief begins "
+        f"(ξ = {signed(kink.ξ, 2)} mm): over that kink of the flank Hertz' pressure rises from {brief(kink.hertz)} to "
+        f"about {brief(kink.pressure)} MPa within {2.0 * kink.way:.2g} mm, positions are {step:.2g} mm apart, and how "
+        'far it rises is a matter of how sharp the kink is made; take tip_relief_form = "parabolic", or more positions '
+        "(sweep.positions)."
+    )
 
 
 def _about_large_bars(run: RunData, _: MeshFacts) -> Iterator[str]:

@@ -104,6 +104,9 @@ class FrictionRow:
     """The tooth's rotation where it occurs; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
     """Whether it lies where a tip-edge zone begins, so that its size is a matter of where that is."""
+    max_pressure_at_relief_start: bool
+    """Whether it lies, or may lie between two positions, where a linear tip relief begins: over that kink of the flank
+    its size is a matter of how sharp the kink is."""
     mean_pressure_MPa: float
     """Mean over the engagement of the mean pressure between the tip-edge zones."""
     transmission_error_peak_to_peak_um: float

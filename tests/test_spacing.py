@@ -25,7 +25,17 @@ from solver.run_sweep import pitch_of
 from solver.run_warnings import SPACING_SAID, warnings_of
 from solver.scene import scene_from_text
 from solver.sectors import gear_mesh
-from solver.spacing import bends, missed_peaks, reach, scatter, spacing_errors
+from solver.spacing import (
+    bends,
+    every_other,
+    missed_peaks,
+    reach,
+    roundness,
+    scatter,
+    shares,
+    spacing_errors,
+    thinned_mean,
+)
 
 COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")
 
@@ -53,6 +63,23 @@ def test_kink_between_samples() -> None:
         assert reach((x, -y), jumps=False) == pytest.approx(-y.min())
 
 
+def test_smooth_top_between_samples() -> None:
+    """A parabola with its top, 0, halfway between samples a step apart: a bend that is as large all around is no kink,
+    and the top is found exactly, a quarter of the way up to where straight lines meet. Half of a step's bend is seen at
+    either sample of a kink, and none beside them: the lines meet in it."""
+    x = np.arange(8.0)
+    assert reach((x, -((x - 3.5) ** 2)), jumps=False) == pytest.approx(0.0, abs=1e-12)
+    assert roundness(np.diff(-((x - 3.5) ** 2)))[2] == 1.0 and roundness(np.diff(-np.abs(x - 3.5)))[2] == 0.0
+
+
+def test_lines_go_no_further_than_their_step() -> None:
+    """Two samples a hundredth of a step apart, as where a position stands beside the end of a tip-edge zone, the second
+    0.1 higher, then a fall: no line rises by more than that 0.1, which would be 10 over a whole step, and the jump that
+    it may be goes half of it up."""
+    x, y = np.array([0.0, 0.99, 1.0, 2.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.1, 0.9, 0.88, 0.86])
+    assert reach((x, y), jumps=True) == pytest.approx(1.15)
+
+
 def test_jump_between_samples() -> None:
     """A curve that falls with slope 1 after a jump somewhere between 2 and 3: continued to the middle; a continuous
     curve cannot. NaN before and after do not matter."""
@@ -75,6 +102,37 @@ def test_extremes_and_means(n: int) -> None:
         box = (x % 1.0 < share).astype(float)
         closed = np.concatenate([box[-1:], box, box[:2]])
         assert abs(box.mean() - share) <= np.abs(bends(closed)).sum() * 0.5 / n + 1e-12
+
+
+def test_a_thinned_pitch_closes() -> None:
+    """Exact: of five positions every other one from the second on is 1, 3 and, round the pitch, 0; the first, between
+    neighbours one and two steps away, has 1.5 of the five steps. A constant has no error, whatever is left out."""
+    assert every_other(5, 1).tolist() == [0, 1, 3] and every_other(6, 1).tolist() == [1, 3, 5]
+    assert shares(every_other(5, 1), 5) == pytest.approx([0.3, 0.3, 0.4])
+    for n in range(2, 40):
+        assert sum(shares(every_other(n, n - 1), n)) == pytest.approx(1.0)
+        assert thinned_mean(np.full(n, 7.0)) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("n", [20, 21, 32, 33, 34, 49, 50, 51])
+def test_means_of_even_and_odd_numbers(n: int) -> None:
+    """Exact: the mean of a sine over its period is 0, that of a triangle 1/2, from 0 to 1; an odd number of positions
+    that is thinned is off by what one even spacing of two steps and one of one leave out, no more than the trapezoidal
+    rule's own error of a step (h²/12n of the curvature or h/8n of a kink each), not by a sample's share, 1/n."""
+    x, step = np.arange(n) / n, 1.0 / n
+    assert thinned_mean(np.sin(2.0 * np.pi * x)) <= (2.0 * np.pi * step) ** 2 * step
+    triangle = 2.0 * np.abs((x + 0.3) % 1.0 - 0.5)
+    assert thinned_mean(triangle) <= 2.0 * 4.0 * (2.0 * step) ** 2 / 8.0
+
+
+def test_an_odd_number_of_positions_has_no_wider_bars() -> None:
+    """Problem: a made-up pair whose transmission error is a sine. Exact: the mean secant stiffness has next to no
+    error, and 21 positions no wider a bar for it than 20."""
+    bars = [
+        spacing_errors(synthetic_run("contact.friction=0.1", f"sweep.positions={n}"), 0).secant_stiffness_N_per_mm_um
+        for n in (20, 21)
+    ]
+    assert bars[1] <= bars[0]
 
 
 def test_scatter() -> None:

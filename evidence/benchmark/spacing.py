@@ -1,5 +1,5 @@
-"""Does the part of the error bars hold that comes from the spacing of positions? Figures of seven pairs at 12, 20 and
-40 positions a pitch, against those at 160 on the same mesh.
+"""Does the part of the error bars hold that comes from the spacing of positions? Figures of seven pairs at 12 to 40
+positions a pitch, even and odd numbers, against those at 160 on the same mesh.
 
 Each is solved by itself: with friction a position depends on those before it.
 """
@@ -19,7 +19,7 @@ from solver.scene import Scene, load_scene, scene_from_text
 from solver.sectors import gear_mesh
 from solver.summary_rows import FrictionRow
 
-COUNTS = 12, 20, 40
+COUNTS = 12, 20, 21, 33, 40
 MANY = 160
 SPUR = """
 title = "spur pair"

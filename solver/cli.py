@@ -1,7 +1,7 @@
 """The command line `evolvent`, also `python -m solver`: parses, calls the API, turns failures into exit statuses.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun only rank 0 prints; a rank that
-fails says so and ends the run on all ranks.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun the ranks share `run`, where only
+rank 0 prints, and a rank that fails says so and ends the run on all ranks; all else is done by rank 0 alone.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 # whatever a command needs beyond the scene is imported inside it: `check` and `info` must not wait for PETSc or pyvista
 
 RESUME = "; `evolvent run ... --resume` continues"
+SHARED = "run"  # the command that ranks do together
 PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"  # solver.petsc reads it
 
 app = typer.Typer(
@@ -102,12 +103,12 @@ def run(
     One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
     """
     with reported(parallel=True, advice=RESUME):
-        loaded = _load(scene, level, settings, no_skip)
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)
         found = "found --resume and --overwrite; allowed: one of them"
         _require(not (resume and overwrite), f"--overwrite: {found}; remedy: --resume keeps what --overwrite removes")
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
-        _require_room(loaded, "run", force)
+        _require_room(loaded, "run", force, MPI.COMM_WORLD)
         from solver.run import run_scene
         from solver.run_output import whereabouts
 
@@ -125,7 +126,7 @@ def check(
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = _load(scene, level, settings, no_skip)
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
         from solver.overview import overview
 
         typer.echo(overview(loaded))
@@ -146,15 +147,13 @@ def mesh(
     One tooth sector of each gear, as they stand when they touch at the pitch point, with named groups.
     """
     with reported():
-        loaded = _load(scene, level, settings, no_skip)
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
         _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
         require_writable(out)
         there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
         _require(overwrite or not (out.exists() or out.is_symlink()), there)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
-        _require_room(loaded, "mesh", force)
-        if MPI.COMM_WORLD.rank > 0:
-            return
+        _require_room(loaded, "mesh", force, MPI.COMM_SELF)
         from meshes.gmsh_io import write_msh
         from meshes.quality import scaled_jacobians
         from solver.run_warnings import WORST_CELL, bad_cells
@@ -180,8 +179,6 @@ def plot(
         remedy = "run `evolvent run SCENE.toml --out DIR` first"
         wanted = f"{directory}: found {found}; allowed: the --out of a finished run; remedy: {remedy}"
         _require((directory / "summary.json").is_file(), wanted)
-        if MPI.COMM_WORLD.rank > 0:
-            return
         from solver.run_plot import plot_folder
 
         drawn = plot_folder(directory)
@@ -234,12 +231,14 @@ def info() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    if MPI.COMM_WORLD.rank > 0 and given[:1] != [SHARED]:
+        return Exit.DONE
     if arguments is None:
         write_whatever_the_terminal_shows()
     with silent_unless_first():
         keep_fonts()
         try:
-            given = None if arguments is None else list(arguments)
             status = app(args=given, prog_name="evolvent", standalone_mode=False)
         except UsageError as error:
             return leave(usage_message(error), Exit.BAD_INPUT).exit_code
@@ -250,31 +249,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status if isinstance(status, int) else Exit.DONE
 
 
-def _load(path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None) -> Scene:
-    """The scene, read on rank 0 and sent to the others: either all ranks have it or all fail alike."""
+def _load(
+    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
+) -> Scene:
+    """The scene, read on the first rank and sent to the others: either all ranks have it or all fail alike."""
     from solver.scene import load_scene
 
     result: Scene | SceneError | None = None
-    if MPI.COMM_WORLD.rank == 0:
+    if comm.rank == 0:
         try:
             overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
             overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
             result = error
-    result = MPI.COMM_WORLD.bcast(result)
+    result = comm.bcast(result)
     assert result is not None
     if isinstance(result, SceneError):
         raise result
     return result
 
 
-def _require_room(scene: Scene, command: str, force: bool) -> None:
+def _require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
     """Raises SceneError where the machine has too little memory for the command, unless it is forced."""
     from solver.size import memory_megabytes, mesh_megabytes, require_room
 
     if not force:
-        require_room(scene, memory_megabytes if command == "run" else mesh_megabytes, MPI.COMM_WORLD)
+        require_room(scene, memory_megabytes if command == "run" else mesh_megabytes, comm)
 
 
 def _require(holds: bool, message: str) -> None:

@@ -3,6 +3,9 @@
 A .petscrc in the current folder or at home and the variable PETSC_OPTIONS belong to other programs; read here, they
 changed tolerances and with them results. EVOLVENT_PETSC_OPTIONS (`evolvent run --petsc-options "..."`) is read
 instead. A program that has started PETSc itself keeps its own options.
+
+Each rank starts PETSc by itself, as all of its objects here live on one rank: started for all ranks it would wait for
+those that have no use for it, such as the others of `mpirun -n 2 evolvent plot`.
 """
 
 from __future__ import annotations
@@ -10,6 +13,7 @@ from __future__ import annotations
 import os
 
 import petsc4py
+from mpi4py import MPI
 
 OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 OURS = ("-skip_petscrc", "-no_signal_handler")
@@ -19,7 +23,7 @@ OURS = ("-skip_petscrc", "-no_signal_handler")
 def _start() -> None:
     foreign = os.environ.pop("PETSC_OPTIONS", None)
     try:
-        petsc4py.init(["evolvent", *OURS, *os.environ.get(OPTIONS, "").split()])
+        petsc4py.init(["evolvent", *OURS, *os.environ.get(OPTIONS, "").split()], comm=MPI.COMM_SELF)
     finally:
         if foreign is not None:
             os.environ["PETSC_OPTIONS"] = foreign

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from conftest import Run
 from test_run_folder import hashes
 
 from meshes.data import MeshError
@@ -223,3 +224,30 @@ def test_mesh_is_not_written_over_anything(
     assert "--overwrite" in capsys.readouterr().err or kind == "folder"
     assert main([*command, "--overwrite"]) == (2 if kind == "folder" else 0)
     assert path.is_dir() if kind == "folder" else path.read_bytes().startswith(b"$MeshFormat")
+
+
+ALONE = """
+import sys
+from mpi4py import MPI
+from solver.cli import main
+if MPI.COMM_WORLD.rank == 0:
+    from solver import run_plot
+    from solver.draw import Picture
+    run_plot.pictures = lambda run: [Picture("01_a.png", lambda: b"a")]
+scene, out, folder = sys.argv[1:]
+statuses = [main(["--version"]), main(["check", scene]), main(["plot", folder]), main(["plot", folder + "/nowhere"])]
+statuses.append(main(["mesh", scene, "--level", "quick", "--out", out]))
+if MPI.COMM_WORLD.rank == 0:
+    print([int(status) for status in statuses])
+"""
+
+
+def test_commands_that_compute_nothing_under_mpirun(out: Path, run_script: Run, tmp_path: Path) -> None:
+    """On two ranks: each is done once, by rank 0, and ends; each says what it says once."""
+    done = run_script("-c", ALONE, "demos/he2022.toml", str(tmp_path / "a.msh"), str(out), ranks=2, timeout=100.0)
+    assert done.returncode == 0, done.stderr
+    assert "[0, 0, 0, 2, 0]" in done.stdout
+    once = ("evolvent 0.", "1 pictures in", "Hertz", "a.msh: ")
+    assert [done.stdout.count(text) for text in once[:2]] == [1, 1] and all(text in done.stdout for text in once)
+    assert done.stderr.count("found no such directory") == 1
+    assert (out / "pictures/01_a.png").read_bytes() == b"a"

@@ -20,6 +20,9 @@ def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str
     if len(name) > LONGEST:
         return ""
     for keys in (here, everywhere):
+        if same := [key for key in keys if key.rsplit(".", 1)[-1].lower() == name.lower()]:
+            return same[0]
+    for keys in (here, everywhere):
         stems = {_stem(key): key for key in reversed(list(keys))}
         if match := difflib.get_close_matches(_stem(name), stems, n=1, cutoff=NEARLY_THE_SAME if strict else NEAR):
             return stems[match[0]]

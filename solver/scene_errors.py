@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from meshes.errors import InputError
+from solver.meant_value import expected, meant_value
 from solver.nearest_key import nearest_key
 from solver.not_supported import not_supported
 
@@ -101,8 +102,14 @@ def _problem(details: ErrorDetails, model: type[BaseModel]) -> Problem:
     if section is not None:
         return _missing_section(path, section) if missing else _not_a_section(path, details["input"], section)
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-    found = NOTHING if missing else shown(details["input"])
-    return Problem(dotted(path), found, str(extra["allowed"]), str(extra["remedy"]))
+    allowed, remedy = str(extra["allowed"]), str(extra["remedy"])
+    if missing:
+        return Problem(dotted(path), NOTHING, allowed, remedy)
+    value, meant = details["input"], meant_value(details["input"], field)
+    with_point = isinstance(value, float) and (meant is not None or details["type"] == "int_type")
+    found = repr(value) if with_point else shown(value)  # 20.0 is refused where 20 is not
+    fitting = f"write {shown(meant)}" if meant is not None else expected(details["type"], value)
+    return Problem(dotted(path), found, allowed, fitting or remedy)
 
 
 def dotted(path: Iterable[str | int]) -> str:

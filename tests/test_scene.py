@@ -45,7 +45,8 @@ def test_enough_malformed() -> None:
         ("contact.mu", "contact.friction"), ("pinion.z", "pinion.teeth"), ("pinion.module", "pair.normal_module_mm"),
         ("wheel.width", "wheel.face_width_mm"), ("wheel.x", "wheel.profile_shift"), ("mesh.cells", "mesh.shape"),
         ("pair.beta", "pair.helix_angle_deg"), ("material.youngs_modulus", "material.E_GPa"),
-        ("pinion.bore", "pinion.bore_diameter_mm"),
+        ("pinion.bore", "pinion.bore_diameter_mm"), ("material.e_gpa", "material.E_GPa"),
+        ("pinion.TEETH", "pinion.teeth"), ("wheel.Profile_Shift", "wheel.profile_shift"),
         ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
     ],
 )  # fmt: skip

@@ -1,0 +1,61 @@
+"""Which value was meant by one of the wrong type or spelling: 20 by 20.0 or "20", "quick" by "Quick"."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
+
+LONGEST = 60
+STRICT = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+def meant_value(value: Any, field: FieldInfo) -> Any | None:
+    """The first value near to `value` that `field` takes; None if there is none."""
+    wanted: Any = field.annotation
+    for part in field.metadata:
+        wanted = Annotated[wanted, part]
+    adapter: TypeAdapter[Any] = TypeAdapter(wanted, config=STRICT)
+    return next((near for near in _near(value) if _fits(near, adapter)), None)
+
+
+def expected(kind: str, value: Any) -> str:
+    """What to write in place of a value that pydantic's error `kind` is about, where none was meant; empty if that is
+    for the key to say."""
+    whole = {"int_type": "whole number", "float_type": "number"}.get(kind)
+    if whole is None or type(value) is int:  # one of thousands of digits
+        return ""
+    return f"write the {whole} alone, in digits, without quotes" if isinstance(value, str) else f"write a {whole}"
+
+
+def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
+    try:
+        adapter.validate_python(value)
+    except ValidationError:
+        return False
+    return True
+
+
+def _near(value: Any) -> Iterator[Any]:
+    """What may be meant by a value."""
+    if isinstance(value, float) and value.is_integer():
+        yield int(value)
+    elif isinstance(value, list) and len(value) == 1:
+        yield from (value[0], *_near(value[0]))
+    elif isinstance(value, str) and len(value) <= LONGEST:
+        for text in dict.fromkeys((value.strip(), value.strip().lower())):
+            yield text
+            yield from _read(text)
+
+
+def _read(text: str) -> Iterator[Any]:
+    """The number or truth value that a text is in quotes."""
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return
+    if list(found) == ["value"] and isinstance(found["value"], (int, float)):
+        yield from (found["value"], *_near(found["value"]))

@@ -31,9 +31,8 @@ from solver.gear_position import PositionResult
 from solver.gear_sweep import SweepState, SweptPosition
 from solver.kinematics import Stand
 from solver.run_folder import RunFolder
-from solver.scene import GEARS, Scene, derived_values
-from solver.schema_output import Output, Skipping
-from solver.skips import OF_OUTPUT
+from solver.scene import Scene, SceneError, derived_values, load_scene
+from solver.scene_differences import charts, differences, essence
 
 
 class ArchiveError(InputError):
@@ -63,7 +62,7 @@ class Archive:
 
     def __init__(self, folder: Path, scene: Scene) -> None:
         self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
-        self.fingerprint = fingerprint(scene)
+        self.scene, self.fingerprint = scene, fingerprint(scene)
 
     def keep(self, name: str, arrays: dict[str, Any]) -> None:
         """Writes OUT/results/name atomically and durably. Raises WriteError, FolderError."""
@@ -133,16 +132,27 @@ class Archive:
     def is_own(self) -> bool:
         """Whether positions of this very scene are kept. Raises ArchiveError where what is kept cannot be read."""
         path = self.folder / "state.npz"
-        return path.exists() and str(read_arrays(path)["fingerprint"]) == self.fingerprint
+        return path.exists() and str(read_arrays(path).get("fingerprint")) == self.fingerprint
 
     def require_own(self, arrays: dict[str, Any]) -> None:
         """Raises ArchiveError where what was kept is another scene's."""
-        if str(arrays["fingerprint"]) != self.fingerprint:
+        if str(arrays.get("fingerprint")) != self.fingerprint:
             raise ArchiveError(
-                f"{self.folder}: wanted the results of this scene, found those of another one, of another level or of "
-                "another version of Evolvent; resume with the scene and the settings that it was run with (its "
-                "scene.toml), name another folder with --out, or compute anew with `evolvent run ... --overwrite`"
+                f"{self.folder}: wanted the results of this scene, found those of {self._another()}; resume with the "
+                "scene and the settings that it was run with (its scene.toml), name another folder with --out, or "
+                "compute anew with `evolvent run ... --overwrite`"
             )
+
+    def _another(self) -> str:
+        """Whose results these are, as OUT/scene.toml tells."""
+        path = self.out / "scene.toml"
+        try:
+            found = differences(load_scene(path), self.scene)
+        except SceneError:
+            return f"another one, or of another version of Evolvent ({path} cannot be read)"
+        if found:
+            return f"another one: this one has {found}"
+        return f"another version of Evolvent: no key differs from {path}"
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
         arrays: dict[str, Any] = {
@@ -166,8 +176,8 @@ class Archive:
             again, closes = bool(arrays["again"]), bool(arrays["closes"])
         except KeyError as missing:
             raise ArchiveError(
-                f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; run the "
-                "scene again, with --overwrite"
+                f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; "
+                "compute anew with `evolvent run ... --overwrite`"
             ) from missing
         return SweptPosition(float(arrays["angle"]), results, SweepState((0.0, 0.0), ()), again, closes)
 
@@ -175,11 +185,8 @@ class Archive:
 def fingerprint(scene: Scene) -> str:
     """A hash of all that results depend on: of the scene's values without its title and what says what else is written,
     and of what its flank charts say, wherever these lie."""
-    ways = Skipping(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
-    bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
-    essence = scene.model_copy(update={"title": "", "output": Output(), "skip": ways, **bare})
-    charts = [chart.text() if (chart := scene.flank_chart(name)) else "" for name in GEARS]
-    values = json.dumps([essence.model_dump(mode="json"), derived_values(essence), *charts])
+    bare = essence(scene)
+    values = json.dumps([bare.model_dump(mode="json"), derived_values(bare), *charts(scene)])
     return hashlib.sha256(values.encode()).hexdigest()
 
 
@@ -196,9 +203,10 @@ def read_arrays(path: Path) -> dict[str, Any]:
         with open_file(path) as file, np.load(file, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        remedy = "move or remove it, then compute" if path.exists() else "compute"
         raise ArchiveError(
-            f"{path}: wanted a results file, found none that can be read ({error}); run the scene again, with "
-            "--overwrite"
+            f"{path}: wanted a results file, found none that can be read ({error}); {remedy} anew with `evolvent run "
+            "... --overwrite`"
         ) from error
 
 

@@ -176,7 +176,8 @@ def plot(
     """Draw the pictures of a finished run again."""
     with reported():
         found = "no summary.json in it" if directory.is_dir() else "no such directory"
-        remedy = "run `evolvent run SCENE.toml --out DIR` first"
+        begun = " --resume" if (directory / "results/state.npz").exists() else ""
+        remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
         wanted = f"{directory}: found {found}; allowed: the --out of a finished run; remedy: {remedy}"
         _require((directory / "summary.json").is_file(), wanted)
         from solver.run_plot import plot_folder

@@ -48,6 +48,13 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
             )
 
 
+def changed(out: Path) -> str:
+    """A sentence on the files of a run that somebody has changed since, empty where there are none."""
+    found = ", ".join(map(str, RunFolder(out).changed(WRITTEN)))
+    remedy = "move or remove that, and `evolvent run ... --resume` writes it anew"
+    return f"changed, or cut off, since a run has written it: {found}; {remedy}" if found else ""
+
+
 def others(out: Path) -> str:
     """A sentence on the files that no run has made, empty where there are none."""
     theirs = RunFolder(out).theirs()

@@ -12,7 +12,7 @@ import errno
 import hashlib
 import json
 import os
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +25,8 @@ LOCK = Path(".evolvent.lock")
 WORN = "worn_*"  # folders of worn pairs, each with a manifest of its own
 FOLDERS = (".", "results", "fields", "pictures")
 """Where a run writes. Others below OUT, which may be a home with a million files, are not looked into."""
+
+NAMED = 5  # files in a message
 
 
 class FolderError(InputError):
@@ -64,9 +66,9 @@ class RunFolder:
         theirs = [path for path in paths if (path.exists() or self._linked(path)) and not self.is_ours(path)]
         if theirs:
             raise FolderError(
-                f"{self.out}: wanted to write {', '.join(self._name(path) for path in theirs[:5])}, found "
+                f"{self.out}: wanted to write {', '.join(self._name(path) for path in theirs[:NAMED])}, found "
                 f"{_files(len(theirs))} of this name that no run has made, or that somebody has changed since; "
-                "name another folder with --out, or move what is yours"
+                f"move or remove {_all_of(theirs)}, or name another folder with --out"
             )
 
     def require_free(self, patterns: Iterable[str]) -> None:
@@ -78,6 +80,12 @@ class RunFolder:
                 f"to {links[0].readlink()}; what lies there may be another run's: name another folder with --out"
             )
         self.require_ours(path for pattern in patterns for path in sorted(self.out.glob(pattern)))
+
+    def changed(self, patterns: Iterable[str]) -> list[Path]:
+        """Files of these names (globs below OUT) that a run has made and somebody has changed, or cut off, since."""
+        made = self._made()
+        found = (path for pattern in patterns for path in sorted(self.out.glob(pattern)))
+        return [path for path in found if self._name(path) in made and not self.is_ours(path)]
 
     def ours(self) -> list[Path]:
         """All files that are here and ours, the last written first."""
@@ -196,6 +204,12 @@ def _append(path: Path, line: bytes) -> None:
 
 def _digest(content: bytes | memoryview) -> str:
     return hashlib.sha256(content).hexdigest()
+
+
+def _all_of(paths: Sequence[Path]) -> str:
+    """Their names, of many the first."""
+    more = f" and {len(paths) - NAMED} more" if len(paths) > NAMED else ""
+    return ", ".join(map(str, paths[:NAMED])) + more
 
 
 def _files(count: int) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from solver.draw import Drawn, draw
 from solver.plots import pictures
+from solver.run_checks import changed
 from solver.run_data import RunData, read_run
 from solver.run_folder import RunFolder
 from solver.run_lock import locked
@@ -20,6 +21,8 @@ def plot_folder(out: Path) -> Drawn:
     """
     with locked(out):
         drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))
+        if sentence := changed(out):
+            drawn = Drawn(drawn.written, (*drawn.failures, sentence))
         if not (out / "wear.json").is_file():
             return drawn
         from wear import plots

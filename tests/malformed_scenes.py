@@ -255,7 +255,7 @@ MALFORMED: dict[str, tuple[str, list[str], str, str, str]] = {
     "refreshed by atoms": (HE, [*WEAR, "wear.refresh_um=1e-300"], "wear.refresh_um", "1e-300", "delete the key"),
     "refreshed by metres": (HE, [*WEAR, "wear.refresh_um=1e7"], "wear.refresh_um", "10000000", "delete the key"),
     "tolerance of nothing": (HE, [*WEAR, "wear.tolerance=1e-300"], "wear.tolerance", "1e-300", "give a number from"),
-    "reports a text": (HE, [*WEAR, 'wear.report_at_cycles="all"'], "wear.report_at_cycles[0]", '"all"', "write the num"),
+    "reports a text": (HE, [*WEAR, 'wear.report_at_cycles="all"'], "wear.report_at_cycles[0]", '"all"', "write the"),
     # of another type, though Python takes it
     "order true": (YANG, ["mesh.order=true"], "mesh.order", "true", "give 1 or 2"),
     "order 2.0": (YANG, ["mesh.order=2.0"], "mesh.order", "2.0", "write 2"),

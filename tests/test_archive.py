@@ -135,7 +135,7 @@ def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_scr
     more = ("--resume", "--set", "load.torque_Nm=171")
     done = run_script("tests/broken_run.py", "ok", *arguments(whole, *more), ranks=ranks)
     assert done.returncode == 2
-    assert "wanted the results of this scene, found those of another one" in done.stderr
+    assert "found those of another one: this one has load.torque_Nm = 171 (kept: 170); resume with" in done.stderr
     assert "--out" in done.stderr
     assert snapshot(whole) == before
 
@@ -240,5 +240,5 @@ def test_results_of_another_version_are_refused(whole: Path, tmp_path: Path) -> 
     earlier = {name: array for name, array in arrays.items() if not name.endswith("contact/sliding")}
     write_bytes(path, arrays_bytes(earlier))
     scene = load_scene(out / "scene.toml")
-    with pytest.raises(ArchiveError, match="found some without 'contact/sliding'; run the scene again"):
+    with pytest.raises(ArchiveError, match="found some without 'contact/sliding'; compute anew"):
         Archive(out, scene).read_positions(scene.gear_pair())

@@ -129,6 +129,32 @@ def test_changed_results_are_not_written_over(out: Path, capsys: pytest.CaptureF
     assert hashes(out) == before
 
 
+CUT = {"results/state.npz": "--overwrite", "results/position_0002.npz": "--overwrite", "summary.json": "--resume"}
+"""What can be cut off, and the option that `plot` says to run again with."""
+
+
+@pytest.mark.parametrize("name", CUT)
+def test_a_file_that_was_cut_off(
+    name: str, out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every command names the file and says to move or remove it; what `plot` says is done, and works."""
+    monkeypatch.setattr("solver.run_plot.pictures", lambda run: [])
+    path = out / name
+    path.write_bytes(path.read_bytes()[:100])
+    for more in ("--resume", "--overwrite"):
+        assert run(out, more) == 2
+        assert f"move or remove {path}, or" in capsys.readouterr().err
+    assert main(["plot", str(out)]) == (2 if name.endswith(".npz") else 0)
+    said = capsys.readouterr().err
+    assert str(path) in said and "move or remove" in said and CUT[name] in said
+    path.unlink()
+    longer = ("--set", "sweep.positions=6")
+    assert run(out, CUT[name], *(longer if CUT[name] == "--resume" else ())) == 0
+    json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert main(["plot", str(out)]) == 0
+    assert "changed" not in capsys.readouterr().err
+
+
 def test_two_runs_into_one_folder(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The second one, and a `plot`: status 2, who is at it, nothing touched."""
     before = hashes(out)

@@ -114,7 +114,7 @@ def run(
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
         if not quiet:
-            typer.echo(whereabouts(out))
+            typer.echo(whereabouts(out, loaded))
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

@@ -16,7 +16,7 @@ FILE = Path("results/cost.json")
 @dataclass(frozen=True)
 class Timings:
     """Wall seconds of the parts of a run, summed where it was resumed; what a killed part did after the last position
-    that it kept is not counted."""
+    or the error bars that it kept is not counted."""
 
     mesh: float = 0.0
     """Meshing both gears."""

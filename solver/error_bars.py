@@ -28,7 +28,7 @@ from meshes.data import Floats
 from solver.archive import Archive
 from solver.companion import Companion
 from solver.engagement import engagement, with_hertz
-from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, added, keep_errors, kept_errors
+from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, added, keep_errors, wanted_errors
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from solver.run_data import RunData
 from solver.spacing import spacing_errors
@@ -52,8 +52,9 @@ class Curve:
 
 
 def with_errors(run: RunData, archive: Archive, companion: Companion | None) -> RunData:
-    """The run with its error bars: those in the archive, or the companion's, which are then kept. Raises OSError."""
-    errors = kept_errors(archive)
+    """The run with its error bars, where its scene asks for them: those in the archive, or the companion's, which are
+    then kept. Raises OSError."""
+    errors = wanted_errors(archive)
     if errors is None and companion is not None:
         errors = estimated_errors(run, companion)
         keep_errors(archive, errors)

@@ -8,6 +8,7 @@ from dataclasses import astuple, dataclass, fields
 import numpy as np
 
 from solver.archive import Archive, ArchiveError, read_arrays
+from solver.skips import wanted_output
 
 METHOD = (
     "difference to the same scene on meshes of twice the element size; of a pressure, between the tip-edge zones: "
@@ -76,6 +77,11 @@ def kept_errors(archive: Archive) -> EstimatedErrors | None:
     if arrays["values"].shape[1] != len(fields(FigureErrors)):
         return None
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
+
+
+def wanted_errors(archive: Archive) -> EstimatedErrors | None:
+    """What was kept, where the archive's scene asks for error bars; None otherwise."""
+    return kept_errors(archive) if wanted_output(archive.scene).error_bars else None
 
 
 FINER = 3

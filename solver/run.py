@@ -21,7 +21,7 @@ from solver.run_folder import RunFolder
 from solver.run_lock import locked
 from solver.run_log import logged
 from solver.run_output import Companions, Part, peak_memory_MB, write_output
-from solver.run_start import continued, kept_start
+from solver.run_start import continued, kept_start, nothing_kept
 from solver.run_sweep import pitch_of, sweep_scene
 from solver.run_wear import wear_scene, write_wear
 from solver.scene import Scene
@@ -38,7 +38,8 @@ def run_scene(
 ) -> None:
     """Computes a scene and writes everything to `out`; the same on any number of ranks.
 
-    resume: go on after the positions, or the blocks of wear, that `out` holds. overwrite: remove an earlier run's files
+    resume: go on after the positions, or the blocks of wear, that `out` holds, where it holds none from the start, with
+    a warning. overwrite: remove an earlier run's files
     (those that nobody has changed since) once the gears are ready. With neither, `out` may hold no results. source: the
     scene's file, which is never written over. A pitch whose energy does not balance is solved again on deflected
     flanks, as the scene that asks for these. Raises FolderError before anything is touched, NotConverged,
@@ -61,6 +62,8 @@ def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
     with logged(RunFolder(out), comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
         if left := on_first(comm, lambda: others(out)):
             log.info("%s", left)
+        if anew := on_first(comm, lambda: nothing_kept(scene, Archive(out, scene)) if resume else ""):
+            log.warning(anew)
         for skip in skipped(scene):
             log.info("skipped, %s: %s", skip.name, skip.sentence)
         for name in switched_off(scene):

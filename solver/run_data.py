@@ -12,7 +12,7 @@ import numpy as np
 from meshes.data import Floats
 from meshes.parameters import GearPair, GearParameters
 from solver.archive import Archive, ArchiveError, GearShape
-from solver.estimated_errors import NOT_ESTIMATED, EstimatedErrors, kept_errors
+from solver.estimated_errors import NOT_ESTIMATED, EstimatedErrors, wanted_errors
 from solver.gear_position import PositionResult
 from solver.gear_results import Slices, ToothSummary, slices, tooth_summaries
 from solver.gear_sweep import SweptPosition
@@ -133,4 +133,4 @@ def read_run(folder: Path) -> RunData:
     scene = load_scene(folder / "scene.toml")
     archive = Archive(folder, scene)
     run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-    return replace(run, errors=kept_errors(archive) or run.errors)
+    return replace(run, errors=wanted_errors(archive) or run.errors)

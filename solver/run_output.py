@@ -40,6 +40,8 @@ REMEDY = (
     "or the mesh (mesh.level)"
 )
 
+FIELDS = "fields for ParaView"
+
 
 class BalanceError(ResultError):
     """A converged position or pitch that fails its balance certificate."""
@@ -108,6 +110,7 @@ def write_output(
     def cost() -> Cost:
         return part.cost(replace(timings, output=time.perf_counter() - started))
 
+    keep_cost(archive.files, cost())  # the error bars are kept, so is what they have cost
     found = summary(data, facts_of(data, sweep.meshes, part.ranks, cost()))
     write_tables(archive.files, found)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), archive.files, log)
@@ -123,15 +126,19 @@ def write_output(
     log.info("done in %.1f s, %.0f MB", time.perf_counter() - part.begin, part.memory_MB)
 
 
-def whereabouts(out: Path) -> str:
-    """The last line of a run: where its figures, tables, pictures and fields are, of those that are there."""
+def whereabouts(out: Path, scene: Scene) -> str:
+    """The last line of a run: where its figures, tables, pictures and fields are, of those that are there and that the
+    scene asks for; others were left by an earlier part of the run."""
+    wanted = wanted_output(scene)
+    asked = {"pictures": wanted.pictures or wanted.animation, FIELDS: wanted.fields or wanted.deformation}
     kinds = {
         "figures with error bars": ("summary.json",),
         "tables": ("positions.csv", "teeth.csv", "wear.csv"),
         "figures of wear": ("wear.json",),
         "pictures": ("pictures",),
-        "fields for ParaView": ("fields/contact.pvd",),
+        FIELDS: ("fields/contact.pvd",),
     }
+    kinds = {kind: names for kind, names in kinds.items() if asked.get(kind, True)}
     found = {kind: [str(out / name) for name in names if (out / name).exists()] for kind, names in kinds.items()}
     return "done: " + "; ".join(f"{kind} in {', '.join(paths)}" for kind, paths in found.items() if paths)
 

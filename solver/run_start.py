@@ -40,6 +40,15 @@ def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     return Start(errors, bool(swept) and swept[-1].closes, state)
 
 
+def nothing_kept(scene: Scene, archive: Archive) -> str:
+    """A sentence where nothing is there to be resumed, empty where there is. A run that was stopped early has left
+    nothing, so that is no error."""
+    name = "state.npz" if scene.wear is None else "wear.npz"
+    if (archive.folder / name).exists():
+        return ""
+    return f"--resume found nothing to go on from in {archive.out} (no results/{name}); the run begins from the start."
+
+
 def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:
     """The scene as it is to be solved: on deflected flanks where an earlier run, to be resumed, has come to that."""
     other = with_deflected_flanks(scene)

@@ -91,6 +91,24 @@ def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert found["peak_memory_MB"] == 1e6
 
 
+def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped once the bars are kept, before any table: the companion, which is not solved again, is counted, and part
+    of the total."""
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    command = ["run", *HE, "--out", str(tmp_path)]
+    with monkeypatch.context() as patch:
+        patch.setattr("solver.run_output.write_tables", stopped)
+        assert main(command) == Exit.FAILED
+    spent = kept_cost(RunFolder(tmp_path)).timings
+    assert spent.error_bars > 0.0
+    assert main([*command, "--resume"]) == Exit.DONE
+    found = summary(tmp_path)["timings_s"]
+    assert found["error_bars"] == spent.error_bars
+    assert found["total"] > spent.total >= sum(astuple(spent)[:-1])
+
+
 def test_overwritten_run_begins_anew(tmp_path: Path) -> None:
     """What a run has cost that is replaced does not count."""
     command = ["run", *HE, "--set", "output.error_bars=false", "--out", str(tmp_path)]

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from conftest import Run
+from gear_cases import spur_scene
 from rich.console import Console
 
 from solver.progress import Progress
@@ -139,8 +140,16 @@ def test_a_run_on_a_terminal(tmp_path: Path) -> None:
 
 
 def test_whereabouts_name_what_is_there(tmp_path: Path) -> None:
-    """Of a run without pictures and fields neither is named."""
+    """Of a run without pictures and fields neither is named; those of an earlier part of it are not, where the scene
+    asks for none now."""
+    asked, unasked = (spur_scene(f"output.pictures={on}", "output.animation=false", f"output.fields={on}")
+                      for on in ("true", "false"))  # fmt: skip
     (tmp_path / "summary.json").write_text("{}")
     (tmp_path / "teeth.csv").write_text("")
     wanted = f"done: figures with error bars in {tmp_path}/summary.json; tables in {tmp_path}/teeth.csv"
-    assert whereabouts(tmp_path) == wanted
+    assert whereabouts(tmp_path, asked) == wanted
+    for name in ("pictures/01_loaded_pair.png", "fields/contact.pvd"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text("")
+    assert whereabouts(tmp_path, unasked) == wanted
+    assert "pictures in" in whereabouts(tmp_path, asked) and "fields for ParaView in" in whereabouts(tmp_path, asked)

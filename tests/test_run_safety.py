@@ -129,6 +129,17 @@ def test_changed_results_are_not_written_over(out: Path, capsys: pytest.CaptureF
     assert hashes(out) == before
 
 
+def test_resuming_nothing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """--resume where no run has been, as after one that was stopped while meshing: it begins, and says so; not of a
+    run that is there."""
+    said = f"--resume found nothing to go on from in {tmp_path / 'new'} (no results/state.npz)"
+    assert run(tmp_path / "new", "--resume") == 0
+    assert capsys.readouterr().err.count(said) == 1
+    assert said in (tmp_path / "new/run.log").read_text(encoding="utf-8")
+    assert run(tmp_path / "new", "--resume") == 0
+    assert "found nothing to go on from" not in capsys.readouterr().err
+
+
 CUT = {"results/state.npz": "--overwrite", "results/position_0002.npz": "--overwrite", "summary.json": "--resume"}
 """What can be cut off, and the option that `plot` says to run again with."""
 

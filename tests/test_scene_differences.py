@@ -28,7 +28,7 @@ def test_keys_and_both_values() -> None:
 
 
 def test_what_makes_no_other_scene() -> None:
-    """The title, the output, and deflected flanks, which a run has come to by itself, beside another torque or alone."""
+    """The title, the output, and deflected flanks, which a run has come to by itself."""
     scene = spur_scene()
     assert differences(scene, spur_scene("title='other'", "output.fields=true")) == ""
     kept = with_deflected_flanks(scene)

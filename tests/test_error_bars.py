@@ -23,10 +23,18 @@ from solver.archive import Archive
 from solver.companion import Companion, coarser, companion_mesh, solved_run
 from solver.engagement import engagement
 from solver.error_bars import Curve, difference, errors_between, estimated_errors
-from solver.estimated_errors import METHOD, EstimatedErrors, FigureErrors, keep_errors, kept_errors, plus_minus
+from solver.estimated_errors import (
+    METHOD,
+    NOT_ESTIMATED,
+    EstimatedErrors,
+    FigureErrors,
+    keep_errors,
+    kept_errors,
+    plus_minus,
+)
 from solver.newton import NotConverged
 from solver.run import run_scene
-from solver.run_data import RunData, SolvedPosition
+from solver.run_data import RunData, SolvedPosition, read_run
 from solver.run_sweep import pitch_of
 from solver.scene import Scene
 from solver.sectors import gear_mesh
@@ -218,6 +226,24 @@ def test_without_a_companion(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     without = spur_scene(*SHORT, "output.error_bars=false")
     run_scene(without, tmp_path, resume=True, quiet=True)
     assert summary(tmp_path)["estimated_error"]["missing"] == "Error bars were not asked for."
+
+
+def test_bars_are_there_where_the_scene_asks_for_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run with bars resumed without: summary.json, whose scene asks for none, and the run as `plot` reads it have
+    none. Resumed with them: the same bars, and no companion is solved for them."""
+    with_bars, without = spur_scene(*SHORT, *OUTPUT), spur_scene(*SHORT, *OUTPUT, "output.error_bars=false")
+    run_scene(with_bars, tmp_path, quiet=True)
+    first = summary(tmp_path)
+    assert all(row["estimated_error"] for row in first["frictions"])
+    run_scene(without, tmp_path, resume=True, quiet=True)
+    found = summary(tmp_path)
+    assert found["scene"]["output"]["error_bars"] is False
+    assert [row["estimated_error"] for row in found["frictions"]] == [None, None]
+    assert read_run(tmp_path).errors == NOT_ESTIMATED
+    monkeypatch.setattr(companion, "prepare_model", fails)
+    run_scene(with_bars, tmp_path, resume=True, quiet=True)
+    again, bars = summary(tmp_path), [row["estimated_error"] for row in first["frictions"]]
+    assert [row["estimated_error"] for row in again["frictions"]] == bars
 
 
 def fails(*_: object) -> None:

@@ -38,7 +38,7 @@ def peak_scatter(meeting: Meeting, pressure: Floats) -> float:
     for middle in _touching(surface, facet[peak : peak + 1]):
         near = np.flatnonzero(np.isin(facet, _touching(surface, np.array([middle]))))
         if peak in near:
-            smooth = _parabola(points[near], weights[near], p[near] ** 2)[np.searchsorted(near, peak)]
+            smooth = parabola(points[near], weights[near], p[near] ** 2)[np.searchsorted(near, peak)]
             distances.append(abs(p[peak] - np.sqrt(max(smooth, 0.0))))
     return float(max(distances) / p[peak])
 
@@ -49,14 +49,15 @@ def _touching(surface: Surface, facets: Ints) -> Ints:
     return np.flatnonzero(np.isin(surface.facets, nodes).any(axis=1))
 
 
-def _parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
-    """(m,) of a quadratic function along the surface, fitted to values (m,) at points (m, d)."""
+def parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
+    """(m,) of a quadratic function along the surface, fitted to values (m,) at points (m, d) with quadrature weights (m,),
+    of which those below 0 count as 0."""
     away = points - points.mean(axis=0)
     along = away @ np.linalg.svd(away, full_matrices=False)[2][: points.shape[1] - 1].T
     along = along / max(float(np.abs(along).max()), 1e-300)
     terms = [np.ones(len(points)), *along.T]
     terms += [along[:, i] * along[:, j] for i in range(along.shape[1]) for j in range(i + 1)]
-    rows, root = np.stack(terms, axis=1), np.sqrt(weights)
+    rows, root = np.stack(terms, axis=1), np.sqrt(np.maximum(weights, 0.0))
     return np.asarray(rows @ np.linalg.lstsq(root[:, None] * rows, root * values, rcond=None)[0])
 
 

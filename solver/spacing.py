@@ -56,6 +56,7 @@ Curve = tuple[Floats, Floats]
 
 def spacing_errors(run: RunData, index: int) -> FigureErrors:
     """Of the figures at friction coefficient number `index`; NaN where a run has a single position."""
+    run = replace(run, positions=run.positions[: run.scene.sweep.positions])  # of one pitch, where more were swept
     if len(run.positions) < 2:
         return FigureErrors(*[float("nan")] * len(fields(FigureErrors)))
     count = len(run.positions)

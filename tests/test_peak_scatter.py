@@ -13,7 +13,7 @@ import pytest
 from demos.hertz_cylinder import PEAK, cylinder_on_block
 from meshes.blocks import box, rectangle
 from solver.meeting import Meeting
-from solver.peak_scatter import LARGE, peak_scatter
+from solver.peak_scatter import LARGE, parabola, peak_scatter
 from solver.problem import (
     Body,
     Contact,
@@ -62,6 +62,15 @@ def test_waves(meeting, period):
     """±10 % that come and go with each cell of 0.5 mm, or with every second: found at about that."""
     x = meeting.operator.points[:, 0]
     assert peak_scatter(meeting, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
+
+
+def test_weights_below_zero():
+    """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the parabola
+    fitted to them is that polynomial."""
+    x, y = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 20))
+    points, values = np.stack([x, y, 0.0 * x], axis=1), 1.0 + x - 2.0 * y + x * y
+    weights = np.where(np.arange(20) == 7, -1e-3, 1.0)
+    np.testing.assert_allclose(parabola(points, weights, values), values, atol=1e-12)
 
 
 def test_nothing_presses(meeting):

@@ -173,7 +173,7 @@ def _draw(figure: Figure, cases: list[Pushed]) -> None:
 def _tractions(axes: Axes, cases: list[Pushed]) -> None:
     r, scale = np.linspace(0.0, 1.0, 501) * CONTACT, FRICTION * PEAK
     axes.plot(r / CONTACT, hertz.line_pressure(r, CONTACT, 1.0), "--", color=FAINT, lw=1.2, label="limit μp (Hertz)")
-    for case, colour in zip(cases, TEETH, strict=True):
+    for case, colour in zip(cases, TEETH):
         label = f"Q = {case.share:g} μP: c/a {hertz.stick_ratio_sphere(case.share):.3f}, found {case.stick_ratio:.3f}"
         axes.plot(case.radius / CONTACT, case.shear[:, 0] / scale, ".", ms=2.5, color=colour, label=label)
         axes.plot(r / CONTACT, mindlin_traction(r, case.share) / scale, color=INK, lw=1.1, zorder=3)

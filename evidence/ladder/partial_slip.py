@@ -107,7 +107,7 @@ def _tractions(axes: Axes, loads: list[Pushed]) -> None:
     b, scale = slip.half_width, slip.friction * slip.peak
     x = np.linspace(-1.0, 1.0, 801) * b
     axes.plot(x / b, slip.exact(x).pressure / slip.peak, color=FAINT, ls="--", lw=1.2, label="limit μp (Hertz)")
-    for case, colour in zip(loads, TEETH, strict=True):
+    for case, colour in zip(loads, TEETH):
         exact, found = case.slip.exact(x), case.found
         stick = hertz.stick_ratio_line(case.slip.share)
         axes.plot(x / b, exact.shear / scale, color=INK, lw=1.0, zorder=3)

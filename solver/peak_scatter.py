@@ -50,8 +50,8 @@ def _touching(surface: Surface, facets: Ints) -> Ints:
 
 
 def parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
-    """(m,) of a quadratic function along the surface, fitted to values (m,) at points (m, d) with quadrature weights (m,),
-    of which those below 0 count as 0."""
+    """(m,) of a quadratic function along the surface, fitted to values (m,) at points (m, d) with quadrature
+    weights (m,), of which those below 0 count as 0."""
     away = points - points.mean(axis=0)
     along = away @ np.linalg.svd(away, full_matrices=False)[2][: points.shape[1] - 1].T
     along = along / max(float(np.abs(along).max()), 1e-300)

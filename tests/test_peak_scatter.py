@@ -65,8 +65,8 @@ def test_waves(meeting, period):
 
 
 def test_weights_below_zero():
-    """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the parabola
-    fitted to them is that polynomial."""
+    """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the
+    parabola fitted to them is that polynomial."""
     x, y = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 20))
     points, values = np.stack([x, y, 0.0 * x], axis=1), 1.0 + x - 2.0 * y + x * y
     weights = np.where(np.arange(20) == 7, -1e-3, 1.0)

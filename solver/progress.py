@@ -41,7 +41,8 @@ class Progress:
     ) -> None:
         if kind is None:
             self._end()
-        self._bars.stop()
+        if not self._bars.disable:  # rich before 14 would print an empty line
+            self._bars.stop()
 
     def stage(self, what: str, total: int | None = None, done: int = 0) -> None:
         """The next stage. total: how many it has of what it counts, `done` of which are there already; None where that

@@ -23,6 +23,7 @@ from solver.plots_teeth import YANG
 from solver.plots_trend import trends
 from solver.plots_yang import paper_points, paper_position
 from solver.run_data import RunData, read_run
+from solver.summary_rows import FrictionRow
 
 ROOT = Path(__file__).resolve().parents[1]
 KEPT = "yang2022"
@@ -51,8 +52,9 @@ def figures(run: RunData) -> Named:
         for name, values in (("largest", trend.largest), ("average", trend.average)):
             yield f"tooth_{2 - trend.tooth}_{name}_change_percent", 100.0 * float(values[-1] / values[0] - 1.0)
     yield from _points(run, low, high)
-    yield from _whole_pair(run, "low", low)
-    yield from _whole_pair(run, "high", high)
+    rows = friction_rows(run)
+    yield from _whole_pair(run, "low", low, rows[low])
+    yield from _whole_pair(run, "high", high, rows[high])
 
 
 def _beside_hertz(run: RunData, index: int) -> Named:
@@ -99,8 +101,8 @@ def _points(run: RunData, low: int, high: int) -> Named:
         yield f"point_{point.name}_change_percent", 100.0 * (other / one - 1.0)
 
 
-def _whole_pair(run: RunData, name: str, index: int) -> Named:
-    row, curve = friction_rows(run)[index], engagement(run, index)
+def _whole_pair(run: RunData, name: str, index: int, row: FrictionRow) -> Named:
+    curve = engagement(run, index)
     if (errors := row.estimated_error) is None:
         raise ValueError(f"{run.errors.missing}: wanted a run with error bars, `run` with --resume computes them")
     teeth = np.bincount(curve.position[curve.force > 0.0])

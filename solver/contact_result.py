@@ -61,8 +61,8 @@ class ContactResult:
 
     @property
     def cells_across(self) -> float:
-        """How many of its longest cells the contact is wide, at its least resolved patch; infinite where nothing
-        presses. Below two its pressure may be off by half."""
+        """How many of its longest cells the contact is wide, at its least resolved patch; 0 where nothing presses.
+        Below two its pressure may be off by half."""
         return self.width.cells
 
     @cached_property

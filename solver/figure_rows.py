@@ -9,11 +9,10 @@ import numpy as np
 from solver.engagement import Engagement, crossing, engagements
 from solver.gear_results import ToothSummary, balance_error, pitch_imbalance
 from solver.line_peaks import line_peak
-from solver.mesh_facts import cells_across
+from solver.mesh_facts import few_cells_across
 from solver.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from solver.relief_kinks import peak_over_kink
 from solver.run_data import RunData, SolvedPosition
-from solver.scene_warnings import FEWEST_CELLS
 from solver.shaft_forces import shaft_forces
 from solver.spacing import spacing_errors
 from solver.summary_rows import FrictionRow, PositionRow, ToothRow
@@ -70,7 +69,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     results = [each[index].result for each in run.positions]
     errors = 1e3 * np.array([result.transmission_error for result in results])
     top = curve.peak
-    resolved = cells_across(run) >= FEWEST_CELLS  # else the curves scatter about each other
+    crosses = curve is not lowest and not few_cells_across(run)  # on few cells curves scatter about each other
     loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
     return FrictionRow(
         friction=curve.friction,
@@ -83,7 +82,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
         secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
         loss_percent=100.0 * loss,
-        crossing_deg=degrees(crossing(lowest, curve)) if curve is not lowest and resolved else math.nan,
+        crossing_deg=degrees(crossing(lowest, curve)) if crosses else math.nan,
         balance_error=pitch_imbalance(results),
         forces_on_pinion=shaft_forces(run, 0, index),
         forces_on_wheel=shaft_forces(run, 1, index),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.run_data import RunData
+from solver.scene_warnings import FEWEST_CELLS
 
 SAME = 1e-6  # [mm] of height within which nodes are of one row
 NARROW = 0.1
@@ -34,3 +35,8 @@ def cells_across(run: RunData, share: float = 0.5) -> float:
     arc = flank.roll_length[row] ** 2 / (2.0 * run.pair.pinion.base_radius)
     elements = (int(row.sum()) - 1) / run.scene.mesh.order
     return float(np.quantile(known, share) * elements / np.ptp(arc)) if len(known) else float("nan")
+
+
+def few_cells_across(run: RunData) -> bool:
+    """Whether the contact is so few cells wide that single peaks are for looking only."""
+    return not cells_across(run) >= FEWEST_CELLS

@@ -12,7 +12,7 @@ from solver.engagement import largest_peak
 from solver.estimated_errors import plus_minus
 from solver.estimates import HertzEstimate, hertz_estimate
 from solver.hertz import LoadFactors
-from solver.mesh_facts import cells_across
+from solver.mesh_facts import cells_across, few_cells_across
 from solver.overview import paper_estimate
 from solver.plain_text import signed
 from solver.plots_style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
@@ -36,9 +36,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
     see = f"Difference from Hertz for a slice's own line load: median {middle} %"
     see += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
-    count = cells_across(run)
-    if not count >= FEWEST_CELLS:
-        see += f" For looking only: {count:.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
+    if few_cells_across(run):
+        see += f" For looking only: {cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
     figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(
@@ -54,7 +53,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
         ξ[inside],
         hertz[inside],
         ".",
-        color="#c98a1b",
+        color=HERTZ,
         markersize=dot_size(len(ξ)) - 1,
         alpha=0.5,
         label="Hertz, the slice's line load",

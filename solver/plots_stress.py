@@ -19,13 +19,12 @@ from meshes.data import Floats
 from solver.engagement import Engagement, TurnPeak, crossing, engagement, engagements, with_hertz
 from solver.estimated_errors import plus_minus
 from solver.figure_rows import friction_rows
-from solver.mesh_facts import cells_across
+from solver.mesh_facts import cells_across, few_cells_across
 from solver.plain_text import signed
 from solver.plots_style import AT_ZONE_END, FAINT, HOLLOW, INK, foot, friction_colours, sheet
 from solver.plots_teeth import long_name, short_name, shown_teeth
 from solver.run_data import RunData
 from solver.run_warnings import few_positions
-from solver.scene_warnings import FEWEST_CELLS
 
 STRESS = "maximum contact stress [MPa]"
 OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
@@ -122,13 +121,8 @@ def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
     return [replace(c, max_pressure=own * running_median(c.max_pressure / own)) for c, own in zip(curves, hertz)]
 
 
-def few_cells_across(run: RunData) -> bool:
-    """Whether the mesh does not resolve the contact."""
-    return not cells_across(run) >= FEWEST_CELLS
-
-
 def _resolved(run: RunData) -> list[str]:
-    """What is to be said where it does not."""
+    """What is to be said where the mesh does not resolve the contact."""
     if not few_cells_across(run):
         return []
     return [

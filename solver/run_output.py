@@ -106,7 +106,6 @@ def write_output(
 
     timings = replace(sweep.timings, error_bars=0.0 if companion is None else companion.seconds)
 
-
     def cost() -> Cost:
         return part.cost(replace(timings, output=time.perf_counter() - started))
 

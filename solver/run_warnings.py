@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -37,8 +37,12 @@ NAMES = {
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Of a finished run."""
-    about = _about_the_mesh, _about_tip_edges, _about_relief, _about_large_bars, _about_error_bars, _about_spacing
-    return tuple(sentence for each in about for sentence in each(run, mesh))
+    rows = friction_rows(run)
+    about = (
+        _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run), _about_large_bars(rows),
+        _about_error_bars(run), _about_spacing(run, rows),
+    )  # fmt: skip
+    return tuple(sentence for each in about for sentence in each)
 
 
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
@@ -71,15 +75,15 @@ def _few_cells(run: RunData) -> str:
     )
 
 
-def _about_tip_edges(run: RunData, _: MeshFacts) -> Iterator[str]:
+def _about_tip_edges(run: RunData) -> Iterator[str]:
     bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
     if not any(bears):
         return
     share = max(_edge_share(solved) for each in run.positions for solved in each)
     yield (
         f"A tip edge bears at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
-        "the load: the pressure there is singular, grows with every "
-        "finer mesh, and is reported apart (edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
+        "the load: the pressure there is singular, grows with every finer mesh, and is reported apart "
+        "(edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
     )
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
@@ -96,7 +100,7 @@ def _edge_share(solved: SolvedPosition) -> float:
     return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
 
 
-def _about_relief(run: RunData, _: MeshFacts) -> Iterator[str]:
+def _about_relief(run: RunData) -> Iterator[str]:
     curves = engagements(run)
     found = [
         peak_over_kink(run, k, curve.peak) for k, curve in enumerate(curves) if np.isfinite(curve.max_pressure).any()
@@ -115,8 +119,8 @@ def _about_relief(run: RunData, _: MeshFacts) -> Iterator[str]:
     )
 
 
-def _about_large_bars(run: RunData, _: MeshFacts) -> Iterator[str]:
-    said = [words for row in friction_rows(run) for name in NAMES if (words := _unknown(row, name))]
+def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:
+    said = [words for row in rows for name in NAMES if (words := _unknown(row, name))]
     if said:
         yield (
             f"Not known, for the error bar is more than half of it: {', '.join(said)}; nor is where a largest pressure "
@@ -132,13 +136,12 @@ def _unknown(row: FrictionRow, name: str) -> str:
     return f"{words} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
 
 
-def _about_error_bars(run: RunData, _: MeshFacts) -> Iterator[str]:
+def _about_error_bars(run: RunData) -> Iterator[str]:
     if run.scene.output.error_bars and not run.errors.figures:
         yield f"There are no error bars. {run.errors.missing}"
 
 
-def _about_spacing(run: RunData, _: MeshFacts) -> Iterator[str]:
-    rows = friction_rows(run)
+def _about_spacing(run: RunData, rows: Sequence[FrictionRow]) -> Iterator[str]:
     said = [words for name in NAMES if (words := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
     if said:
         step = math.degrees(run.pitch) / len(run.positions)

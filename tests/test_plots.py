@@ -22,12 +22,13 @@ from solver.display import off_screen
 from solver.engagement import engagement, engagements
 from solver.figure_rows import friction_rows
 from solver.gear_results import on_tip_edge
+from solver.mesh_facts import few_cells_across
 from solver.plain_text import signed
 from solver.plots import figures, pictures
 from solver.plots_drive import even_share, line_load, load_sharing
 from solver.plots_flank import envelope, pressure_map, pressure_top
 from solver.plots_lines import at_point, path_points
-from solver.plots_stress import engagement_stress, few_cells_across, running_median, smoothed, tooth_stress
+from solver.plots_stress import engagement_stress, running_median, smoothed, tooth_stress
 from solver.plots_style import ABOVE, OVER, PRESSURE_MAP, friction_colours, png, sheet, styled
 from solver.plots_yang import paper_points, paper_position
 from solver.run_data import RunData

@@ -15,8 +15,9 @@ from solver.estimated_errors import EstimatedErrors, FigureErrors
 from solver.figure_rows import friction_rows
 from solver.gear_position import PositionResult
 from solver.gear_results import Slices
+from solver.mesh_facts import few_cells_across
 from solver.plots_hertz import hertz_comparison
-from solver.plots_stress import engagement_stress, few_cells_across
+from solver.plots_stress import engagement_stress
 from solver.plots_style import AT_ZONE_END, styled
 from solver.plots_trend import friction_trend
 from solver.run_data import RunData

@@ -12,8 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from solver.draw import Picture
-from solver.mesh_facts import cells_across
-from solver.plots_stress import few_cells_across
+from solver.mesh_facts import cells_across, few_cells_across
 from solver.plots_style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from solver.run_data import RunData
 from solver.scene import GEARS

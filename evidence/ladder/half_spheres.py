@@ -141,47 +141,53 @@ def measure() -> Rung:
         (
             *(claim for share in SHARES for claim in _claims(share, *found[share])),
             *(claim for share in SHARES for claim in _by_force(share, found[share][0], *forced[share])),
-            *_along(along, largest[-1]),
+            *_beside_exact(f"a/R = {SHARES[-1]:g}, {ALONG}", along, largest[-1]),
         ),
         lambda figure: draw(figure, found, along),
         "All ways of loading give one contact; the line is exact, what is above it comes from undeflected normals",
     )
 
 
-def _along(found: Found, exact: Found) -> list[Claim]:
+def _beside_exact(where: str, found: Found, exact: Found, missed: str = "") -> list[Claim]:
     return [
-        Claim.relative(f"{name}, a/R = {SHARES[-1]:g}, {ALONG}", value, wanted, 0.01, Reference.OVERKILL, SOURCE)
+        Claim.relative(f"{name}, {where}", value, wanted, 0.01, Reference.OVERKILL, SOURCE, missed)
         for name, value, wanted in (("force [N]", found.force, exact.force), ("p0 [MPa]", found.peak, exact.peak))
     ]
 
 
-def _by_force(share: float, moved: Found, forced: Found, approach: float) -> list[Claim]:
-    both = (("approach [mm]", approach, 2.0 * share**2 * RADIUS), ("p0 [MPa]", forced.peak, moved.peak),
-            ("a [mm]", forced.radius, moved.radius))  # fmt: skip
+def _beside_motion(way: str, *figures: tuple[str, float, float]) -> list[Claim]:
+    """figures: name, value this way, value by a prescribed motion."""
+    source = "the same by a prescribed motion"
     return [
-        Claim.relative(f"{name} by force, a/R = {share:g}", value, own, 0.005, Reference.ANALYTICAL,
-                       "the same by a prescribed motion")
-        for name, value, own in both
-    ]  # fmt: skip
+        Claim.relative(f"{name} {way}", value, moved, 0.005, Reference.ANALYTICAL, source)
+        for name, value, moved in figures
+    ]
+
+
+def _by_force(share: float, moved: Found, forced: Found, approach: float) -> list[Claim]:
+    return _beside_motion(
+        f"by force, a/R = {share:g}",
+        ("approach [mm]", approach, 2.0 * share**2 * RADIUS),
+        ("p0 [MPa]", forced.peak, moved.peak),
+        ("a [mm]", forced.radius, moved.radius),
+    )
 
 
 def _claims(share: float, moved: Found, placed: Found, exact: Found) -> list[Claim]:
-    both = (("force [N]", moved.force, placed.force), ("p0 [MPa]", moved.peak, placed.peak),
-            ("a [mm]", moved.radius, placed.radius))  # fmt: skip
+    where = f"a/R = {share:g}"
     result = [
-        Claim.relative(f"{name} by placement, a/R = {share:g}", theirs, own, 0.005, Reference.ANALYTICAL,
-                       "the same by a prescribed motion")
-        for name, own, theirs in both
-    ]  # fmt: skip
-    for name, value, wanted in (("force [N]", moved.force, exact.force), ("p0 [MPa]", moved.peak, exact.peak)):
-        missed = NORMALS if share == SHARES[-1] else ""
-        result.append(
-            Claim.relative(f"{name}, a/R = {share:g}", value, wanted, 0.01, Reference.OVERKILL, SOURCE, missed)
-        )
+        *_beside_motion(
+            f"by placement, {where}",
+            ("force [N]", placed.force, moved.force),
+            ("p0 [MPa]", placed.peak, moved.peak),
+            ("a [mm]", placed.radius, moved.radius),
+        ),
+        *_beside_exact(where, moved, exact, NORMALS if share == SHARES[-1] else ""),
+    ]
     if share == SHARES[0]:
         for name, value, wanted in zip(("p0 [MPa]", "a [mm]"), (moved.peak, moved.radius), moved.hertz):
-            quantity, source = f"{name}, a/R = {share:g}", "Hertz of the force found"
-            result.append(Claim.relative(quantity, value, wanted, 0.01, Reference.ANALYTICAL, source))
+            source = "Hertz of the force found"
+            result.append(Claim.relative(f"{name}, {where}", value, wanted, 0.01, Reference.ANALYTICAL, source))
     return result
 
 

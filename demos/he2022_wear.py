@@ -24,17 +24,16 @@ import numpy as np
 import typer
 from mpi4py import MPI
 
-from solver import compat
-from solver.draw import draw
-from solver.engagement import engagement
-from solver.estimates import hertz_estimate
-from solver.run import run_scene
-from solver.run_folder import RunFolder
-from solver.scene import GEARS, Scene, load_scene
-from solver.scene_errors import SceneError
-from wear.observed import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
-from wear.passage_figures import UM, pictures
-from wear.report import WornRun, read_worn
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.drawing.picture_files import draw
+from evolvent.results.engagement import engagement
+from evolvent.run.scene_run import run_scene
+from evolvent.scene.scene import GEARS, Scene, load_scene
+from evolvent.scene.schema.errors import SceneError
+from evolvent.wear.results.mesh_passage import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
+from evolvent.wear.results.passage_figures import UM, pictures
+from evolvent.wear.results.report import WornRun, read_worn
 
 SCENE = Path(__file__).resolve().with_name("he2022.toml")
 COEFFICIENT = 1.3832e-10  # mm²/N: 2.446 µm per km at 17.684 MPa
@@ -71,7 +70,7 @@ def worn_scene(file: Path, quick: bool, settings: list[str]) -> Scene:
     given = load_scene(file)
     how = [f"contact.friction={given.contact.friction[0]}", *(QUICK if quick else FINE if file == SCENE else ())]
     if given.wear is None:
-        deepest = max(hertz_estimate(given).wear_per_cycle(COEFFICIENT, COEFFICIENT))
+        deepest = max(given.hertz_estimate().wear_per_cycle(COEFFICIENT, COEFFICIENT))
         cycles = CYCLES if file == SCENE else float(f"{DEPTH / deepest:.1g}")
         how += [f"wear.cycles={cycles:.6g}", *(f"wear.{name}_mm2_per_N={COEFFICIENT}" for name in GEARS)]
     return load_scene(file, [*how, *settings])
@@ -150,7 +149,7 @@ def main(
     setting: Annotated[list[str] | None, typer.Option("--set")] = None,
 ) -> None:
     """Compute, draw, compare, check."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     scene = scene.resolve()
     try:
         worn = worn_scene(scene, quick, setting or [])

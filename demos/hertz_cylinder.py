@@ -8,7 +8,7 @@ problem. Which body carries the normals is part of the problem: the contact half
 small displacements along the cylinder's normals or the block's differ by 0.3 % in the peak.
 
 At a/4, a/8, a/16 a cell of the cylinder ends at Hertz' edge of contact. Where the edge cuts a cell, the profile's error
-at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/test_verification.py.
+at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/solver/contact/test_verification.py.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 from mpi4py import MPI
 
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import Floats
-from solver import compat, hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.problem import Contact, ContactResult, Problem, Solution, Step, solve, sweep
-from solver.stress import cell_stress, von_mises
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, solve, sweep
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent.fem.stress import cell_stress, von_mises
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 
 STEEL, ALUMINIUM = Material(210e3, 0.3), Material(70e3, 0.3)
 RADIUS, BLOCK, LOAD = 50.0, 200.0, 35e3  # mm, mm, N per mm of thickness
@@ -177,7 +178,7 @@ def convergence(cells: tuple[int, ...], reference: Profile) -> dict[int, list[Ro
 
 def main(out: Path = Path("out/hertz_cylinder"), quick: bool = False) -> None:
     """Solve, compare, write table.csv and hertz_cylinder.png. Raises AssertionError where a bound is missed."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     cells = (2, 4, 8) if quick else (2, 4, 8, 16, 32)
     reference = overkill("cylinder", 32 if quick else 64)
     shown = solve(cylinder_on_block(8, 2, 1.37, "cylinder"))

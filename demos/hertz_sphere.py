@@ -25,15 +25,17 @@ import typer
 from matplotlib.axes import Axes
 from mpi4py import MPI
 
-from meshes.blocks import graded_box, sphere_quarter
-from meshes.data import Floats, MeshData
-from meshes.rings import ring_block, ring_sphere
-from meshes.variants import with_part
-from solver import compat, hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import STEEL
-from solver.problem import Contact, ContactResult, Nitsche, Problem, Solution, solve
-from solver.stress import cell_stress, von_mises
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, ContactResult, Nitsche, Problem, Solution, solve
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL
+from evolvent.fem.stress import cell_stress, von_mises
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import graded_box, sphere_quarter
+from evolvent_meshes.shapes.rings import ring_block, ring_sphere
+from evolvent_meshes.shapes.variants import with_part
 
 RADIUS, LOAD, SIDE = 8.0, 2000.0, 4.0  # mm, N, mm
 MODULUS = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
@@ -111,7 +113,7 @@ def cases(quick: bool) -> dict[str, Problem]:
 
 def main(out: Path = Path("out/hertz_sphere"), quick: bool = False) -> None:
     """Solve, compare, write table.csv and hertz_sphere.png. Raises AssertionError where a bound is missed."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     solutions = {name: solve(problem) for name, problem in cases(quick).items()}
     profiles = {name: Profile.of(solution.contacts[0]) for name, solution in solutions.items()}
     table = [("mesh", "p0 [MPa]", "p0 error [%]", "profile error [%]", "approach [mm]")]

@@ -24,19 +24,19 @@ from matplotlib.axes import Axes
 from matplotlib.tri import TriContourSet
 from mpi4py import MPI
 
-from meshes.data import MeshData
-from meshes.rings import ring_block
-from meshes.variants import doubled, with_part
-from solver import compat
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.kinematics import turn
-from solver.material import STEEL
-from solver.plots_style import PRESSURE_MAP, save, sheet, styled
-from solver.problem import Contact, Placement, Problem, Step
-from wear.blocks import BlockSettings
-from wear.cycle import Cycle, Travel
-from wear.law import Archard
-from wear.study import CycleState, WearStudy
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Step
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL
+from evolvent.gears.kinematics import turn
+from evolvent.results.drawing.style import PRESSURE_MAP, save, sheet, styled
+from evolvent.wear.archard import Archard
+from evolvent.wear.block_stepping import BlockSettings
+from evolvent.wear.body_study import CycleState, WearStudy
+from evolvent.wear.cycle import Cycle, Travel
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.rings import ring_block
+from evolvent_meshes.shapes.variants import doubled, with_part
 
 DIAMETER, LENGTH, LOAD, FRICTION = 6.0, 8.0, 500.0, 0.1  # mm, mm, N; length and μ are not printed
 TRACK = 40.0  # radius of the track on the disc [mm], not printed
@@ -192,7 +192,7 @@ def main(
     km: float = 10.0, disc: Annotated[float, typer.Option("--disc-mm2-per-N", help="K/H of the disc")] = 0.0,
 ) -> None:  # fmt: skip
     """Compute, check, write table.csv and the pictures."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     stages = run(0.8 if quick else 0.4, km, straight, disc)
     if MPI.COMM_WORLD.rank:
         return

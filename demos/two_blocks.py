@@ -19,12 +19,13 @@ import typer
 from matplotlib.axes import Axes
 from mpi4py import MPI
 
-from meshes.blocks import box, rectangle
-from meshes.data import Floats, MeshData
-from solver import compat
-from solver.body import Body, Fixed, Traction
-from solver.material import Material
-from solver.problem import Contact, Problem, Solution, solve
+from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, Traction
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import box, rectangle
 
 PRESSURE, SHEAR, FRICTION = 100.0, 20.0, 0.3
 BOUND = 1e-6  # of the pressure
@@ -108,7 +109,7 @@ def variants(quick: bool) -> list[Patch]:
 
 def main(out: Path = Path("out/two_blocks"), quick: bool = False) -> None:
     """Solve all variants, write table.csv and two_blocks.png. Raises AssertionError where a bound is missed."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     patches = variants(quick)
     worst = {patch: float(patch.errors(solve(patch.problem())).max()) for patch in patches}
     shown = Patch("triangle", 2, friction=FRICTION)

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from solver.run import run_scene
-from solver.run_data import RunData, read_run
-from solver.scene import load_scene
+from evolvent.results.run_data import RunData, read_run
+from evolvent.run.scene_run import run_scene
+from evolvent.scene.scene import load_scene
 
 SMALL = (
     'mesh.level="quick"', "mesh.elements_per_contact_width=1.0", "contact.friction=[0.07, 0.30]", "sweep.positions=4",

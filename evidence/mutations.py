@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[1]
+from evidence.checkout import ROOT
+
 LIST, SEEN = Path("evidence/mutations.toml"), Path("docs/edges_seen.csv")
 PATIENCE = 900.0  # seconds a test; one that hangs has not failed
 NOT_THE_EDGE = ("ImportError", "ModuleNotFoundError", "NameError", "SyntaxError")
@@ -38,7 +39,7 @@ class Mutation:
     file: below the root.
     old: text that stands there once.
     new: what takes its place.
-    tests: which have to fail, as module::test or module::test[case].
+    tests: which have to fail, as module::test or module::test[case], the module a path below tests.
     """
 
     name: str
@@ -50,8 +51,8 @@ class Mutation:
 
     @property
     def fingerprint(self) -> str:
-        """Of what is exchanged: a mutation that was changed has not been seen."""
-        return hashlib.sha256("\0".join((self.file, self.old, self.new)).encode()).hexdigest()[:12]
+        """Of what is exchanged, wherever the file lies: a mutation that was changed has not been seen."""
+        return hashlib.sha256("\0".join((self.old, self.new)).encode()).hexdigest()[:12]
 
     def applied(self, root: Path) -> str:
         """The file's text with the exchange. Raises ValueError where `old` does not stand there once."""
@@ -99,10 +100,11 @@ def failures(mutation: Mutation, tree: Path) -> tuple[dict[str, str], str]:
 def failing(tests: Sequence[str], tree: Path) -> tuple[dict[str, str], str]:
     """Which of these tests fail in a tree -> what they say; and pytest's last line."""
     nodes, report = [f"tests/{test.replace('::', '.py::', 1)}" for test in tests], tree / "report.xml"
+    roots = os.pathsep.join(str(tree / root) for root in ("", "solver", "meshes"))
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}", *nodes]
     try:
         done = subprocess.run(
-            command, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"},
+            command, cwd=tree, env={**os.environ, "PYTHONPATH": roots, "OMP_NUM_THREADS": "1"},
             capture_output=True, text=True, timeout=PATIENCE * len(tests), check=False,
         )  # fmt: skip
         said = _said(report) if report.exists() else {}
@@ -122,7 +124,8 @@ def _said(report: Path) -> dict[str, str]:
     for case in ElementTree.parse(report).getroot().iter("testcase"):
         failure = case.find("failure")
         if failure is not None and not (text := str(failure.get("message"))).startswith(NOT_THE_EDGE):
-            said[f"{str(case.get('classname')).rpartition('.')[2]}::{case.get('name')}"] = text
+            module = str(case.get("classname")).removeprefix("tests.").replace(".", "/")
+            said[f"{module}::{case.get('name')}"] = text
     return said
 
 

@@ -14,14 +14,14 @@ from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.report import table
-from solver.cost import Timings
-from solver.estimated_errors import FigureErrors
-from solver.mesh_facts import MeshFacts
-from solver.shaft_forces import ShaftForces
-from solver.skips import Skipped
-from solver.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
-from wear.pair_study import BlockRow
-from wear.report import GearReport, PairReport, WearReport
+from evolvent.results.archive.error_bar_data import FigureErrors
+from evolvent.results.archive.run_cost import Timings
+from evolvent.results.mesh_facts import MeshFacts
+from evolvent.results.shaft_forces import ShaftForces
+from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
+from evolvent.scene.skips import Skipped
+from evolvent.wear.gears.gear_study import BlockRow
+from evolvent.wear.results.report import GearReport, PairReport, WearReport
 
 Schema = dict[str, Any]
 

@@ -1,5 +1,5 @@
 """`python -m evidence.pages`: writes again what follows from the code and from what was measured before; measures
-nothing itself. tests/test_pages.py holds the files together.
+nothing itself. tests/project/test_pages.py holds the files together.
 
 A page that is written by hand has generated parts between two marks, `<!-- begin NAME: ... -->` and `<!-- end -->`.
 """
@@ -10,8 +10,7 @@ import re
 from pathlib import Path
 
 from evidence import mutations, outputs, promises, readme, tutorial, yang_page
-
-ROOT = Path(__file__).resolve().parents[1]
+from evidence.checkout import ROOT
 
 
 def generated(root: Path = ROOT) -> dict[Path, str]:

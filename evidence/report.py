@@ -10,7 +10,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL import Image
 
-from solver import compat, plots_style
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.results.drawing import style
 
 COLOURS = 128
 """Of a picture's palette: as good as all on a sheet of curves, at a third of the size."""
@@ -57,12 +58,12 @@ def _processor() -> str:
 
 def versions() -> str:
     """Of the solver and what it stands on, in one line."""
-    return ", ".join(f"{name} {version}" for name, version in compat.versions().items() if version)
+    return ", ".join(f"{name} {version}" for name, version in dolfinx_compat.versions().items() if version)
 
 
 def picture(figure: Figure, path: Path) -> Path:
     """Writes a PNG with a small palette, so that it may stay in the repository. Gives its path back. Raises OSError."""
-    plots_style.save(figure, path)
+    style.save(figure, path)
     with Image.open(path) as image:
         image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
     return path

@@ -12,13 +12,13 @@ from pathlib import Path
 from PIL import Image
 
 from evidence.benchmark.tables import read_rows, write_rows
+from evidence.checkout import ROOT
 from evidence.report import table
-from solver.estimated_errors import FigureErrors, plus_minus
-from solver.overview import overview
-from solver.plots_style import palette, reduced
-from solver.scene import load_scene
+from evolvent.results.archive.error_bar_data import FigureErrors, plus_minus
+from evolvent.results.drawing.style import palette, reduced
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.scene import load_scene
 
-ROOT = Path(__file__).resolve().parents[1]
 KEPT = Path("pictures") / "tutorial"
 PICTURES = (
     "01_loaded_pair",

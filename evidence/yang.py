@@ -14,18 +14,18 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.tables import read_rows, write_rows
-from solver.engagement import Engagement, crossing, engagement, largest_peak
-from solver.figure_rows import friction_rows
-from solver.line_peaks import between, pooled_peaks
-from solver.plots_lines import at_point
-from solver.plots_stress import relative_change
-from solver.plots_teeth import YANG
-from solver.plots_trend import trends
-from solver.plots_yang import paper_points, paper_position
-from solver.run_data import RunData, read_run
-from solver.summary_rows import FrictionRow
+from evidence.checkout import ROOT
+from evolvent.results.drawing.teeth import YANG
+from evolvent.results.engagement import Engagement, crossing, engagement, largest_peak
+from evolvent.results.figures.lines import at_point
+from evolvent.results.figures.stress import relative_change
+from evolvent.results.figures.trend import trends
+from evolvent.results.figures.yang import paper_points, paper_position
+from evolvent.results.line_peaks import between, pooled_peaks
+from evolvent.results.run_data import RunData, read_run
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.summary_rows import FrictionRow
 
-ROOT = Path(__file__).resolve().parents[1]
 KEPT = "yang2022"
 NEAR_PITCH_LINE = 0.25  # modules of roll distance
 NEAR_TIP_deg = 22.0  # a tooth's own rotation from which its contact is near the pinion's tip

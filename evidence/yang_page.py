@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evidence.report import table
 from evidence.yang import kept
-from solver.estimated_errors import plus_minus
+from evolvent.results.archive.error_bar_data import plus_minus
 
 Figures = dict[str, float]
 

@@ -25,12 +25,12 @@ import numpy as np
 from demos.hertz_cylinder import Slip, cylinder_on_block
 from demos.hertz_sphere import ball_on_block
 from demos.two_blocks import variants
-from meshes.files import write_bytes
-from solver import compat
-from solver.archive import ArchiveError, arrays_bytes, read_arrays
-from solver.problem import Solution, solve
-from solver.run import run_scene
-from tests.gear_cases import helical_scene, spur_scene
+from evolvent.contact.solution.solver import Solution, solve
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
+from evolvent.run.scene_run import run_scene
+from evolvent_meshes.files import write_bytes
+from tests.support.gear_cases import helical_scene, spur_scene
 
 TOLERANCE = 1e-6
 NO_RESULTS = {
@@ -51,7 +51,7 @@ class Difference:
 
 def compute(out: Path) -> None:
     """Solves a spur and a helical pair with friction, patch tests of all cells, a cylinder and a ball on a block."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     run_scene(spur_scene("contact.friction=[0.0, 0.3]"), out / "spur", quiet=True)
     run_scene(helical_scene(), out / "helical", quiet=True)
     for patch in variants(quick=False):

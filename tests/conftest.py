@@ -13,15 +13,18 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tests.support.checkout import PYTHONPATH, ROOT
+
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _quiet() -> None:
-    from solver import compat  # starts MPI: pytest itself must not, or its workers take themselves for ranks
+    from evolvent.fem.backend import (
+        dolfinx_compat,  # starts MPI: pytest itself must not, or its workers take themselves for ranks
+    )
 
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
 
 
 @pytest.fixture(scope="session")
@@ -55,7 +58,7 @@ def one_at_a_time(ranks: int) -> Iterator[None]:
 
 def _environment() -> dict[str, str]:
     """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
-    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    path = os.pathsep.join(filter(None, [PYTHONPATH, os.environ.get("PYTHONPATH")]))
     return {
         **os.environ,
         "PYTHONPATH": path,

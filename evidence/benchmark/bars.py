@@ -8,24 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields, replace
-from pathlib import Path
 
 from mpi4py import MPI
 
 from evidence.benchmark.subdivision import halved
-from meshes.data import MeshData
-from meshes.section import SectorResolution
-from solver.companion import companion_mesh, solved_run
-from solver.error_bars import errors_between
-from solver.estimated_errors import FigureErrors
-from solver.figure_rows import friction_rows
-from solver.run_data import RunData
-from solver.run_sweep import pitch_of
-from solver.scene import Scene, load_scene, scene_from_text
-from solver.sectors import gear_mesh
+from evidence.checkout import DEMOS
+from evolvent.results.archive.error_bar_data import FigureErrors
+from evolvent.results.error_bars.estimation import errors_between
+from evolvent.results.run_data import RunData
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.run.coarse_run import companion_mesh, solved_run
+from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.scene import Scene, load_scene, scene_from_text
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.sector.section import SectorResolution
 
 FIGURES = tuple(field.name for field in fields(FigureErrors))
-DEMOS = Path(__file__).resolve().parents[2] / "demos"
 HELICAL = """
 title = "narrow helical pair 20/24"
 [pair]

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from evidence.benchmark.task import Push, Task
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import Floats, MeshData
-from meshes.lattice import split_to_simplices
-from meshes.rings import ring_block, ring_sphere
-from meshes.variants import with_part
-from solver import hertz
+from evolvent.contact import hertz
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.structured_grid import split_to_simplices
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
+from evolvent_meshes.shapes.rings import ring_block, ring_sphere
+from evolvent_meshes.shapes.variants import with_part
 
 STEEL, ALUMINIUM = (210e3, 0.3), (70e3, 0.3)
 FINER = 1.37  # how much smaller the cells of the block are: the meshes do not match

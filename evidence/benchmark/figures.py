@@ -15,8 +15,8 @@ from evidence.benchmark.pitches import PitchRow
 from evidence.benchmark.precision import Row
 from evidence.benchmark.programs import EVOLVENT
 from evidence.benchmark.scaling import SizeRow, exponent
-from meshes.data import Floats
-from solver import plots_style
+from evolvent.results.drawing import style
+from evolvent_meshes.arrays import Floats
 
 COLOURS = {
     EVOLVENT.name: "#c0392b", "GetFEM": "#1f5fa8", "CalculiX": "#3b7a57", "CalculiX mortar": "#c98a1b",
@@ -43,8 +43,8 @@ def work_precision(rows: Sequence[Row], title: str) -> Figure:
     see = "Down and left is better: less time, smaller error. All programs solve on the same meshes, one thread."
     if len(kept) < len(rows):
         see += f" Answers more than {WRONG:.0%} off are left out."
-    with plots_style.styled():
-        figure = plots_style.sheet(f"{title}: run time against error", see, (11.0, 5.2))
+    with style.styled():
+        figure = style.sheet(f"{title}: run time against error", see, (11.0, 5.2))
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
         for panel, simplex in zip(axes, (False, True)):
             _panel(panel, [row for row in kept if (row.shape in SIMPLICES) == simplex])
@@ -55,11 +55,11 @@ def work_precision(rows: Sequence[Row], title: str) -> Figure:
 
 def _panel(axes: Axes, rows: Sequence[Row]) -> None:
     for name, colour in COLOURS.items():
-        for order, style in ((1, "o--"), (2, "s-")):
+        for order, marks in ((1, "o--"), (2, "s-")):
             own = [row for row in rows if row.program == name and row.order == order]
             if own:
                 error, seconds = 100 * column(own, "profile_error"), column(own, "cpu")
-                axes.loglog(error, seconds, style, color=colour, ms=4, label=f"{name}, order {order}")
+                axes.loglog(error, seconds, marks, color=colour, ms=4, label=f"{name}, order {order}")
     axes.set_xlabel("error of the pressure profile (L2) [%]")
     axes.set_title(PLURAL[rows[0].shape] if rows else "", fontsize=10)
     _plain_ticks(axes)
@@ -78,9 +78,9 @@ def gears(rows: Sequence[GearRow]) -> Figure:
     kept = sorted((row for row in rows if not row.note), key=lambda row: -row.seconds)
     models = {"whole gears": "whole gears, a pitch", "three teeth": "three teeth"}
     names = [f"{row.program}, {models[row.model]}\norder {row.order}, {row.dofs:,} dofs" for row in kept]
-    with plots_style.styled():
+    with style.styled():
         see = "Evolvent condenses the whole gears once for a pitch; the others solve three teeth anew each time."
-        figure = plots_style.sheet("A position of the gear pair, all but meshing", see, (9.0, 4.2))
+        figure = style.sheet("A position of the gear pair, all but meshing", see, (9.0, 4.2))
         axes = figure.subplots()
         bars = axes.barh(range(len(kept)), column(kept, "seconds"), 0.6, color=[COLOURS[row.program] for row in kept])
         axes.bar_label(bars, [f"{row.seconds:.3g} s, {row.ratio:.3g} times" for row in kept], padding=4, fontsize=9)
@@ -94,15 +94,15 @@ def gears(rows: Sequence[GearRow]) -> Figure:
 def pitches(rows: Sequence[PitchRow]) -> Figure:
     """Seconds over the error of the transmission error, log-log: of one position, and of the pitch."""
     kept = [row for row in rows if not row.note]
-    with plots_style.styled():
+    with style.styled():
         see = "Down and left is better. A pitch costs little more than one position: the gears are condensed once."
-        figure = plots_style.sheet("The gear pair: run time against error", see, (11.0, 5.2))
+        figure = style.sheet("The gear pair: run time against error", see, (11.0, 5.2))
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
         for panel, name, title in zip(axes, ("one", "pitch"), ("one position", f"a pitch of {kept[0].positions}")):
-            for (shape, order, ranks), style in FAMILIES.items():
+            for (shape, order, ranks), marks in FAMILIES.items():
                 own = [r for r in kept if (r.shape, r.order, r.ranks) == (shape, order, ranks)]
                 label = f"{PLURAL[shape]}, order {order}" + (", two ranks" if ranks > 1 else "")
-                panel.loglog(100 * np.abs(column(own, "error")), column(own, name), style, ms=5, label=label)
+                panel.loglog(100 * np.abs(column(own, "error")), column(own, name), marks, ms=5, label=label)
             panel.set_xlabel("error of the mean transmission error [%]")
             panel.set_title(title, fontsize=10)
             _plain_ticks(panel)
@@ -114,9 +114,9 @@ def pitches(rows: Sequence[PitchRow]) -> Figure:
 def sizes(rows: Sequence[SizeRow]) -> Figure:
     """Memory, condensing and one more position over the size, with their exponents."""
     dofs = column(rows, "dofs")
-    with plots_style.styled():
+    with style.styled():
         see = "Left: what a pitch needs at most. Right: what is done once, and what each further position adds."
-        figure = plots_style.sheet("A pitch of the gear pair, over its size", see, (10.4, 4.8))
+        figure = style.sheet("A pitch of the gear pair, over its size", see, (10.4, 4.8))
         memory, time = figure.subplots(1, 2)
         _line(memory, dofs, column(rows, "memory_MB") / 1024.0, "memory", "#1f5fa8")
         memory.set_ylabel("largest memory [GiB]")

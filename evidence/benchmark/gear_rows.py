@@ -11,9 +11,10 @@ import numpy as np
 
 from evidence.benchmark.gears import FRICTION, ROTATION, scene, three_teeth
 from evidence.benchmark.pitch import PitchFacts, read_facts
-from evidence.benchmark.programs import EVOLVENT, ROOT, Program, solve
+from evidence.benchmark.programs import EVOLVENT, Program, solve
 from evidence.benchmark.runs import Command, Cost, RunFailed, run
 from evidence.benchmark.task import Answer
+from evidence.checkout import PYTHONPATH
 
 PITCH = 2 * np.pi / 17
 TIME_LIMIT = 600.0  # s
@@ -130,7 +131,7 @@ def pitch_cost(
     """A pitch in a process of its own, and what it took. cache_folder: for compiled forms, where it's not the usual
     one. Raises RunFailed."""
     out = folder / "pitch.json"
-    environment = {"PYTHONPATH": str(ROOT), **({"XDG_CACHE_HOME": str(cache_folder)} if cache_folder else {})}
+    environment = {"PYTHONPATH": PYTHONPATH, **({"XDG_CACHE_HOME": str(cache_folder)} if cache_folder else {})}
     words = (sys.executable, "-m", "evidence.benchmark.pitch", str(out), str(elements), level, str(positions))
     command = Command(
         (*words, frictions, *settings), folder, folder / "pitch.log", environment, ranks, 3600.0

@@ -7,21 +7,21 @@ carry the whole gears at this element size.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from evidence.benchmark.task import Task, Turn
-from meshes.data import Ints, MeshData
-from meshes.flank import nominal_angles
-from meshes.lattice import weld
-from meshes.sector import sector_mesh
-from solver.kinematics import turn
-from solver.resolution import sector_resolutions
-from solver.scene import Scene, load_scene
-from solver.sectors import linear
+from evidence.checkout import DEMOS
+from evolvent.gears.kinematics import turn
+from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.meshing.sector_meshes import linear
+from evolvent.scene.scene import Scene, load_scene
+from evolvent_meshes.arrays import Ints
+from evolvent_meshes.gears.flank import nominal_angles
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.structured_grid import weld
+from evolvent_meshes.sector.sector import sector_mesh
 
-SCENE = Path(__file__).parents[2] / "demos" / "yang2022.toml"
+SCENE = DEMOS / "yang2022.toml"
 TEETH = (-1, 0, 1)
 FRICTION = 0.11
 ROTATION = 1.78e-3  # rad of the pinion, which takes three teeth to about 250 N·m

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task, Turn
-from meshes.data import Floats
-from solver import compat
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.position import Position
-from solver.prepared import prepare
-from solver.problem import Contact, ContactResult, Problem, Step
+from evolvent.contact.problem.condensed_body import prepare
+from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Step
+from evolvent.contact.step.step_system import Position
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
 
 GEAR_REACH = 0.1  # mm, the gap up to which flanks may close
 
@@ -74,7 +74,7 @@ def solved(task: Task) -> Answer:
 
 
 def main() -> None:
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     source, target = sys.argv[1:]
     solved(Task.read(Path(source))).write(Path(target))
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from evidence.benchmark.figures import column
 from evidence.benchmark.wear import BLOCKS, WearCostRow, WearPrecisionRow
 from evidence.report import table
-from solver import plots_style
+from evolvent.results.drawing import style
 
 BAR = 5.0
 COLOURS = {"implicit": "#c0392b", "explicit": "#1f5fa8"}
@@ -58,8 +58,8 @@ def _precision_table(rows: Sequence[WearPrecisionRow]) -> str:
 def precision(rows: Sequence[WearPrecisionRow]) -> Figure:
     """Seconds over the error of the depths, log-log; a point a tolerance."""
     see = "Down and left is better; a point a tolerance. Error: volume worn off in the wrong place, over all of it."
-    with plots_style.styled():
-        figure = plots_style.sheet("Wear to 1.6 million meshes: run time against error of the blocks", see)
+    with style.styled():
+        figure = style.sheet("Wear to 1.6 million meshes: run time against error of the blocks", see)
         axes = figure.add_subplot()
         for name, colour in COLOURS.items():
             own = [row for row in rows if row.method == name]

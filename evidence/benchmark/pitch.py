@@ -20,16 +20,16 @@ import numpy as np
 from mpi4py import MPI
 
 from evidence.benchmark.gears import scene
-from solver import compat
-from solver.body import Body, Fixed, assemble
-from solver.closed_pitch import one_pitch, sweep_closed
-from solver.condense import Factor
-from solver.gear_model import prepare_model
-from solver.gear_sweep import SweptPosition, initial_state
-from solver.run_output import peak_memory_MB
-from solver.run_sweep import pitch_of
-from solver.scene import Scene
-from solver.sectors import gear_mesh
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.body import Body, Fixed, assemble
+from evolvent.fem.condensation.schur_complement import Factor
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
+from evolvent.run.output import peak_memory_MB
+from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def read_facts(path: Path) -> PitchFacts:
 
 
 def main() -> None:
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     out, elements, level, positions, frictions, *settings = sys.argv[1:]
     wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(2, int(positions))}"
     own = scene(float(elements), *wanted, *settings, level=level)

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from evidence.benchmark.task import Answer, Task
-from meshes.data import FACET_SHAPE, Floats
-from solver.lagrange import gmsh_permutation, quadrature, tabulate
+from evolvent.fem.lagrange import gmsh_permutation, quadrature, tabulate
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import FACET_SHAPE
 
 DEGREE = 8  # of the rule for a pressure between nodes
 

@@ -16,30 +16,30 @@ from pathlib import Path
 from mpi4py import MPI
 
 from evidence.benchmark.gears import FRICTION, scene
-from evidence.benchmark.programs import ROOT
 from evidence.benchmark.runs import Command, run
-from solver import compat
-from solver.closed_pitch import sweep_closed
-from solver.gear_model import prepare_model
-from solver.gear_sweep import initial_state
-from solver.run_sweep import pitch_of
+from evidence.checkout import PYTHONPATH
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.sweep.periodic_pitch import sweep_closed
+from evolvent.gears.sweep.pitch_sweep import initial_state
+from evolvent.run.pitch_run import pitch_of
 
 ELEMENTS, POSITIONS = 1.7, 20
 PARTS = (
-    ("meshing", "sectors.py", "gear_mesh"),
+    ("meshing", "sector_meshes.py", "gear_mesh"),
     ("assembling: stiffness", "body.py", "assemble"),
-    ("assembling: Nitsche's constant term", "traction.py", "constant_term"),
-    ("condensing: order of elimination", "separator.py", "planned"),
+    ("assembling: Nitsche's constant term", "flux_recovery.py", "constant_term"),
+    ("condensing: order of elimination", "elimination_order.py", "planned"),
     ("condensing: leaves, by MUMPS", "mumps.py", "schur_complement"),
-    ("condensing: adding updates up", "dissection.py", "add"),
-    ("condensing: separators, by LAPACK", "dissection.py", "eliminate"),
-    ("the ring of teeth", "chain.py", "__init__"),
-    ("positions: search", "gear_contact.py", "gear_contact"),
-    ("positions: compliance of the contact", "gear_contact.py", "system"),
-    ("positions: what the window leaves out", "gear_overlap.py", "overlap_outside"),
+    ("condensing: adding updates up", "nested_dissection.py", "add"),
+    ("condensing: separators, by LAPACK", "nested_dissection.py", "eliminate"),
+    ("the ring of teeth", "ring_compliance.py", "__init__"),
+    ("positions: search", "pair_contact.py", "gear_contact"),
+    ("positions: compliance of the contact", "pair_contact.py", "system"),
+    ("positions: what the window leaves out", "overlap_check.py", "overlap_outside"),
     ("positions: without friction", "equilibrium.py", "frictionless"),
     ("positions: with friction", "equilibrium.py", "frictional"),
-    ("positions: memory of friction", "gear_memory.py", "recalled"),
+    ("positions: memory of friction", "friction_history.py", "recalled"),
 )
 """What is told apart: a name, and the function whose time with all that it calls it is; none calls another."""
 
@@ -60,7 +60,7 @@ def rows(folder: Path, elements: float = ELEMENTS, positions: int = POSITIONS) -
     """Of a pitch at one friction coefficient. Raises RunFailed."""
     out = folder / "profile.json"
     words = sys.executable, "-m", "evidence.benchmark.profile", str(out), str(elements), str(positions), str(FRICTION)
-    run(Command(words, folder, folder / "profile.log", {"PYTHONPATH": str(ROOT)}, time_limit=3600.0))
+    run(Command(words, folder, folder / "profile.log", {"PYTHONPATH": PYTHONPATH}, time_limit=3600.0))
     yield from (ProfileRow(**row) for row in json.loads(out.read_text()))
 
 
@@ -90,7 +90,7 @@ def _parts(stats: pstats.Stats, dofs: int, positions: int) -> list[ProfileRow]:
 
 
 def main() -> None:
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     out, elements, positions, frictions = sys.argv[1:]
     found = measured(float(elements), int(positions), frictions)
     Path(out).write_text(json.dumps([vars(row) for row in found]))

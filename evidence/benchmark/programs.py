@@ -12,8 +12,8 @@ from pathlib import Path
 
 from evidence.benchmark.runs import TIME_LIMIT, Command, Cost, run
 from evidence.benchmark.task import Answer, Task
+from evidence.checkout import PYTHONPATH, ROOT
 
-ROOT = Path(__file__).parents[2]
 ORDER_1_3D = (("hexahedron", 1), ("tetrahedron", 1))
 
 
@@ -78,7 +78,7 @@ def solve(
     answer = folder / f"answer-{program.name.replace(' ', '-')}.npz"
     interpreter, flag, module, *rest = program.words
     words = (interpreter, flag, module, str(task), str(answer), *rest)
-    environment = {"PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {"PYTHONPATH": PYTHONPATH, "PYTHONDONTWRITEBYTECODE": "1"}
     if cache_folder is not None:
         environment["XDG_CACHE_HOME"] = str(cache_folder)
     cost = run(Command(words, folder, answer.with_suffix(".log"), environment, time_limit=time_limit))

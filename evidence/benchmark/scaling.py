@@ -12,7 +12,7 @@ import numpy as np
 from evidence.benchmark.gear_rows import pitch_cost
 from evidence.benchmark.gears import FRICTION
 from evidence.benchmark.runs import RunFailed
-from meshes.data import Floats
+from evolvent_meshes.arrays import Floats
 
 SEVEN, STRONGEST = "0.07,0.08,0.11,0.12,0.15,0.20,0.30", "0.30"
 

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.schema_output import SkipName
-from solver.skips import skip_named
+from evidence.checkout import ROOT
+from evolvent.scene.schema.output import SkipName
+from evolvent.scene.skips import skip_named
 
-ROOT = Path(__file__).resolve().parents[2]
 SPUR, HELICAL = "demos/he2022.toml", "demos/yang2022.toml"
 QUICK = (
     "mesh.level=quick", "output.pictures=false", "output.animation=false", "output.fields=false",
@@ -113,7 +113,7 @@ def measured(scene: str, settings: Sequence[str], *no_skip: SkipName) -> tuple[C
     """Runs a scene in a process of its own: what it took, and its summary. Raises CalledProcessError."""
     options = [f"--set={setting}" for setting in settings] + [f"--no-skip={name}" for name in no_skip]
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "solver", "run", scene, "--out", folder, "--quiet", *options]
+        command = [sys.executable, "-m", "evolvent", "run", scene, "--out", folder, "--quiet", *options]
         before = _processor_seconds()
         subprocess.run(command, cwd=ROOT, env=_environment(), check=True, capture_output=True, text=True)
         used = _processor_seconds() - before

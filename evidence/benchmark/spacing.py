@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from mpi4py import MPI
 
 from evidence.benchmark.bars import DEMOS, FIGURES, HELICAL, BarRow
-from solver.companion import solved_run
-from solver.figure_rows import friction_rows
-from solver.run_sweep import pitch_of
-from solver.scene import Scene, load_scene, scene_from_text
-from solver.sectors import gear_mesh
-from solver.summary_rows import FrictionRow
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.summary_rows import FrictionRow
+from evolvent.run.coarse_run import solved_run
+from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.scene import Scene, load_scene, scene_from_text
 
 COUNTS = 12, 20, 21, 33, 40
 MANY = 160

@@ -15,20 +15,20 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
-from meshes.sector import sector_mesh
-from solver import compat
-from solver.gear_body import condensed_gear
-from solver.gear_model import GearLoad, GearModel, window_half_width
-from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
-from solver.resolution import sector_resolutions
-from solver.scene import Scene, load_scene
-from solver.skips import contact_teeth
+from evidence.checkout import DEMOS
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.gears.condensed_gear import condensed_gear
+from evolvent.gears.gear_model import GearLoad, GearModel, window_half_width
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.skips import contact_teeth
+from evolvent_meshes.sector.sector import sector_mesh
 
-SCENE = Path(__file__).resolve().parents[2] / "demos/he2022.toml"
+SCENE = DEMOS / "he2022.toml"
 POSITIONS = 20
 
 
@@ -123,7 +123,7 @@ def solved(mesh: SpurMesh) -> Solved:
 
 
 def _solve(mesh: SpurMesh) -> Solved:
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     begin = time.process_time()
     model = _model(mesh)
     ready = time.process_time()

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshes.data import FACET_SHAPE, Floats, Ints, MeshData
-from meshes.lattice import lattice_cells, tensor_points, weld
-from meshes.reference import node_positions
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import FACET_SHAPE, MeshData
+from evolvent_meshes.mesh.reference_cells import node_positions
+from evolvent_meshes.mesh.structured_grid import lattice_cells, tensor_points, weld
 
 SAME_POINT = 1e-8
 """Points closer than this are one node [mm]; rounding leaves 1e-13, the smallest cells are 1e-3."""

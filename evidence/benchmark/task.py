@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.data import Floats, Ints, MeshData
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 @dataclass(frozen=True)

@@ -9,22 +9,21 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import Floats
-from solver import compat
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
-from solver.scene import Scene, load_scene
-from wear.blocks import BlockSettings
-from wear.gears import GearWear
-from wear.law import Archard
-from wear.pair_study import stages
+from evidence.checkout import DEMOS
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.scene.scene import Scene, load_scene
+from evolvent.wear.archard import Archard
+from evolvent.wear.block_stepping import BlockSettings
+from evolvent.wear.gears.gear_study import stages
+from evolvent.wear.gears.gear_wear import GearWear
+from evolvent_meshes.arrays import Floats
 
-DEMOS = Path(__file__).resolve().parents[2] / "demos"
 BLOCKS, ANY = 20, 0.99  # an error that no block has
 SWEEPS = 3  # of which the median counts: one of a second may be off by a third
 K = 1.3832e-10  # mm²/N: He et al. 2022, Table 3
@@ -94,7 +93,7 @@ class WearPrecisionRow:
 
 def cost_rows(cases: Sequence[WearCase] = CASES) -> Iterator[WearCostRow]:
     """One a case."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     for case in cases:
         begin = time.process_time()
         model = prepare_model(case.load(), MPI.COMM_SELF).model
@@ -107,7 +106,7 @@ def cost_rows(cases: Sequence[WearCase] = CASES) -> Iterator[WearCostRow]:
 
 def precision_rows(case: WearCase = PRECISION, tolerances: Sequence[float] = TOLERANCES) -> Iterator[WearPrecisionRow]:
     """Implicit and explicit blocks at each tolerance."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     gears = _gears(prepare_model(case.load(), MPI.COMM_SELF).model, case)
     known = _study(gears, case, 0.1 * min(tolerances), True)[0]
     for implicit in (True, False):

@@ -11,21 +11,21 @@ import typer
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.rungs import RUNGS
 from evidence.report import header, picture, table, write
-from solver import compat
-from solver.plots_style import sheet, styled
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.results.drawing.style import sheet, styled
 
 PICTURES = "pictures/verification"
 INTRODUCTION = """
 Problems with a known answer, from the simplest to the hardest. Every figure states what it is held against: an
 **analytical** answer, an **external** one (published by others), an **overkill** solution of the same problem on a much
 finer mesh, or **regression** only (nothing but an earlier result). The tolerance is what the method should reach. A bar
-that is **missed** says why, and its test fails on the day it is met. `tests/test_ladder.py` asserts all of it.
+that is **missed** says why, and its test fails on the day it is met. `test_ladder.py` asserts all of it.
 """
 
 
 def main(out: Path = Path("docs")) -> None:
     """Writes OUT/verification.md. Exits with 1 where a claim is not as expected."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     rungs = [measure() for measure in RUNGS]
     page = write_page(rungs, out)
     claims = [claim for rung in rungs for claim in rung.claims]

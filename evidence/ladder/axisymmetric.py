@@ -13,10 +13,10 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from meshes.data import Floats, Ints
-from meshes.lattice import graded_ends, lattice_cells, subdivided
-from solver.lagrange import gmsh_permutation, quadrature, tabulate
-from solver.material import Material
+from evolvent.fem.lagrange import gmsh_permutation, quadrature, tabulate
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.structured_grid import graded_ends, lattice_cells, subdivided
 
 ROUNDS = 50
 

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from evidence.claims import Claim, Reference
-from meshes.data import Floats, MeshData
-from solver.hertz import SubsurfaceMaximum
-from solver.lagrange import gmsh_permutation, node_points, tabulate
-from solver.material import Material
+from evolvent.contact.hertz import SubsurfaceMaximum
+from evolvent.fem.lagrange import gmsh_permutation, node_points, tabulate
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 GAUSS = (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3))
 """Places on a cell's edge where the stress of second-order cells is most accurate."""

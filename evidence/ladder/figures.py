@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evidence.ladder.below import AxisStress, mises, shear
-from meshes.data import Floats
-from solver.plots_style import FAINT, INK, TEETH, WHEEL, dot_size
+from evolvent.results.drawing.style import FAINT, INK, TEETH, WHEEL, dot_size
+from evolvent_meshes.arrays import Floats
 
 MEASURES = (("von Mises", mises, TEETH[1]), ("largest shear", shear, TEETH[2]))
 FARTHEST, DEEPEST = 1.4, 2.0  # half-widths

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from evidence.ladder.below import mises, shear
-from meshes.data import Floats
-from solver.hertz import SubsurfaceMaximum
-from solver.material import Material
+from evolvent.contact.hertz import SubsurfaceMaximum
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
 
 POINTS = 64
 """In each direction of a quarter of the ellipse: 1e-9 from a depth of b/10 on."""

@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.axisymmetric import pressed_on_plane, sphere_section
-from meshes.data import Floats
-from meshes.rings import ring_sphere
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import STEEL, joint_modulus
-from solver.plots_style import FAINT, INK, PINION, WHEEL
-from solver.prepared import prepare
-from solver.problem import Contact, ContactResult, Placement, Position, Problem, Step, solve
+from evolvent.contact.problem.condensed_body import prepare
+from evolvent.contact.solution.solver import Contact, ContactResult, Placement, Position, Problem, Step, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL, joint_modulus
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.rings import ring_sphere
 
 RADIUS, SIDE = 10.0, 6.0  # mm
 SHARES = (0.05, 0.1, 0.2)  # a/R

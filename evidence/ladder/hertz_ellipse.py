@@ -5,9 +5,9 @@ from __future__ import annotations
 from evidence.claims import Rung
 from evidence.ladder.half_space import Ellipse
 from evidence.ladder.quarter import Quarter
-from meshes.ellipse import ellipse_block, ellipse_punch
-from solver import hertz
-from solver.material import STEEL
+from evolvent.contact import hertz
+from evolvent.fem.material import STEEL
+from evolvent_meshes.shapes.ellipse import ellipse_block, ellipse_punch
 
 RADII, LOAD = (500.0, 125.0), 2600.0  # mm, N
 CELLS, SIDE, GROWTH = 4, 60.0, 1.7
@@ -20,7 +20,8 @@ A steel punch z = A x² + B y² with radii of curvature of {RADII[0]:g} and {RAD
 hexahedra in rings that are stretched with the ellipse, b/{CELLS} on the punch and b/{1.25 * CELLS:g} on the block, of
 which one ends at the ellipse. p0, a and b are those of the ellipsoid that fits the pressure over the inner 70 %. The
 approach is taken between points 5 b below the surfaces, as for the ball. The stresses on the axis are those of
-Boussinesq's point force integrated over Hertz' pressure (tests/test_half_space.py: equal to Thomas & Hoersch 1930).
+Boussinesq's point force integrated over Hertz' pressure (test_half_space.py: equal to Thomas &
+Hoersch 1930).
 """
 
 

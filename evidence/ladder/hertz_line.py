@@ -10,12 +10,12 @@ from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.below import AxisStress, SubsurfaceHertz, axis_compression, axis_stress, subsurface_claims
 from evidence.ladder.figures import HertzFigure
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import MeshData
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import STEEL
-from solver.problem import Contact, Problem, Solution, solve
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 
 HALF_WIDTH, RADIUS, BLOCK = 0.5, 500.0, 4000.0  # mm
 CELLS = 8  # per half-width, on the roller

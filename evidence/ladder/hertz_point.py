@@ -5,9 +5,9 @@ from __future__ import annotations
 from evidence.claims import Rung
 from evidence.ladder.half_space import Ellipse
 from evidence.ladder.quarter import Quarter
-from meshes.rings import ring_block, ring_sphere
-from solver import hertz
-from solver.material import STEEL
+from evolvent.contact import hertz
+from evolvent.fem.material import STEEL
+from evolvent_meshes.shapes.rings import ring_block, ring_sphere
 
 RADIUS, CONTACT = 150.0, 1.0  # mm
 CELLS, SIDE, GROWTH = 4, 60.0, 1.7

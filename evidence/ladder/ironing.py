@@ -11,14 +11,14 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import Floats
-from meshes.variants import with_part
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import STEEL, Material
-from solver.plots_style import INK, PINION, TEETH, WHEEL, note
-from solver.problem import Contact, Placement, Problem, Solution, Step, sweep
-from solver.stress import cell_stress, von_mises
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL, Material
+from evolvent.fem.stress import cell_stress, von_mises
+from evolvent.results.drawing.style import INK, PINION, TEETH, WHEEL, note
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
+from evolvent_meshes.shapes.variants import with_part
 
 ALUMINIUM = Material(70e3, 0.3)
 RADIUS, DEPTH = 10.0, 0.02  # of the die, prescribed approach [mm]

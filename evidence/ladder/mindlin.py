@@ -9,14 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
-from meshes.data import Floats, MeshData
-from meshes.rings import ring_block, ring_sphere
-from meshes.variants import doubled
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.plots_style import FAINT, INK, PINION, TEETH, note
-from solver.problem import Contact, ContactResult, Problem, Solution, Step, sweep
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, note
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.rings import ring_block, ring_sphere
+from evolvent_meshes.shapes.variants import doubled
 
 RADIUS, CONTACT, SIDE = 8.0, 0.08, 4.0  # of the ball, a, of the bodies [mm]
 FRICTION, CELLS = 0.3, 4  # μ, cells on a

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import BLOCK, HALF_WIDTH, LOAD, PEAK, RADIUS, Profile, cylinder_on_block
 from evidence.claims import Claim, Reference, Rung
-from solver import hertz
-from solver.plots_style import FAINT, INK, PINION, WHEEL
-from solver.problem import solve
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import solve
+from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
 
 FRICTION = 0.1
 PUBLISHED = {0.0: -1.308019, FRICTION: -1.302636}  # mm, second-order cells
@@ -22,7 +22,8 @@ CELLS, OVERKILL = 8, 32  # cells on the half-width
 SOURCE = "NAFEMS R0094 (2006), benchmark 1, second order"
 SMALL_STRAIN = (
     "The published results allow for large displacements, in which the block, under strains of 5 %, is softer and "
-    "sinks 2 % deeper: tests/test_large_displacement.py finds the published value with them and this one without. "
+    "sinks 2 % deeper: tests/evidence/verification/test_large_displacement.py finds the published value with "
+    "them and this one without. "
     "Evolvent's strain is small."
 )
 PROBLEM = f"""

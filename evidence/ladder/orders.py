@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import rectangle
-from meshes.data import Floats
-from solver.body import Body, Fixed, Traction
-from solver.lagrange import tabulate
-from solver.material import STEEL
-from solver.plots_style import PINION, WHEEL
-from solver.problem import Contact, ContactResult, Problem, Solution, Step, sweep
+from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Traction
+from evolvent.fem.lagrange import tabulate
+from evolvent.fem.material import STEEL
+from evolvent.results.drawing.style import PINION, WHEEL
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.blocks import rectangle
 
 SIDE, RADIUS = 2.0, 100.0  # mm
 LOADS = (0.88, 0.94, 1.0, 1.06, 1.12)

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile, Slip, stick_half_width
 from evidence.claims import Claim, Reference, Rung
-from solver import hertz
-from solver.plots_style import FAINT, INK, PINION, TEETH
+from evolvent.contact import hertz
+from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH
 
 SHARES = (0.25, 0.5, 0.75)  # Q/μP
 CELLS = (4, 8, 16)  # on the half-width of the contact

@@ -11,15 +11,21 @@ from evidence.claims import Claim, Reference
 from evidence.ladder.below import AxisStress, SubsurfaceHertz, axis_compression, axis_stress, subsurface_claims
 from evidence.ladder.figures import HertzFigure
 from evidence.ladder.half_space import Ellipse
-from meshes.data import Floats, MeshData
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.problem import Contact, Problem, Solution, solve
+from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 @dataclass(frozen=True)
 class Quarter:
-    """punch, block: meshes of the quarter x, y > 0 with the facet groups of `meshes.ellipse` or `meshes.rings`. exact:
-    the contact that Hertz expects. depth: [mm] at which the approach is taken. name: of the punch."""
+    """A quarter of two bodies in contact.
+
+    punch, block: meshes of the quarter x, y > 0, with the facet groups of `shapes.ellipse` or `shapes.rings`.
+    exact: the contact that Hertz expects.
+    depth: at which the approach is taken [mm].
+    name: of the punch.
+    """
 
     punch: MeshData
     block: MeshData

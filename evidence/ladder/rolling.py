@@ -11,15 +11,15 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import Floats
-from meshes.variants import with_part
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.kinematics import turn
-from solver.material import STEEL
-from solver.plots_style import INK, PINION, TEETH, WHEEL, friction_colours
-from solver.problem import Contact, Placement, Problem, Solution, Step, sweep
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL
+from evolvent.gears.kinematics import turn
+from evolvent.results.drawing.style import INK, PINION, TEETH, WHEEL, friction_colours
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
+from evolvent_meshes.shapes.variants import with_part
 
 RADIUS, HALF_WIDTH, FRICTION, SHARE = 50.0, 0.05, 0.3, 0.5  # R, b [mm], μ, Q/μP
 CELLS = 8  # on the half-width

@@ -9,12 +9,13 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import graded_rectangle
-from meshes.data import Floats, MeshData
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import STEEL, Material, joint_modulus
-from solver.plots_style import FAINT, WHEEL, dot_size
-from solver.problem import Contact, Placement, Problem, Step, solve
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Step, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import STEEL, Material, joint_modulus
+from evolvent.results.drawing.style import FAINT, WHEEL, dot_size
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import graded_rectangle
 
 FLAT, ROUNDING, HALF_WIDTH = 1.0, 50.0, 1.25  # mm
 ALUMINIUM = Material(70e3, 0.3)

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
+from evidence.checkout import DEMOS
 from evidence.claims import Claim, Reference, Rung
-from meshes.data import Floats
-from meshes.parameters import GearPair
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_position import shared_position
-from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
-from solver.plots_style import FAINT, INK, PINION, TEETH, WHEEL
-from solver.scene import Scene, load_scene
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.sweep.position import shared_position
+from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
+from evolvent.scene.scene import Scene, load_scene
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
 
-DEMOS = Path(__file__).resolve().parents[2] / "demos"
 POSITIONS = 40  # a pitch
 LIGHT = 1e-3  # of the torque: nearly rigid flanks
 RESOLUTION = np.radians(0.002)  # of the ends of the engagement

@@ -12,17 +12,18 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile, Slip
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import Floats, MeshData
-from meshes.variants import with_part
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.lagrange import tabulate
-from solver.material import STEEL
-from solver.plots_style import FAINT, INK, PINION, TEETH, WHEEL
-from solver.problem import Contact, Placement, Problem, Solution, Step, sweep
-from solver.stress import cell_stress
-from solver.surface import surface_of
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.lagrange import tabulate
+from evolvent.fem.material import STEEL
+from evolvent.fem.stress import cell_stress
+from evolvent.fem.surface import surface_of
+from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
+from evolvent_meshes.shapes.variants import with_part
 
 CASE = Slip(half_width=0.1)  # R = 50 mm, μ = 0.3; small, so that block and base are a half-space to 0.2 %
 CELLS = (8, 16, 32, 64)  # on the half-width, of the block

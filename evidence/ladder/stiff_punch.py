@@ -8,12 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
-from meshes.blocks import graded_rectangle, rectangle
-from meshes.data import Floats, MeshData
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.plots_style import FAINT, TEETH, WHEEL
-from solver.problem import Contact, Problem, Solution, solve
+from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent.results.drawing.style import FAINT, TEETH, WHEEL
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import graded_rectangle, rectangle
 
 HALF_WIDTH, BLOCK, SUNK = 1.0, 100.0, 1e-3  # mm
 CELLS = 16  # per half-width, on the block

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
+from evidence.checkout import DEMOS
 from evidence.claims import Claim, Reference, Rung
-from meshes.data import Floats
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_position import PositionResult
-from solver.gear_sweep import initial_state, sweep_pitch, uniform_pitch
-from solver.plots_style import PINION, WHEEL, note
-from solver.scene import Scene, load_scene
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.drawing.style import PINION, WHEEL, note
+from evolvent.scene.scene import Scene, load_scene
+from evolvent_meshes.arrays import Floats
 
-DEMOS = Path(__file__).resolve().parents[2] / "demos"
 QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false", "contact.friction=0.0")
 WIDTH, RELIEF = 8.0, 15.0  # mm, µm: of the helical pair
 LIGHT = 0.1  # of the helical pair's torque

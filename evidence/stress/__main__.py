@@ -10,10 +10,10 @@ import argparse
 import logging
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from evidence import report
+from evidence.checkout import DOCS
 from evidence.claims import Claim
 from evidence.stress.campaign import SCENES, WEAR, Trial, campaign, solve_seeds, summary, write_outcomes
 from evidence.stress.faults import fault_claims
@@ -21,9 +21,8 @@ from evidence.stress.independence import cylinder_claims, gear_claims, iteration
 from evidence.stress.matrix import SHEETS
 from evidence.stress.sheets import draw, write_csv
 from evidence.stress.wear_summary import wear_summary, write_wear
-from solver import compat
+from evolvent.fem.backend import dolfinx_compat
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 COUNTS = {SCENES.command: 500, WEAR.command: 100}
 TITLE, COMMAND = "Stability under stress", "make stress"
 INTRODUCTION = """What happens at the edge of what can be asked: every setting over the widest range that makes
@@ -106,7 +105,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("part", choices=["all", *PARTS, *TRIALS], nargs="?", default="all")
     parser.add_argument("numbers", type=int, nargs="*", help="of seeds and wear-seeds: the first, and how many")
     given = parser.parse_args(arguments)
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     logging.getLogger("evolvent").setLevel(logging.ERROR)
     if given.part in TRIALS:
         solve_seeds(TRIALS[given.part], *given.numbers)

@@ -12,10 +12,10 @@ import numpy as np
 
 from evidence.benchmark.cases import ball_and_block
 from evidence.stress.sheets import Cell, Sheet, sheet_of
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.problem import Contact, Nitsche, Placement, Problem, Step, solve
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, Nitsche, Placement, Problem, Step, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
 
 RADIUS, LOAD, E = 8.0, 2000.0, 210e3  # mm, N, MPa
 KINDS = tuple((shape, order) for shape in ("hexahedron", "tetrahedron") for order in (2, 1))

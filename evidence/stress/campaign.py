@@ -24,8 +24,8 @@ from evidence.stress.outcomes import Outcome, Verdict, outcome_of
 from evidence.stress.random_scenes import random_scene
 from evidence.stress.random_wear import random_study
 from evidence.stress.wear_outcomes import WearOutcome, WearVerdict, wear_outcome_of
-from solver import compat
-from solver.skips import is_plane
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.scene.skips import is_plane
 
 PATIENCE = 900.0
 """Seconds after which a scene has hung. Nearly all take one to twenty; 206, a wide pair of plastic whose friction
@@ -49,7 +49,7 @@ WEAR = Trial("wear-seeds", lambda seed: wear_outcome_of(random_study(seed), seed
 
 def solve_seeds(trial: Trial, first: int, count: int) -> None:
     """In the process that may die: one JSON line a seed on standard output."""
-    compat.silence_logs()
+    dolfinx_compat.silence_logs()
     for seed in range(first, first + count):
         found = asdict(trial.solve(seed))
         print(json.dumps({**found, "verdict": found["verdict"].name}), flush=True)

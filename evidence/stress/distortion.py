@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshes.data import Floats, MeshData
-from meshes.quality import scaled_jacobians
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.quality import scaled_jacobians
 
 BISECTIONS = 30
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from evidence.checkout import PYTHONPATH, ROOT
 from evidence.claims import Claim, Reference
-from solver.archive import read_arrays
+from evolvent.results.archive.archive import read_arrays
 
-ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = (
     "contact.friction=[0.1, 0.3]", "sweep.positions=8", "output.pictures=false",
     "output.animation=false", "output.fields=false",
@@ -47,12 +47,12 @@ def arguments(out: Path, *more: str) -> tuple[str, ...]:
 
 def environment() -> dict[str, str]:
     """One thread, and this checkout's solver."""
-    return {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+    return {**os.environ, "PYTHONPATH": PYTHONPATH, "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
 
 
 def started(out: Path, *more: str, user: int | None = None) -> subprocess.Popen[str]:
     """`evolvent run` in the background. user: the number of another user, for root."""
-    command = [sys.executable, "-m", "solver", "run", *arguments(out, *more)]
+    command = [sys.executable, "-m", "evolvent", "run", *arguments(out, *more)]
     return subprocess.Popen(
         command, cwd=ROOT, env=environment(), user=user, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from mpi4py import MPI
 
+from evidence.checkout import DEMOS
 from evidence.stress.sheets import Cell, Sheet, sheet_of
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_results import balance_error
-from solver.gear_sweep import Pitch, initial_state, sweep_pitch
-from solver.scene import Scene, load_scene
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
+from evolvent.results.contact_slices import balance_error
+from evolvent.scene.scene import Scene, load_scene
 
-SPUR = Path(__file__).resolve().parents[2] / "demos/he2022.toml"
+SPUR = DEMOS / "he2022.toml"
 STEPS, LAST, COUNT = (0.01, 0.05, 0.2, 1.0, 5.0), 3.0, 4  # degrees, degrees, positions
 FRICTIONS = (0.05, 0.1, 0.3, 0.6, 1.0)
 

@@ -17,13 +17,13 @@ from evidence.stress.gear_steps import spur_scene
 from evidence.stress.matrix import Cylinder
 from evidence.stress.sheets import Cell
 from evidence.stress.theta_pair import ThetaPair
-from solver.condense import NotPositiveDefinite
-from solver.gear_body import condensed_gear
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_results import slices
-from solver.gear_sweep import Pitch, initial_state, sweep_pitch
-from solver.statement import Nitsche
-from solver.traction import SAFETY
+from evolvent.contact.nitsche.flux_recovery import SAFETY
+from evolvent.contact.problem.definition import Nitsche
+from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
+from evolvent.gears.condensed_gear import condensed_gear
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
+from evolvent.results.contact_slices import slices
 
 SAFETIES = (1.1, 1.25, 2.0, 5.0, 20.0, 50.0)
 THETAS = (1.0, 0.0, -1.0)

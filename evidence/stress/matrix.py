@@ -18,12 +18,12 @@ from evidence.stress.ball import ball
 from evidence.stress.distortion import distorted
 from evidence.stress.gear_steps import spur_pair_at_steps
 from evidence.stress.sheets import Cell, Sheet, sheet_of
-from meshes.blocks import cylinder_2d, graded_rectangle
-from meshes.data import MeshData
-from solver import hertz
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.material import Material
-from solver.problem import Contact, Nitsche, Placement, Problem, Step, solve
+from evolvent.contact import hertz
+from evolvent.contact.solution.solver import Contact, Nitsche, Placement, Problem, Step, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 
 RADIUS, HALF_WIDTH, BLOCK = 50.0, 0.5, 100.0  # mm
 PEAK_ERROR = "error of p0 against Hertz"

@@ -10,16 +10,16 @@ from enum import Enum
 import numpy as np
 from mpi4py import MPI
 
-from meshes.data import MeshError
-from solver.closed_pitch import one_pitch, sweep_closed
-from solver.condense import NotPositiveDefinite
-from solver.gear_model import GearModel, prepare_model
-from solver.gear_results import pitch_imbalance
-from solver.gear_sweep import Pitch, SweptPosition, initial_state
-from solver.newton import NotConverged
-from solver.run_output import BalanceError, PitchImbalance, certify, certify_pitch
-from solver.scene import Scene
-from solver.search import SearchError
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
+from evolvent.results.contact_slices import pitch_imbalance
+from evolvent.run.output import BalanceError, PitchImbalance, certify, certify_pitch
+from evolvent.scene.scene import Scene
+from evolvent_meshes.mesh.mesh_data import MeshError
 
 POSITIONS = 6
 REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)

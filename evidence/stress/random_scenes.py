@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from solver.estimates import hertz_estimate
-from solver.scene import Scene, SceneError, scene_from_values
-from solver.size import sector_sizes
-from solver.skips import is_plane
+from evolvent.scene.checking.problem_size import sector_sizes
+from evolvent.scene.scene import Scene, SceneError, scene_from_values
+from evolvent.scene.skips import is_plane
 
 Table = dict[str, Any]
 
@@ -144,7 +143,7 @@ def _frictions(draw: Draw) -> list[float]:
 def _loaded(values: Table, draw: Draw) -> Scene:
     """With a torque at which the Hertz half-width is 0.2 to 10 % of the radius of curvature. Raises SceneError."""
     wanted = draw.decades(2e-3, 0.1)
-    estimate = hertz_estimate(scene_from_values(values))
+    estimate = scene_from_values(values).hertz_estimate()
     found = float(estimate.half_width(0.0)) / float(estimate.pair.relative_curvature_radius(0.0))
     torque = values["load"]["torque_Nm"] * (wanted / found) ** 2
     return scene_from_values({**values, "load": {**values["load"], "torque_Nm": float(f"{torque:.4g}")}})

@@ -12,20 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from evidence.stress.random_scenes import Draw, Table, random_scene
-from meshes.blocks import box, cylinder_2d, graded_rectangle, rectangle
-from meshes.data import MeshData
-from meshes.variants import with_part
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.estimates import hertz_estimate
-from solver.flank_chart import DEEPEST
-from solver.hertz import contact_modulus
-from solver.material import Material
-from solver.problem import Contact, Placement, Problem, Step
-from solver.scene import Scene, scene_from_values
-from wear.blocks import BlockSettings
-from wear.cycle import Cycle, Travel
-from wear.law import Archard
-from wear.study import Refresh
+from evolvent.contact.hertz import contact_modulus
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Step
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent.scene.flank_deviations import DEEPEST
+from evolvent.scene.scene import Scene, scene_from_values
+from evolvent.wear.archard import Archard
+from evolvent.wear.block_stepping import BlockSettings
+from evolvent.wear.body_study import Refresh
+from evolvent.wear.cycle import Cycle, Travel
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
+from evolvent_meshes.shapes.variants import with_part
 
 GEARS = 0.4  # of the seeds
 PLANE = 0.9  # of the gear pairs: others take longer
@@ -83,7 +82,7 @@ def _gears(draw: Draw, seed: int) -> Scene:
     if not plane:
         values["mesh"] |= {"order": 1, "elements_per_contact_width": 0.5}
     pinion, wheel = _coefficients(draw, SMALLEST, LARGEST)
-    estimate = hertz_estimate(scene).wear_per_cycle(pinion, wheel)
+    estimate = scene.hertz_estimate().wear_per_cycle(pinion, wheel)
     depth = draw.decades(1e-3 * DEEPEST, 0.99 * DEEPEST) * scene.pair.normal_module_mm
     cycles = depth / max(estimate)
     values["wear"] = {

@@ -12,10 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
-from meshes.data import Floats, MeshError
-from solver.condense import NotPositiveDefinite
-from solver.newton import NotConverged
-from solver.search import SearchError
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshError
 
 REFUSALS = (NotConverged, SearchError, MeshError, NotPositiveDefinite)
 LEAST_ERROR = 1e-16

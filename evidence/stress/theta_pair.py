@@ -13,16 +13,17 @@ from functools import cached_property
 import numpy as np
 
 from evidence.stress.gear_steps import spur_scene
-from meshes.data import Floats, MeshData
-from solver.body import Body, Fixed, Freedom, Rigid
-from solver.gear_body import matching_cuts
-from solver.gear_results import fitted_peak
-from solver.kinematics import Stand
-from solver.problem import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
-from solver.scene import Scene
-from solver.sectors import gear_mesh
-from solver.tooth_contact import GAP
-from solver.whole_gear import whole_mesh
+from evolvent.contact.solution.solver import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.gears.condensed_gear import matching_cuts
+from evolvent.gears.contact.tooth_contact import GAP
+from evolvent.gears.full_gear import whole_mesh
+from evolvent.gears.kinematics import Stand
+from evolvent.results.contact_slices import fitted_peak
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.scene import Scene
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 TEETH = (-1, 0, 1)
 """Tooth pairs that may touch within a pitch about the pitch point."""

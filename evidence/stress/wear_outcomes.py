@@ -18,22 +18,23 @@ import numpy as np
 from mpi4py import MPI
 
 from evidence.stress.random_wear import BodyStudy
-from meshes.data import Floats, MeshError
-from meshes.quality import scaled_jacobians
-from solver.condense import NotPositiveDefinite
-from solver.gear_model import prepare_model
-from solver.gear_sweep import uniform_pitch
-from solver.newton import NotConverged
-from solver.run_output import BalanceError
-from solver.run_wear import certify_positions, law_of, settings_of
-from solver.scene import Scene
-from solver.search import SearchError
-from wear.blocks import WearState, WearStopped
-from wear.gears import GearWear, PitchState
-from wear.law import VolumeLost
-from wear.motion import MeshInverted, mesh_volume
-from wear.pair_study import Stage, stages
-from wear.study import CycleState, WearStudy
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.run.output import BalanceError
+from evolvent.run.wear_run import certify_positions, law_of, settings_of
+from evolvent.scene.scene import Scene
+from evolvent.wear.archard import VolumeLost
+from evolvent.wear.block_stepping import WearState, WearStopped
+from evolvent.wear.body_study import CycleState, WearStudy
+from evolvent.wear.gears.gear_study import Stage, stages
+from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.mesh_motion import MeshInverted, mesh_volume
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshError
+from evolvent_meshes.mesh.quality import scaled_jacobians
 
 BLOCKS = 25
 STOPS = (WearStopped, MeshError, VolumeLost, NotConverged, SearchError, NotPositiveDefinite, BalanceError)

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task, Turn
-from meshes.data import Floats, Ints, MeshData
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 ELEMENT = {
     ("quadrilateral", 1): "CPE4", ("quadrilateral", 2): "CPE8", ("triangle", 1): "CPE3", ("triangle", 2): "CPE6",

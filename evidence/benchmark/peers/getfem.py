@@ -16,8 +16,9 @@ import numpy as np
 
 from evidence.benchmark.peers.surface import nodal_normals
 from evidence.benchmark.task import Answer, Push, Task, Turn
-from meshes.data import Floats, Ints, MeshData
-from meshes.reference import node_positions
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.reference_cells import node_positions
 
 DRIVEN, CONTACT, HELD = 1, 2, 10  # numbers of regions; supports count on from HELD
 TRANSFORMATION = {

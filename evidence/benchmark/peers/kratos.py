@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task
-from meshes.data import MeshData
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 ELEMENT = {"triangle": "2D3N", "quadrilateral": "2D4N", "tetrahedron": "3D4N", "hexahedron": "3D8N"}
 SLAVE = 0  # with the multiplier on the smaller cells Newton diverges on the sphere

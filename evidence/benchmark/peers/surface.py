@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshes.data import Floats, Ints, MeshData
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 def nodal_normals(mesh: MeshData, group: str) -> tuple[Ints, Floats]:

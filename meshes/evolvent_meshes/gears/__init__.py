@@ -1,0 +1,1 @@
+"""Gear and pair data, the transverse profile, the exact flank."""

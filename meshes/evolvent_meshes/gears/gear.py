@@ -1,0 +1,59 @@
+"""One gear, frozen and validated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.gears.gear_limits import check_gear
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearParameters(GearGeometry):
+    """One external involute gear that can be cut: keys and derived quantities are GearGeometry's.
+
+    Raises GeometryError if no such gear can be cut.
+    """
+
+    def __post_init__(self) -> None:
+        check_gear(self)
+
+    @classmethod
+    def from_rack(
+        cls,
+        *,
+        z: int,
+        normal_module: float,
+        normal_pressure_angle_deg: float,
+        addendum_coefficient: float = 1.0,
+        dedendum_coefficient: float = 1.25,
+        rack_tip_radius_coefficient: float = 0.25,
+        tip_shortening_coefficient: float = 0.0,
+        face_width: float,
+        bore_diameter: float,
+        helix_angle_deg: float = 0.0,
+        profile_shift: float = 0.0,
+        hand: int = 1,
+        modifications: Modifications | None = None,
+    ) -> GearParameters:
+        """A gear from its rack's coefficients h_a*, h_f*, ρ_f* and the tip shortening Δy (multiples of m_n).
+
+        d_a = d + 2 m_n (h_a* + x − Δy), d_f = d − 2 m_n (h_f* − x) [4.5].
+        """
+        d = z * normal_module / math.cos(math.radians(helix_angle_deg))
+        addendum = addendum_coefficient + profile_shift - tip_shortening_coefficient
+        return cls(
+            z=z,
+            normal_module=normal_module,
+            normal_pressure_angle_deg=normal_pressure_angle_deg,
+            helix_angle_deg=helix_angle_deg,
+            profile_shift=profile_shift,
+            face_width=face_width,
+            tip_diameter=d + 2.0 * normal_module * addendum,
+            root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - profile_shift),
+            rack_tip_radius=rack_tip_radius_coefficient * normal_module,
+            hand=hand,
+            bore_diameter=bore_diameter,
+            modifications=modifications or Modifications(),
+        )

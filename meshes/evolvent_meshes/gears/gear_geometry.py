@@ -1,0 +1,178 @@
+"""One gear: the given numbers, and everything that follows from them.
+
+Symbols and clauses are those of ISO 21771:2007 (external cylindrical involute gears, parallel axes); the clause stands
+in brackets behind each quantity. Lengths are mm, angles rad unless a name says otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+
+def involute(angle: float) -> float:
+    """Involute function inv α = tan α − α [4.3.9], angle in rad."""
+    return math.tan(angle) - angle
+
+
+@dataclass(frozen=True)
+class Modifications:
+    """Material taken off the loaded flank, as normal offsets of the exact involute helicoid.
+
+    tip_relief_um: relief at the tip circle. tip_relief_start_diameter: where it starts [mm]; it grows from there with
+        the roll distance, linearly or with its square (`tip_relief_parabolic`).
+    lead_crowning_um: offset at both ends of the face width, a parabola of z that vanishes at mid-face.
+    """
+
+    tip_relief_um: float = 0.0
+    tip_relief_start_diameter: float | None = None
+    tip_relief_parabolic: bool = False
+    lead_crowning_um: float = 0.0
+
+    @property
+    def is_empty(self) -> bool:
+        """True if the flank is the plain involute helicoid."""
+        return self.tip_relief_um == 0.0 and self.lead_crowning_um == 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearGeometry:
+    """Numbers of one external involute gear, not checked: `gear.GearParameters` is a gear that can be cut.
+
+    z: teeth. normal_module, face_width, tip_diameter, root_diameter, bore_diameter: mm. rack_tip_radius: radius of the
+    generating rack's rounded tip in its normal section [mm]. helix_angle_deg ≥ 0 with hand +1 (right) or −1 (left; of
+    no effect for a spur gear). profile_shift: coefficient x.
+    """
+
+    z: int
+    normal_module: float
+    normal_pressure_angle_deg: float
+    helix_angle_deg: float = 0.0
+    profile_shift: float = 0.0
+    face_width: float
+    tip_diameter: float
+    root_diameter: float
+    rack_tip_radius: float
+    hand: int = 1
+    bore_diameter: float
+    modifications: Modifications = field(default_factory=Modifications)
+
+    @property
+    def helix_angle(self) -> float:
+        """β at the reference cylinder, ≥ 0."""
+        return math.radians(self.helix_angle_deg)
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """α_n [4.3.6]."""
+        return math.radians(self.normal_pressure_angle_deg)
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t = m_n / cos β [4.2.7]."""
+        return self.normal_module / math.cos(self.helix_angle)
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """α_t, tan α_t = tan α_n / cos β [4.3.6]."""
+        return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def reference_diameter(self) -> float:
+        """d = z m_t [4.2.4]."""
+        return self.z * self.transverse_module
+
+    @property
+    def base_diameter(self) -> float:
+        """d_b = d cos α_t [4.3.10]."""
+        return self.reference_diameter * math.cos(self.transverse_pressure_angle)
+
+    @cached_property
+    def base_radius(self) -> float:
+        """r_b = d_b / 2."""
+        return self.base_diameter / 2.0
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """β_b ≥ 0, sin β_b = sin β cos α_n [4.3.3]."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
+
+    @property
+    def transverse_base_pitch(self) -> float:
+        """p_bt = π m_t cos α_t [4.4.5]."""
+        return math.pi * self.base_diameter / self.z
+
+    @cached_property
+    def twist(self) -> float:
+        """Turn of the transverse section about +z per mm of z [rad/mm]: hand·tan β / (d/2) = hand·tan β_b / r_b."""
+        return self.hand * math.tan(self.base_helix_angle) / self.base_radius
+
+    @property
+    def addendum_coefficient(self) -> float:
+        """(d_a − d) / 2m_n − x: the rack addendum h_a* less any tip shortening [4.5.3]."""
+        return (self.tip_diameter - self.reference_diameter) / (2.0 * self.normal_module) - self.profile_shift
+
+    @property
+    def dedendum_coefficient(self) -> float:
+        """h_f* = (d − d_f) / 2m_n + x [4.5]."""
+        return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.profile_shift
+
+    @property
+    def tooth_half_angle(self) -> float:
+        """ψ = (π + 4x tan α_n) / 2z: half the tooth's angle on the reference circle [4.7.2]."""
+        return (math.pi + 4.0 * self.profile_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """ψ_b = ψ + inv α_t: half the tooth's angle on the base circle [4.7.2]."""
+        return self.tooth_half_angle + involute(self.transverse_pressure_angle)
+
+    def half_angle(self, diameter: float) -> float:
+        """ψ_y: polar angle of the θ > 0 flank at a diameter ≥ d_b, mid-face section [4.7.2].
+
+        Negative beyond the pointed tooth.
+        """
+        return self.base_half_angle - involute(math.acos(min(1.0, self.base_diameter / diameter)))
+
+    def transverse_thickness(self, diameter: float) -> float:
+        """s_yt = d_y ψ_y, the tooth's arc at a diameter [4.7.1]."""
+        return diameter * self.half_angle(diameter)
+
+    def normal_thickness(self, diameter: float) -> float:
+        """s_yn = s_yt cos β_y, tan β_y = tan β d_y/d [4.7.5, 4.3.3]."""
+        helix = math.atan(math.tan(self.helix_angle) * diameter / self.reference_diameter)
+        return self.transverse_thickness(diameter) * math.cos(helix)
+
+    def roll_length(self, diameter: float) -> float:
+        """ρ_y = √(d_y² − d_b²) / 2: transverse curvature radius, length from the base tangent point [4.3.8]."""
+        return math.sqrt(max(0.0, diameter**2 - self.base_diameter**2)) / 2.0
+
+    @property
+    def rack_form_roll_length(self) -> float:
+        """ρ_Ff where the straight rack flank ends; negative: undercut [7.6].
+
+        The rack's straight flank ends h = (d − d_f)/2 − ρ_f(1 − sin α_n) below the pitch line, which the line of action
+        reaches h / sin α_t before the pitch point.
+        """
+        depth = (self.reference_diameter - self.root_diameter) / 2.0
+        depth -= self.rack_tip_radius * (1.0 - math.sin(self.normal_pressure_angle))
+        angle = self.transverse_pressure_angle
+        return self.reference_diameter / 2.0 * math.sin(angle) - depth / math.sin(angle)
+
+    @property
+    def root_form_diameter(self) -> float:
+        """d_Ff, where fillet and involute meet [7.6]."""
+        return 2.0 * math.hypot(self.base_radius, self.rack_form_roll_length)
+
+    @property
+    def rack_tip_half_land(self) -> float:
+        """Half the flat of the rack's tip in its normal section; 0: the tip is one full round.
+
+        The tip circle (radius ρ_f, its lowest point h = (d − d_f)/2 below the pitch line) is tangent to the rack's
+        straight flank, which stands half a space width from the rack tooth's centre line at the pitch line.
+        """
+        angle, radius = self.normal_pressure_angle, self.rack_tip_radius
+        half_space = self.normal_module * (math.pi / 4.0 - self.profile_shift * math.tan(angle))
+        centre = radius - (self.reference_diameter - self.root_diameter) / 2.0
+        return half_space + centre * math.tan(angle) - radius / math.cos(angle)

@@ -1,0 +1,151 @@
+"""What a gear must satisfy so that its rack can cut it."""
+
+from __future__ import annotations
+
+import math
+
+from evolvent_meshes.gears.errors import require
+from evolvent_meshes.gears.gear_geometry import GearGeometry
+
+SMALLEST_BORE = 0.01
+"""Of the root diameter: a gear held at a point turns under any torque, and its cells there collapse."""
+SMALLEST_RIM = 1.0
+"""In normal modules: a thinner ring between bore and root is an error of input, not a gear body."""
+
+
+def check_gear(gear: GearGeometry) -> None:
+    """Raise GeometryError if the gear can't be cut by its rack."""
+    check_numbers(gear)
+    check_diameters(gear)
+    check_rack(gear)
+    check_modifications(gear)
+
+
+def check_numbers(gear: GearGeometry) -> None:
+    """Finite numbers in their ranges; what follows may then divide and take roots."""
+    for key in ("normal_module", "face_width", "tip_diameter", "root_diameter", "bore_diameter"):
+        value = getattr(gear, key)
+        require(math.isfinite(value) and value > 0.0, key, value, "a finite length above 0 mm", "Give it in mm.")
+    require(isinstance(gear.z, int) and gear.z >= 5, "z", gear.z, "a whole number from 5 on", "Count the teeth.")
+    require(gear.hand in (-1, 1), "hand", gear.hand, "+1 (right) or -1 (left)", "Give a spur gear either.")
+    angle, helix = gear.normal_pressure_angle_deg, gear.helix_angle_deg
+    remedy = "Angles are in degrees; the hand of the helix is a key of its own."
+    require(5.0 <= angle <= 45.0, "normal_pressure_angle_deg", angle, "5 to 45 degrees", remedy)
+    require(0.0 <= helix <= 60.0, "helix_angle_deg", helix, "0 to 60 degrees", remedy)
+    shift, radius = gear.profile_shift, gear.rack_tip_radius
+    require(-3.0 <= shift <= 3.0, "profile_shift", shift, "-3 to 3", "Give the coefficient x, not x times the module.")
+    require(0.0 <= radius < math.inf, "rack_tip_radius", radius, "a finite radius from 0 mm on", "Give it in mm.")
+
+
+def check_diameters(gear: GearGeometry) -> None:
+    """bore < root < tip, a rim that carries the teeth, a tooth that isn't pointed."""
+    tip, root, bore = gear.tip_diameter, gear.root_diameter, gear.bore_diameter
+    require(root < tip, "tip_diameter", tip, f"above root_diameter = {root:.6g} mm", "Exchange or correct the two.")
+    require(
+        tip > gear.base_diameter,
+        "tip_diameter",
+        tip,
+        f"above the base circle, {gear.base_diameter:.6g} mm",
+        "Raise it: below the base circle there is no involute.",
+    )
+    largest = root - 2.0 * SMALLEST_RIM * gear.normal_module
+    require(
+        largest > 0.0,
+        "root_diameter",
+        root,
+        f"above {2.0 * SMALLEST_RIM * gear.normal_module:.6g} mm (a rim of one module under the root)",
+        "Raise it: there is no room for a bore.",
+    )
+    require(
+        bore <= largest,
+        "bore_diameter",
+        bore,
+        f"up to {largest:.6g} mm (a rim of one module under the root)",
+        "Make the bore smaller.",
+    )
+    require(
+        bore >= SMALLEST_BORE * root,
+        "bore_diameter",
+        bore,
+        f"from {SMALLEST_BORE * root:.6g} mm on (a hundredth of the root diameter)",
+        "Make the bore larger: there the gear is held.",
+    )
+    require(
+        gear.transverse_thickness(tip) > 0.0,
+        "tip_diameter",
+        tip,
+        f"a tooth that is thicker than 0 at its tip (it is {gear.transverse_thickness(tip):.4g} mm: pointed)",
+        "Lower the tip diameter or the profile shift.",
+    )
+
+
+def check_rack(gear: GearGeometry) -> None:
+    """A rack tooth with a tip, that neither undercuts nor leaves the involute outside the tip circle."""
+    space = gear.rack_tip_half_land
+    slope = (1.0 - math.sin(gear.normal_pressure_angle)) / math.cos(gear.normal_pressure_angle)
+    largest = gear.rack_tip_radius + space / slope
+    require(
+        largest >= 0.0,
+        "root_diameter",
+        gear.root_diameter,
+        "a rack tooth that isn't pointed",
+        "Raise the root diameter or lower the profile shift.",
+    )
+    require(
+        space >= 0.0,
+        "rack_tip_radius",
+        gear.rack_tip_radius,
+        f"up to the full round, {largest:.6g} mm",
+        "Use a smaller tool tip radius.",
+    )
+    depth = (gear.reference_diameter - gear.root_diameter) / 2.0
+    require(
+        gear.rack_tip_radius <= depth,
+        "rack_tip_radius",
+        gear.rack_tip_radius,
+        f"up to the depth of the rack below the reference circle, {depth:.6g} mm",
+        "Use a smaller tool tip radius or root diameter.",
+    )
+    least = -gear.rack_form_roll_length * math.sin(gear.transverse_pressure_angle) / gear.normal_module
+    require(
+        gear.rack_form_roll_length > 0.0,
+        "profile_shift",
+        gear.profile_shift,
+        f"at least {gear.profile_shift + least:.4f} with this rack (the fillet would undercut the involute)",
+        "Raise the profile shift together with the root and tip diameters, take more teeth, a larger pressure "
+        "angle or tool tip radius.",
+    )
+    form = gear.root_form_diameter
+    require(
+        form < gear.tip_diameter,
+        "tip_diameter",
+        gear.tip_diameter,
+        f"above the form circle, {form:.6g} mm",
+        "Raise it: the involute begins above the tip.",
+    )
+
+
+def check_modifications(gear: GearGeometry) -> None:
+    """Reliefs that take material off, and start on the involute."""
+    given = gear.modifications
+    for key in ("tip_relief_um", "lead_crowning_um"):
+        value = getattr(given, key)
+        require(0.0 <= value <= 1000.0, key, value, "0 to 1000 µm", "It is the material taken off, in µm.")
+    taken, thickness = given.tip_relief_um + given.lead_crowning_um, 1e3 * gear.normal_thickness(gear.tip_diameter)
+    require(
+        taken < thickness,
+        "tip_relief_um" if given.tip_relief_um >= given.lead_crowning_um else "lead_crowning_um",
+        taken,
+        f"relief and crowning below the tooth's thickness at its tip, {thickness:.4g} µm, together",
+        "Lower them: at the ends of its tip nothing is left of the tooth.",
+    )
+    start = given.tip_relief_start_diameter
+    if given.tip_relief_um > 0.0:
+        low, high = gear.root_form_diameter, gear.tip_diameter
+        require(
+            start is not None and low <= start < high,
+            "tip_relief_start_diameter",
+            start,
+            f"{low:.6g} to below {high:.6g} mm",
+            "Say where on the involute the relief starts.",
+        )

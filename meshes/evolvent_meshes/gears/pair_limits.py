@@ -1,0 +1,119 @@
+"""What two gears must satisfy so that they can run together."""
+
+from __future__ import annotations
+
+import math
+
+from evolvent_meshes.gears.errors import require
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair_geometry import PairGeometry
+
+ROUNDING = 1e-3
+"""In normal modules: shifts, diameters and centre distances printed to three or four digits may miss by this much."""
+
+
+def check_pair(pair: PairGeometry) -> None:
+    """Raise GeometryError if the two gears can't run together at this centre distance."""
+    check_partners(pair)
+    check_distance(pair)
+    check_roots(pair)
+    check_contact(pair)
+
+
+def check_partners(pair: PairGeometry) -> None:
+    """Same rack, opposite hands."""
+    pinion, wheel = pair.gears
+    for key in ("normal_module", "normal_pressure_angle_deg", "helix_angle_deg"):
+        one, two = getattr(pinion, key), getattr(wheel, key)
+        require(
+            abs(one - two) <= 1e-9 * abs(one),
+            key,
+            two,
+            f"{one:.6g}, as the other gear has",
+            "Gears on parallel axes share module, pressure angle and helix angle.",
+        )
+    require(
+        pinion.helix_angle == 0.0 or pinion.hand == -wheel.hand,
+        "hand",
+        wheel.hand,
+        f"{-pinion.hand:+d}",
+        "The hands of helical gears on parallel axes are opposite: turn one round.",
+    )
+
+
+def check_distance(pair: PairGeometry) -> None:
+    """A line of action exists and the teeth fit into each other's spaces."""
+    distance, module = pair.centre_distance, pair.pinion.normal_module
+    bases = pair.pinion.base_radius + pair.wheel.base_radius
+    require(
+        math.isfinite(distance) and distance > bases,
+        "centre_distance",
+        distance,
+        f"above the base radii's sum, {bases:.6g} mm",
+        "Raise the centre distance.",
+    )
+    require(
+        math.isfinite(pair.misalignment_um),
+        "misalignment_um",
+        pair.misalignment_um,
+        "a finite length in µm",
+        "Give 0 for aligned axes.",
+    )
+    require(
+        pair.circumferential_backlash >= -ROUNDING * module,
+        "centre_distance",
+        distance,
+        f"one with a backlash from 0 mm on (it is {pair.circumferential_backlash:.4g} mm: the flanks jam)",
+        "Raise the centre distance or lower the profile shifts.",
+    )
+
+
+def check_roots(pair: PairGeometry) -> None:
+    """No tip reaches the mate's root circle or runs on its fillet."""
+    curvature_1, _ = pair.curvature_radii(pair.path_of_contact[0])
+    _, curvature_2 = pair.curvature_radii(pair.path_of_contact[1])
+    check_root("pinion", pair.pinion, "wheel", pair.wheel, pair.tip_clearances[1], float(curvature_1))
+    check_root("wheel", pair.wheel, "pinion", pair.pinion, pair.tip_clearances[0], float(curvature_2))
+
+
+def check_root(
+    name: str, gear: GearParameters, mate_name: str, mate: GearParameters, clearance: float, roll_length: float
+) -> None:
+    """One gear's root: the clearance under its mate's tip, and the roll length down to which that tip touches it."""
+    key, tip, form = f"{mate_name}.tip_diameter", mate.tip_diameter, gear.rack_form_roll_length
+    require(
+        clearance > 0.0,
+        key,
+        tip,
+        f"below {tip + 2.0 * clearance:.6g} mm (it runs into the root of the {name})",
+        "Lower the tip diameter, raise the centre distance or deepen the root.",
+    )
+    largest = 2.0 * math.hypot(mate.base_radius, mate.roll_length(tip) + roll_length - form)
+    require(
+        roll_length >= form,
+        key,
+        tip,
+        f"up to {largest:.6g} mm (it runs on the fillet of the {name}, below its form circle of "
+        f"{gear.root_form_diameter:.6g} mm)",
+        f"Lower the tip diameter, or take a smaller tool tip radius or root diameter for the {name}.",
+    )
+
+
+def check_contact(pair: PairGeometry) -> None:
+    """One tooth pair takes over before the last one leaves."""
+    start, end = pair.path_of_contact
+    require(
+        end > start,
+        "centre_distance",
+        pair.centre_distance,
+        "one at which the tip circles meet on the line of action",
+        "Lower the centre distance or raise the tip diameters.",
+    )
+    require(
+        pair.total_contact_ratio >= 1.0,
+        "contact ratio",
+        pair.total_contact_ratio,
+        "from 1 on",
+        "The contact would be lost between teeth: raise the tip diameters, lower the centre distance, or widen "
+        "helical gears.",
+    )

@@ -1,0 +1,1 @@
+"""Cells, named groups, structured grids, mesh quality, gmsh and VTK files."""

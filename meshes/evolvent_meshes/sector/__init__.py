@@ -1,0 +1,1 @@
+"""The mesh of one tooth sector: a transverse section, swept along the helix."""

@@ -1,0 +1,273 @@
+"""The transverse mesh of one tooth sector: second-order quadrilaterals, fine under the loaded flank only.
+
+The tooth above the flank start lies in polar rows of constant radius: thin layers under the loaded flank, a column of
+3:1 transitions, then coarse columns to the back flank. Below, a band one cell thick follows fillets and root; under it
+lie the neck, the base and two root blocks down to the bore:
+
+          ___________                B   back band: the last coarse column, then the band
+         |B|  |  |T|S|               S   strip of thin layers     T   transition
+         |B|  |  |T|S|
+         |B|--neck--|B|              The band's inner corners left and right of "base" are
+      _B_/ |        | \\_B_          the only irregular nodes (five cells).
+     |root |  base  | root|
+     |_____|________|_____|  bore
+
+Built as arrays and not by gmsh: the same numbers with every gmsh version, exact nodes from the start, and the cuts on
+both sides match by construction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.profile import Profile, polar
+from evolvent_meshes.mesh.mesh_data import MeshError
+from evolvent_meshes.mesh.structured_grid import boundary_facets, subdivided, transfinite, weld
+from evolvent_meshes.sector.root_band import RootBand
+from evolvent_meshes.sector.section_blocks import (
+    Piece,
+    ToothRows,
+    grid,
+    growing,
+    mirrored,
+    row_radii,
+    steps,
+    three_to_one,
+)
+
+WELD = 1e-7
+"""Points closer than this are one node [mm]."""
+
+
+@dataclass(frozen=True)
+class SectorResolution:
+    """Element counts and sizes of one tooth sector.
+
+    profile_elements: along the loaded flank from the flank start to the tip corner; a multiple of 3, as three meet one
+        coarse row.
+    face_elements: layers in z; end_size_ratio: length of the end layers over that of the middle ones.
+    layer_depths: thickness [mm] of the three thin layers below the flank, the outermost first; near a thin tip they
+        shrink together to `tip_depth_share` of the tooth's thickness.
+    flank_start_diameter: where the fine flank starts [mm]; give a little less than the start of active profile, so that
+        the contact's whole width lies above. Default: the root form diameter.
+    size_at: relative element length along the profile at radii [mm]; default uniform.
+    fillet_elements: from the flank start to the sector's cut on the loaded side, back_elements on the other side;
+        neck_elements of both lie above the middle of the fillet. core_elements: coarse columns of the tooth between
+        transition and back band. rim_elements: from the root band to the bore.
+    back_alike: refine the back flank as the loaded one, to show what leaving it coarse changes.
+    """
+
+    profile_elements: int = 27
+    face_elements: int = 16
+    end_size_ratio: float = 0.5
+    layer_depths: tuple[float, float, float] = (0.1, 0.15, 0.22)
+    tip_depth_share: float = 0.4
+    flank_start_diameter: float | None = None
+    size_at: Callable[[Floats], Floats] | None = None
+    fillet_elements: int = 6
+    back_elements: int = 5
+    neck_elements: int = 3
+    core_elements: int = 2
+    rim_elements: int = 4
+    back_alike: bool = False
+
+    def __post_init__(self) -> None:
+        if self.profile_elements % 3 or len(self.layer_depths) != 3:
+            raise MeshError(
+                f"sector resolution: wanted a multiple of 3 profile elements and 3 layers (the mesh coarsens 3:1), "
+                f"found {self.profile_elements} and {len(self.layer_depths)}"
+            )
+        counts = (self.profile_elements, self.face_elements, self.core_elements, self.rim_elements, self.neck_elements)
+        if min(counts) < 1 or min(*self.layer_depths, self.end_size_ratio) <= 0:
+            raise MeshError(f"sector resolution: wanted positive counts, layer depths and end ratio, found {self}")
+        if min(self.fillet_elements, self.back_elements) <= self.neck_elements:
+            raise MeshError(
+                f"sector resolution: wanted more fillet and back elements than neck elements ({self.neck_elements}), "
+                f"found {self.fillet_elements} and {self.back_elements}"
+            )
+
+
+@dataclass(frozen=True)
+class Section:
+    """The mid-face section: points (n, 2) [mm], cells (m, 9) and outline edges name -> (k, 3) in gmsh's node order.
+
+    flank_weight (n,): 1 on the loaded flank, falling to 0 through the thin layers: the part of a flank modification
+        that a node follows. flank_start_radius: the lowest radius of the loaded flank [mm].
+    """
+
+    points: Floats
+    cells: Ints
+    edges: dict[str, Ints]
+    flank_weight: Floats
+    flank_start_radius: float
+
+
+def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
+    """Mesh the mid-face section of tooth 0's sector, θ ∈ [−π/z, π/z], without modifications; loaded flank θ > 0.
+
+    Raises MeshError if the flank start does not lie on the involute.
+    """
+    profile = Profile(gear)
+    start = _flank_start(profile, resolution)
+    radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at)
+    band = sum(resolution.layer_depths)
+    alike = resolution.back_alike
+    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, alike)
+    at_cut = max(band, 0.3 * gear.normal_module)
+    widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
+    neck = resolution.neck_elements
+    loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)
+    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - alike], at_cut), mirrored=True)
+    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(alike))]
+    pieces += [mirrored(_strip_end(loaded, resolution))] if alike else []
+    pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, rows.inner, resolution)]
+    points, cells = _joined(pieces)
+    edges = _named_edges(profile, start, points[:, :2], boundary_facets("quadrilateral", 2, cells))
+    return Section(points[:, :2], cells, edges, points[:, 2], start)
+
+
+def _flank_start(profile: Profile, resolution: SectorResolution) -> float:
+    _, form, tip = profile.radii
+    if resolution.flank_start_diameter is None:
+        return form
+    start = resolution.flank_start_diameter / 2
+    if not form <= start < tip:
+        raise MeshError(
+            f"section: wanted a flank start diameter on the involute, from {2 * form:.4f} (root form) to {2 * tip:.4f} "
+            f"mm (tip), found {2 * start:.4f}"
+        )
+    return start
+
+
+def _layer_columns(resolution: SectorResolution) -> Floats:
+    """Columns (4,) of the ends of the thin layers, from 0 to 1."""
+    depths = np.cumsum((0.0, *resolution.layer_depths))
+    return np.asarray(depths / depths[-1])
+
+
+def _tooth(rows: ToothRows, resolution: SectorResolution) -> list[Piece]:
+    """Strip, transitions and coarse columns above the flank start."""
+    n = resolution.profile_elements
+    layers = subdivided(_layer_columns(resolution), 2)
+    strip = grid(rows.points(*np.meshgrid(steps(0, n), layers, indexing="ij")), 1 - layers)
+    coarse_rows = np.linspace(0, n, 2 * n // 3 + 1)
+    columns = steps(2, 2 + rows.coarse)
+    coarse = grid(rows.points(*np.meshgrid(coarse_rows, columns, indexing="ij")))
+    transition = [three_to_one(partial(_transition_point, rows, first)) for first in range(0, n, 3)]
+    fine = [strip, *transition]
+    return [*fine, coarse, *(map(mirrored, fine) if rows.alike else [])]
+
+
+def _transition_point(rows: ToothRows, first: int, u: Floats, v: Floats) -> Floats:
+    return np.column_stack([rows.points(first + u, 1 + v), np.zeros_like(u)])
+
+
+def _strip_end(side: RootBand, resolution: SectorResolution) -> Piece:
+    """The band's first cell below the strip: its three layers join to one."""
+    layers = _layer_columns(resolution)
+
+    def place(u: Floats, v: Floats) -> Floats:
+        depth = (1 - v) * np.interp(u, np.arange(4), layers) + v * u / 3
+        (r, angle), (r_inner, angle_inner) = _to_polar(side.surface(v)), _to_polar(side.inner(v))
+        points = polar(r + depth * (r_inner - r), angle + depth * (angle_inner - angle))  # the strip's rows are arcs
+        return np.column_stack([points, (1 - depth) * (1 - v)])
+
+    return three_to_one(place)
+
+
+def _neck(rows: ToothRows, loaded: RootBand, back: RootBand) -> Piece:
+    """Between the bands of both sides, from the flank start down to the middles of the fillets."""
+    q = steps(0, loaded.neck)
+    columns = steps(1, 1 + rows.inner)
+    top = rows.points(np.zeros_like(columns), columns)
+    bottom = _line(loaded.inner(q[-1:])[0], back.inner(q[-1:])[0], _even(columns))
+    return grid(transfinite(loaded.inner(q), back.inner(q), top, bottom, _even(q), _even(columns)))
+
+
+def _rim(
+    loaded: RootBand, back: RootBand, gear: GearParameters, inner: int, resolution: SectorResolution
+) -> list[Piece]:
+    """Root blocks of both sides and the base between them, down to the bore."""
+    corners = [side.inner(np.array([float(side.neck)]))[0] for side in (loaded, back)]
+    radius = gear.bore_diameter / 2
+    cut = np.pi / gear.z
+    depths, angles = _to_polar(np.array(corners))
+    length = depths[0] - radius
+    ends = subdivided(growing(length, 1.3 * loaded.widths[1], resolution.rim_elements), 2)
+    blocks = []
+    for side, angle, end in zip((loaded, back), angles, (cut, -cut), strict=True):
+        top = side.inner(steps(side.neck, side.cells))
+        blocks.append(_down_to_bore(top, radius, (angle, end), ends))
+    columns = _even(steps(0, inner))
+    blocks.append(_down_to_bore(_line(corners[0], corners[1], columns), radius, (angles[0], angles[1]), ends))
+    return blocks
+
+
+def _down_to_bore(top: Floats, radius: float, angles: tuple[float, float], ends: Floats) -> Piece:
+    """The block between a line of points (n, 2) and the bore's arc between two angles."""
+    across = np.linspace(0, 1, len(top))
+    bore = polar(np.full(len(top), radius), angles[0] + across * (angles[1] - angles[0]))
+    west, east = (_line(top[k], bore[k], ends) for k in (0, -1))
+    return grid(transfinite(top, bore, west, east, across, ends))
+
+
+def _even(numbers: Floats) -> Floats:
+    return np.linspace(0, 1, len(numbers))
+
+
+def _to_polar(points: Floats) -> tuple[Floats, Floats]:
+    return np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+
+
+def _line(start: Floats, end: Floats, fraction: Floats) -> Floats:
+    return np.asarray(start + fraction[:, None] * (end - start))
+
+
+_REVERSED = [0, 3, 2, 1, 7, 6, 5, 4, 8]
+"""A nine-node quadrilateral walked the other way round."""
+
+
+def _joined(pieces: list[Piece]) -> tuple[Floats, Ints]:
+    """All pieces as one mesh with anticlockwise cells."""
+    cells, start = [], 0
+    for points, piece_cells in pieces:
+        diagonals = points[piece_cells[:, [2, 3]], :2] - points[piece_cells[:, [0, 1]], :2]
+        clockwise = np.linalg.det(diagonals).sum() < 0
+        cells.append(start + (piece_cells[:, _REVERSED] if clockwise else piece_cells))
+        start += len(points)
+    points = np.concatenate([points for points, _ in pieces])
+    keep, number = weld(points, WELD)
+    return _with_single_middles(points[keep], number[np.concatenate(cells)])
+
+
+def _with_single_middles(points: Floats, cells: Ints) -> tuple[Floats, Ints]:
+    """One middle node an edge: where two pieces bend their common edge differently, the first one's is taken."""
+    corners = np.sort(cells[:, [[0, 1], [1, 2], [2, 3], [3, 0]]], axis=2).reshape(-1, 2)
+    _, first, edge = np.unique(corners, axis=0, return_index=True, return_inverse=True)
+    middles = cells[:, 4:8].reshape(-1)
+    merged = cells.copy()
+    merged[:, 4:8] = middles[first][edge.reshape(-1)].reshape(-1, 4)
+    used, number = np.unique(merged, return_inverse=True)
+    return points[used], number.reshape(merged.shape)
+
+
+def _named_edges(profile: Profile, start: float, points: Floats, edges: Ints) -> dict[str, Ints]:
+    """The outline's edges by what their middle nodes lie on."""
+    radius, angle = _to_polar(points[edges[:, 2]])
+    chosen = {
+        "bore": abs(radius - profile.gear.bore_diameter / 2) < WELD,
+        "tip": abs(radius - profile.radii[2]) < WELD,
+        "cut_low": abs(angle + profile.sector_angle) * radius < WELD,
+        "cut_high": abs(angle - profile.sector_angle) * radius < WELD,
+    }
+    rest = ~np.any(list(chosen.values()), axis=0)
+    chosen["flank"] = rest & (angle > 0) & (radius > start)
+    chosen["fillet"] = rest & (angle > 0) & (radius <= start)
+    chosen["back"] = rest & (angle < 0)
+    return {name: edges[mask] for name, mask in chosen.items()}

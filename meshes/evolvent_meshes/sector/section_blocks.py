@@ -1,0 +1,154 @@
+"""The pieces a section is made of, and the polar rows of its tooth.
+
+The tooth above the flank start is numbered by rows u, from 0 (flank start) to profile_elements (tip), and columns c:
+from 0 (loaded flank) to 1 through the thin layers, to 2 through the 3:1 transitions, then one number a coarse column up
+to the back flank. A row has one radius, so every node of it lies at that radius exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.profile import Profile, polar
+from evolvent_meshes.mesh.reference_cells import node_positions
+from evolvent_meshes.mesh.structured_grid import lattice_cells, subdivided
+
+Piece = tuple[Floats, Ints]
+"""Points (n, 3), the third coordinate is the flank weight, and cells (m, 9) of a part of the section."""
+
+TABLE = 801
+"""Points of the tables that spread nodes by arc length; the nodes' points themselves stay exact."""
+
+
+def steps(start: float, end: float) -> Floats:
+    """Numbers of the nodes and middle nodes between two whole numbers: every half."""
+    return np.linspace(start, end, round(2 * abs(end - start)) + 1)
+
+
+def grid(points: Floats, weight: Floats | float = 0.0) -> Piece:
+    """A structured piece from points (2n + 1, 2m + 1, 2)."""
+    n, m = points.shape[:2]
+    weights = np.broadcast_to(weight, (n, m))[..., None]
+    return np.concatenate([points, weights], axis=2).reshape(-1, 3), lattice_cells(((n - 1) // 2, (m - 1) // 2), 2)
+
+
+_THREE_TO_ONE = np.array(
+    [
+        [[0, 0], [1, 0], [1, 0.5], [0, 1]],
+        [[1, 0], [2, 0], [2, 0.5], [1, 0.5]],
+        [[2, 0], [3, 0], [3, 1], [2, 0.5]],
+        [[1, 0.5], [2, 0.5], [3, 1], [0, 1]],
+    ]
+)
+
+
+def three_to_one(place: Callable[[Floats, Floats], Floats]) -> Piece:
+    """Four cells that join three edges (u from 0 to 3 at v = 0) to one (v = 1); place(u, v) gives points (n, 3)."""
+    a, b = node_positions("quadrilateral", 2).T / 2.0
+    bilinear = np.stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=1)
+    u, v = np.einsum("nc,qcd->dqn", bilinear, _THREE_TO_ONE).reshape(2, -1)
+    return place(u, v), np.arange(36).reshape(4, 9)
+
+
+def mirrored(piece: Piece) -> Piece:
+    """The piece on the side θ < 0, which follows no modification of the flank."""
+    points, cells = piece
+    return points * [1.0, -1.0, 0.0], cells
+
+
+def growing(length: float, first: float, n: int) -> Floats:
+    """Cell ends (n + 1,), from 0 to 1, of n cells over `length` that grow geometrically from about `first`."""
+    if n == 1 or first * n >= length:
+        return np.linspace(0, 1, n + 1)
+    ratio = brentq(lambda r: first * (r**n - 1) / (r - 1) - length, 1 + 1e-9, length / first + 1)
+    ends = (ratio ** np.arange(n + 1) - 1) / (ratio**n - 1)
+    return np.asarray(ends)
+
+
+def _smaller(first: Floats, second: Floats) -> Floats:
+    """A smooth minimum of positive numbers."""
+    return np.asarray((first**-6.0 + second**-6.0) ** (-1 / 6))
+
+
+@dataclass(frozen=True)
+class ToothRows:
+    """The tooth above the flank start.
+
+    radii (2 rows + 1,): of all row nodes. band: depth of the thin layers together [mm], tip_share: its largest part of
+    the tooth's thickness. columns: behind the thin layers, the transitions are the first. alike: the back flank has
+    thin layers and transitions as well; the transitions are the last of the columns.
+    """
+
+    profile: Profile
+    radii: Floats
+    band: float
+    tip_share: float
+    columns: int
+    alike: bool = False
+
+    @property
+    def start(self) -> float:
+        """Flank start radius [mm]."""
+        return float(self.radii[0])
+
+    @property
+    def inner(self) -> int:
+        """Columns between the bands of both flanks."""
+        return self.columns if self.alike else self.columns - 1
+
+    @property
+    def coarse(self) -> int:
+        """Columns behind the transitions."""
+        return self.columns - 1 - self.alike
+
+    @property
+    def sides(self) -> int:
+        """How many flanks have thin layers."""
+        return 1 + self.alike
+
+    def strip_width(self, radius: Floats) -> Floats:
+        """Arc length [mm] of the thin layers along a row: their depth is normal to the flank, the row is not."""
+        along_row = self.band * radius / self.profile.gear.base_radius
+        most = self.tip_share / self.sides * 2 * radius * self.profile.angle(radius)
+        return _smaller(along_row, most)
+
+    def transition_width(self, radius: Floats) -> Floats:
+        """Arc length [mm] of the 3:1 transitions along a row: a coarse row's height, if the tooth is thick enough."""
+        height = np.interp(radius, self.radii, 6 * np.gradient(self.radii))  # three fine rows: six nodes
+        rest = 2 * radius * self.profile.angle(radius) / self.sides - self.strip_width(radius)
+        return _smaller(0.45 * rest, height)
+
+    def column_width(self, radius: Floats) -> Floats:
+        """Arc length [mm] of one coarse column behind the transitions along a row."""
+        thickness = 2 * radius * self.profile.angle(radius)
+        rest = thickness - self.sides * (self.strip_width(radius) + self.transition_width(radius))
+        return np.asarray(rest / self.coarse)
+
+    def points(self, row: Floats, column: Floats) -> Floats:
+        """Points (..., 2) at rows (whole and half numbers) and columns."""
+        radius = np.interp(row, np.arange(len(self.radii)) / 2, self.radii)
+        arc = self.strip_width(radius) * np.clip(column, 0, 1)
+        arc += self.transition_width(radius) * np.clip(column - 1, 0, 1)
+        arc += self.column_width(radius) * np.clip(column - 2, 0, self.coarse)
+        arc += self.transition_width(radius) * np.maximum(column - 2 - self.coarse, 0)
+        points = polar(radius, self.profile.angle(radius) - arc / radius)
+        last = (np.asarray(column) == 1 + self.columns) & (not self.alike)
+        return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
+
+
+def row_radii(profile: Profile, start: float, n: int, size_at: Callable[[Floats], Floats] | None) -> Floats:
+    """Radii (2n + 1,) of n cells along the involute from radius `start` to the tip, as long as size_at, relatively."""
+    base = profile.gear.base_radius
+    ends = profile.roll_length(np.array([start, profile.radii[2]])) ** 2 / (2 * base)
+    arc = np.linspace(ends[0], ends[1], TABLE)
+    density = 1 / size_at(profile.radius(np.sqrt(2 * base * arc))) if size_at else np.ones(TABLE)
+    count = np.concatenate([[0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
+    cells = np.interp(np.linspace(0, count[-1], n + 1), count, arc)
+    radii = profile.radius(np.sqrt(2 * base * subdivided(cells, 2)))
+    radii[[0, -1]] = start, profile.radii[2]
+    return np.asarray(radii)

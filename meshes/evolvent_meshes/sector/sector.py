@@ -1,0 +1,128 @@
+"""One tooth sector: the section swept along the helix into 27-node hexahedra, every node recomputed exactly.
+
+The section at height z is the mid-face section turned by twist·z, at second-order nodes too: all nodes of the loaded
+flank lie on the involute helicoid, with modifications on the modified flank, and the two cuts are the same surface one
+pitch apart.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.flank import Flank
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.profile import polar
+from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
+from evolvent_meshes.mesh.quality import check_quality
+from evolvent_meshes.mesh.reference_cells import node_positions
+from evolvent_meshes.mesh.structured_grid import split_to_simplices
+from evolvent_meshes.sector.section import Section, SectorResolution, section_mesh
+
+MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
+"""Smallest scaled Jacobian of a sector; long thin layers make long thin simplices, which are not inverted ones."""
+
+_FIXED_POINT_STEPS = 6
+
+
+def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str = "hexahedron") -> MeshData:
+    """Second-order mesh of tooth 0's sector, θ ∈ [−π/z, π/z] about its centre line, in the gear's own frame [mm].
+
+    shape: "hexahedron" or "tetrahedron" (each hexahedron cut into six on the same nodes) for the whole face width;
+    "quadrilateral" or "triangle" for the mid-face section, for plane strain. Volume group: tooth. Facet groups: flank
+    (the loaded one, θ > 0, above the flank start), fillet (from there to the cut), back (all of θ < 0), tip, bore,
+    cut_low (θ = −π/z), cut_high, and in 3D face_low, face_high (z ends). The nodes of cut_high are those of cut_low
+    turned by 2π/z. Raises MeshError for a wrong shape, a flank start off the involute, or bad cells.
+    """
+    if shape not in MINIMUM_QUALITY:
+        raise MeshError(f"sector: wanted one of {', '.join(MINIMUM_QUALITY)}, found shape {shape!r}")
+    section = section_mesh(gear, resolution)
+    if shape in ("quadrilateral", "triangle"):
+        mesh, heights = _flat(section), np.zeros(1)
+    else:
+        heights = layer_heights(gear.face_width, resolution)
+        mesh = _swept(section, heights)
+    points = _placed(gear, section, heights)
+    mesh = MeshData(points, mesh.shape, 2, mesh.cells, mesh.facets, mesh.volumes)
+    if shape in ("triangle", "tetrahedron"):
+        mesh = split_to_simplices(mesh, np.tile(_radius_rank(section), len(heights)))
+    check_quality(mesh, MINIMUM_QUALITY[shape])
+    return mesh
+
+
+def layer_heights(face_width: float, resolution: SectorResolution) -> Floats:
+    """Heights (2 layers + 1,) of the nodes, ends and middles of the layers, which shrink towards both ends."""
+    n = resolution.face_elements
+    even = np.linspace(-1, 1, n + 1)
+    swing = (1 - resolution.end_size_ratio) / (1 + resolution.end_size_ratio)
+    ends = even + swing * np.sin(np.pi * even) / np.pi
+    ends = 0.5 * (ends - ends[::-1])
+    return np.insert(ends, np.arange(1, n + 1), 0.5 * (ends[1:] + ends[:-1])) * face_width / 2
+
+
+def _radius_rank(section: Section) -> Ints:
+    """A number for every node of the section, ascending with the radius: equal on both cuts, as their radii are."""
+    rank = np.empty(len(section.points), dtype=np.int64)
+    rank[np.argsort(np.hypot(*section.points.T))] = np.arange(len(rank))
+    return rank
+
+
+def _flat(section: Section) -> MeshData:
+    points = np.pad(section.points, ((0, 0), (0, 1)))
+    return MeshData(points, "quadrilateral", 2, section.cells, section.edges, _volumes(len(section.cells)))
+
+
+def _volumes(n: int) -> dict[str, Ints]:
+    return {"tooth": np.arange(n)}
+
+
+def _swept(section: Section, heights: Floats) -> MeshData:
+    """Cells and facets of the sweep; node number = level · section nodes + section node. Points are left empty."""
+    n, layers = len(section.points), len(heights) // 2
+    cells = _extruded(section.cells, "quadrilateral", "hexahedron", n, layers)
+    facets = {name: _extruded(edge, "interval", "quadrilateral", n, layers) for name, edge in section.edges.items()}
+    facets["face_low"] = section.cells
+    facets["face_high"] = section.cells + 2 * layers * n
+    return MeshData(np.empty((0, 3)), "hexahedron", 2, cells, facets, _volumes(len(cells)))
+
+
+def _extruded(nodes: Ints, base: str, shape: str, level: int, layers: int) -> Ints:
+    """Section entities (m, nodes) of shape `base` swept to (layers · m, nodes) of `shape`; levels are `level` apart."""
+    index = {tuple(p): i for i, p in enumerate(node_positions(base, 2).tolist())}
+    positions = node_positions(shape, 2).tolist()
+    below = np.array([index[tuple(p[:-1])] for p in positions])
+    above = np.array([p[-1] for p in positions])
+    one_layer = nodes[:, below] + above * level
+    return np.concatenate([one_layer + 2 * k * level for k in range(layers)])
+
+
+def _placed(gear: GearParameters, section: Section, heights: Floats) -> Floats:
+    """Points (levels · section nodes, 3): the section turned to every height, the flank moved by its modifications."""
+    radius, angle = np.hypot(*section.points.T), np.arctan2(section.points[:, 1], section.points[:, 0])
+    turned = angle + gear.twist * heights[:, None]
+    if not gear.modifications.is_empty:
+        moved = section.flank_weight > 0
+        flank_radius = np.maximum(radius[moved], section.flank_start_radius)
+        turned[:, moved] += section.flank_weight[moved] * _turn(gear, flank_radius, heights[:, None])
+    points = np.empty((len(heights), len(radius), 3))
+    points[..., :2] = polar(np.broadcast_to(radius, turned.shape), turned)
+    points[..., 2] = heights[:, None]
+    return points.reshape(-1, 3)
+
+
+def _turn(gear: GearParameters, radius: Floats, z: Floats) -> Floats:
+    """Angle [rad] from the helicoid to the modified flank at radii and heights (broadcast): nodes keep both.
+
+    A modified point (ρ, z0) − c n lies at roll length ρ − c cos β_b and height z0 + c hand sin β_b. That it lies at the
+    wanted radius and height is a fixed point for (ρ, z0), contracting with the modification's slope.
+    """
+    flank = Flank(gear)
+    wanted, height = np.broadcast_arrays(flank.roll_length(radius), z)
+    rho, level = wanted, height
+    for _ in range(_FIXED_POINT_STEPS):
+        offset = flank.modification(rho, level)
+        rho = wanted + offset * np.cos(gear.base_helix_angle)
+        level = height - offset * gear.hand * np.sin(gear.base_helix_angle)
+    modified, plain = flank.point(rho, level), flank.helicoid_point(wanted, height)
+    across = plain[..., 0] * modified[..., 1] - plain[..., 1] * modified[..., 0]
+    return np.asarray(np.arctan2(across, (plain[..., :2] * modified[..., :2]).sum(axis=-1)))

@@ -1,0 +1,10 @@
+"""`python -m evolvent` is the command `evolvent`."""
+
+from __future__ import annotations
+
+import sys
+
+from evolvent.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

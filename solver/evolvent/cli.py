@@ -1,0 +1,289 @@
+"""The command line `evolvent`, also `python -m evolvent`: parses, calls the API, turns failures into exit statuses.
+
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun the ranks share `run`, where only
+rank 0 prints, and a rank that fails says so and ends the run on all ranks; all else is done by rank 0 alone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from mpi4py import MPI
+
+from evolvent import __version__
+from evolvent.failures import Exit, leave, reported, silent_unless_first, write_whatever_the_terminal_shows
+from evolvent.fem.backend.cache_folder import keep_fonts
+from evolvent.options import (
+    Force,
+    LevelOption,
+    NoSkip,
+    Overrides,
+    SceneFile,
+    UsageError,
+    given_number,
+    given_path,
+    usage_message,
+)  # fmt: skip
+from evolvent.scene.schema.errors import SceneError
+from evolvent_meshes.files import require_writable
+
+if TYPE_CHECKING:
+    from evolvent.scene.scene import Scene
+
+# whatever a command needs beyond the scene is imported inside it: `check` and `info` must not wait for PETSc or pyvista
+
+RESUME = "; `evolvent run ... --resume` continues"
+SHARED = "run"  # the command that ranks do together
+PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"  # evolvent.fem.backend.petsc reads it
+
+app = typer.Typer(
+    name="evolvent",
+    help="Frictional contact of involute gear pairs by finite elements, from a scene file to pictures.",
+    epilog="""\b
+Examples:
+  evolvent check demos/yang2022.toml
+  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022
+  evolvent plot out/yang2022
+
+Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else.""",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # examples keep their lines
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"evolvent {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", is_eager=True, callback=_version, help="Print the version.")
+]
+
+
+@app.callback()
+def evolvent(version: Version = False) -> None: ...
+
+
+@app.command(
+    epilog="""\b
+Examples:
+  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
+  evolvent run demos/yang2022.toml --out out/t300 --set load.torque_Nm=300 --set contact.friction=[0,0.1]
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume"""
+)
+def run(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.", parser=given_path)
+    ],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")] = False,
+    petsc: Annotated[
+        str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
+    ] = None,
+) -> None:
+    """Compute a scene.
+
+    One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
+    """
+    with reported(parallel=True, advice=RESUME):
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        found = "found --resume and --overwrite; allowed: one of them"
+        _require(not (resume and overwrite), f"--overwrite: {found}; remedy: --resume keeps what --overwrite removes")
+        if petsc is not None:
+            os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
+        _require_room(loaded, "run", force, MPI.COMM_WORLD)
+        from evolvent.run.output import whereabouts
+        from evolvent.run.scene_run import run_scene
+
+        run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
+        if not quiet:
+            typer.echo(whereabouts(out, loaded))
+
+
+@app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
+def check(
+    scene: SceneFile, level: LevelOption = None, settings: Overrides = None, no_skip: NoSkip = None
+) -> None:
+    """Validate a scene, print what follows from it.
+
+    That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
+    """
+    with reported():
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
+        from evolvent.scene.checking.check_report import overview
+
+        typer.echo(overview(loaded))
+
+
+@app.command(epilog="\b\nExample:\n  evolvent mesh demos/yang2022.toml --out pair.msh --level quick")
+def mesh(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.msh", help="The gmsh file to write.", parser=given_path)],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.msh.")] = False,
+) -> None:
+    """Write the mesh of both sectors for gmsh.
+
+    One tooth sector of each gear, as they stand when they touch at the pitch point, with named groups.
+    """
+    with reported():
+        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
+        _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
+        require_writable(out)
+        there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
+        _require(overwrite or not (out.exists() or out.is_symlink()), there)
+        _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
+        _require_room(loaded, "mesh", force, MPI.COMM_SELF)
+        from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
+        from evolvent.scene.meshing.sector_meshes import standing_pair
+        from evolvent_meshes.mesh.gmsh_io import write_msh
+        from evolvent_meshes.mesh.quality import scaled_jacobians
+
+        made = standing_pair(loaded)
+        write_msh(made, out)
+        quality = float(scaled_jacobians(made).min())
+        typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.2g}")
+        if quality < WORST_CELL:
+            typer.echo(f"Warning: {bad_cells(quality)}", err=True)
+
+
+@app.command(epilog="\b\nExample:\n  evolvent plot out/yang2022")
+def plot(
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Where a run has put its results.", parser=given_path)
+    ],
+) -> None:
+    """Draw the pictures of a finished run again."""
+    with reported():
+        found = "no summary.json in it" if directory.is_dir() else "no such directory"
+        begun = " --resume" if (directory / "results/state.npz").exists() else ""
+        remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
+        wanted = f"{directory}: found {found}; allowed: the --out of a finished run; remedy: {remedy}"
+        _require((directory / "summary.json").is_file(), wanted)
+        from evolvent.run.redraw import plot_folder
+
+        drawn = plot_folder(directory)
+        for failure in drawn.failures:
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        typer.echo(f"{len(drawn.written)} pictures in {directory / 'pictures'}")
+
+
+@app.command(
+    "wear-coefficient",
+    epilog="\b\nExample:\n  evolvent wear-coefficient record.csv --force-N 500 --pin-diameter-mm 6 --run-in-m 500",
+)
+def wear_coefficient(
+    records: Annotated[
+        list[Path], typer.Argument(metavar="RECORD.csv...", help="Columns sliding_distance_m (or _mm, _km) and "
+                                   "depth_um (or _mm).", parser=given_path)
+    ],
+    force: Annotated[float, typer.Option("--force-N", help="Normal force on the pin.", parser=given_number)],
+    diameter: Annotated[float, typer.Option("--pin-diameter-mm", help="Diameter of the pin.", parser=given_number)],
+    run_in: Annotated[
+        float, typer.Option("--run-in-m", help="Sliding distance that is left out.", parser=given_number)
+    ] = 0.0,
+) -> None:  # fmt: skip
+    """Archard's K/H from pin-on-disc records, with its spread."""
+    with reported():
+        from evolvent.wear.pin_on_disc import PinOnDisc, Record, coefficient
+
+        test = PinOnDisc(force, diameter)
+        read = [Record.read(path, 1e3 * run_in) for path in records]
+        found = coefficient(read, test)
+        for record, own in zip(read, found.each):
+            typer.echo(f"{record.name}: {len(record.depth)} lines, K/H = {own:.4e} mm²/N")
+        rate = 1e9 * found.value * test.pressure
+        typer.echo(
+            f"K/H = {found.value:.4e} mm²/N, 95 % between {found.low:.4e} and {found.high:.4e}; at "
+            f"{test.pressure:.3f} MPa {rate:.4g} µm per km"
+        )
+        if found.low <= 0.0:
+            typer.echo("evolvent: warning: the interval reaches below 0, which no K/H can: give more records", err=True)
+
+
+@app.command(epilog="\b\nExample:\n  evolvent info")
+def info() -> None:
+    """Print the versions of what a result depends on."""
+    with reported():
+        from evolvent.fem.backend.dolfinx_compat import versions
+
+        typer.echo("\n".join(f"{name:<10} {version or 'not found'}" for name, version in versions().items()))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    if MPI.COMM_WORLD.rank > 0 and given[:1] != [SHARED]:
+        return Exit.DONE
+    if arguments is None:
+        write_whatever_the_terminal_shows()
+    with silent_unless_first():
+        keep_fonts()
+        try:
+            status = app(args=given, prog_name="evolvent", standalone_mode=False)
+        except UsageError as error:
+            return leave(usage_message(error), Exit.BAD_INPUT).exit_code
+        except typer.Abort:
+            return Exit.FAILED
+        except SystemExit as end:
+            return end.code if isinstance(end.code, int) else Exit.FAILED
+    return status if isinstance(status, int) else Exit.DONE
+
+
+def _load(
+    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
+) -> Scene:
+    """The scene, read on the first rank and sent to the others: either all ranks have it or all fail alike."""
+    from evolvent.scene.scene import load_scene
+
+    result: Scene | SceneError | None = None
+    if comm.rank == 0:
+        try:
+            overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
+            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
+            result = load_scene(path, overrides)
+        except SceneError as error:
+            result = error
+    result = comm.bcast(result)
+    assert result is not None
+    if isinstance(result, SceneError):
+        raise result
+    return result
+
+
+def _require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
+    """Raises SceneError where the machine has too little memory for the command, unless it is forced."""
+    from evolvent.scene.checking.problem_size import memory_megabytes, mesh_megabytes, require_room
+
+    if not force:
+        require_room(scene, memory_megabytes if command == "run" else mesh_megabytes, comm)
+
+
+def _require(holds: bool, message: str) -> None:
+    """A usage error unless `holds`; `message` says key, found, allowed and remedy."""
+    if not holds:
+        raise typer.BadParameter(message)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

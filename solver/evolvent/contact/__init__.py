@@ -1,0 +1,1 @@
+"""Contact of any two elastic bodies."""

@@ -1,0 +1,297 @@
+"""Closed forms of contact mechanics: estimates for the scene, and exact answers for the tests.
+
+Sources: K. L. Johnson, *Contact Mechanics* (1985), equation numbers as given below; Yang et al. 2022, Eq. 4.
+Units: N, mm, MPa (N/mm²). The formulas of the line contact take numbers or arrays that broadcast.
+
+The modulus that all of them share is 1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2, the curvature 1/R = 1/R1 + 1/R2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import ellipe, ellipk, elliprd
+
+from evolvent_meshes.arrays import Floats
+
+Value = TypeVar("Value", float, Floats)
+
+GOLDEN = (1 + sqrt(5)) / 2
+
+
+def contact_modulus(modulus1: float, poisson1: float, modulus2: float, poisson2: float) -> float:
+    """E* [MPa] of two elastic bodies; pass `math.inf` as a modulus for a rigid one."""
+    return 1 / ((1 - poisson1**2) / modulus1 + (1 - poisson2**2) / modulus2)
+
+
+def relative_radius(radius1: Value, radius2: Value) -> Value:
+    """R [mm] with 1/R = 1/R1 + 1/R2; a concave side has a negative radius, a flat one `math.inf`."""
+    return 1 / (1 / radius1 + 1 / radius2)
+
+
+# --- line contact: two cylinders, load F' per length ---------------------------------------------------------------
+
+
+def line_half_width(line_load: Value, radius: Value, modulus: float) -> Value:
+    """b = √(4 F' R / π E*) [mm] (Johnson 4.43). line_load F' [N/mm], radius R [mm], modulus E* [MPa]."""
+    return np.sqrt(4 * line_load * radius / (pi * modulus))
+
+
+def line_peak_pressure(line_load: Value, radius: Value, modulus: float) -> Value:
+    """p0 = √(F' E* / π R) = 2 F' / π b [MPa] (Johnson 4.45)."""
+    return np.sqrt(line_load * modulus / (pi * radius))
+
+
+def line_pressure(x: Value, half_width: float, peak: float) -> Value:
+    """p(x) = p0 √(1 − x²/b²), zero outside |x| < b [MPa] (Johnson 4.44)."""
+    return peak * np.sqrt(np.maximum(0.0, 1 - (x / half_width) ** 2))
+
+
+def line_approach(line_load: float, half_width: float, depth: float, modulus: float, poisson: float) -> float:
+    """Compression [mm] of one body between the contact centre and the depth d ≫ b below it (Johnson 5.58).
+
+    δ = F' (1 − ν²)/(π E) [2 ln(2 d/b) − ν/(1 − ν)], plane strain. Unlike in point contact the approach of two cylinders
+    has no value of its own: it grows with the depth of the point that is held.
+    """
+    logarithm = 2 * np.log(2 * depth / half_width) - poisson / (1 - poisson)
+    return line_load * (1 - poisson**2) / (pi * modulus) * logarithm
+
+
+# --- point and elliptical contact ----------------------------------------------------------------------------------
+
+
+class PointContact(NamedTuple):
+    """Contact radius a [mm], peak pressure p0 [MPa], approach δ [mm]."""
+
+    radius: float
+    peak_pressure: float
+    approach: float
+
+
+def point_contact(load: float, radius: float, modulus: float) -> PointContact:
+    """Sphere on sphere: a³ = 3PR/4E*, p0 = 3P/2πa², δ = a²/R (Johnson 4.22-4.24). load P [N]."""
+    a = np.cbrt(3 * load * radius / (4 * modulus))
+    return PointContact(a, 3 * load / (2 * pi * a**2), a**2 / radius)
+
+
+class EllipticalContact(NamedTuple):
+    """Half axes a ≥ b [mm], peak pressure p0 [MPa], approach δ [mm]."""
+
+    major: float
+    minor: float
+    peak_pressure: float
+    approach: float
+
+
+def elliptical_contact(load: float, curvature_a: float, curvature_b: float, modulus: float) -> EllipticalContact:
+    """Contact of two bodies with the gap A x² + B y², 0 < A ≤ B [1/mm] (Johnson, section 4.2).
+
+    The shape m = e² = 1 − b²/a² solves B/A = R_D(0, 1, 1−m)/R_D(0, 1−m, 1), which is Johnson's ratio of
+    complete elliptic integrals written with Carlson's R_D so that it neither cancels nor divides by zero at A = B.
+    The size follows from A + B = p0 E(m)/(E* b) and P = ⅔ π p0 a b.
+
+    Raises ValueError unless 0 < A ≤ B.
+    """
+    if not 0 < curvature_a <= curvature_b:
+        raise ValueError(
+            f"elliptical_contact wants gap coefficients 0 < A <= B, found A = {curvature_a:g}, B = {curvature_b:g}; "
+            "exchange the axes, or use the line contact for A = 0"
+        )
+    shape = _ellipse_shape(curvature_b / curvature_a)
+    total = curvature_a + curvature_b
+    major = np.cbrt(3 * load * ellipe(shape) / (2 * pi * modulus * total * (1 - shape)))
+    minor = major * sqrt(1 - shape)
+    peak = 3 * load / (2 * pi * major * minor)
+    return EllipticalContact(major, minor, peak, peak * minor * ellipk(shape) / modulus)
+
+
+def _ellipse_shape(ratio: float) -> float:
+    """m = 1 − b²/a² for B/A = ratio ≥ 1."""
+    if ratio == 1:
+        return 0.0
+
+    def residual(log_axis_ratio: float) -> float:
+        square = np.exp(-2 * log_axis_ratio)
+        return np.log(elliprd(0.0, 1.0, square) / elliprd(0.0, square, 1.0) / ratio)
+
+    # b/a lies between (A/B)^⅔ and 1 (Johnson, fig. 4.4), wide bounds cost two or three more steps
+    return 1 - np.exp(-2 * brentq(residual, 0.0, np.log(ratio) + 1, xtol=1e-14, rtol=1e-14))
+
+
+# --- below the surface ---------------------------------------------------------------------------------------------
+
+
+class SubsurfaceMaximum(NamedTuple):
+    """Largest value as a multiple of p0, and its depth as a multiple of the half-width (or radius)."""
+
+    value: float
+    depth: float
+
+
+class AxisStress(NamedTuple):
+    """Principal stresses on the axis of the contact, as multiples of p0: along the width, along the line, in depth."""
+
+    width: Floats
+    line: Floats
+    depth: Floats
+
+
+def line_axis_stress(depth: Floats, poisson: float) -> AxisStress:
+    """Stresses of a frictionless line contact at depth z/b below its centre, plane strain (Johnson 4.46)."""
+    root = np.sqrt(1 + depth**2)
+    width, vertical = -((1 + 2 * depth**2) / root - 2 * depth), -1 / root
+    return AxisStress(width, poisson * (width + vertical), vertical)
+
+
+def sphere_axis_stress(depth: Floats, poisson: float) -> AxisStress:
+    """Stresses of a frictionless sphere contact at depth z/a below its centre (Johnson 3.45)."""
+    half = 0.5 / (1 + depth**2)
+    radial = -(1 + poisson) * (1 - depth * np.arctan2(1.0, depth)) + half
+    return AxisStress(radial, radial, -2 * half)
+
+
+def line_largest_shear() -> SubsurfaceMaximum:
+    """0.30028 p0 at 0.78615 b: exactly φ^(−5/2) at φ^(−1/2) with the golden ratio φ."""
+    return SubsurfaceMaximum(GOLDEN**-2.5, GOLDEN**-0.5)
+
+
+def line_largest_mises(poisson: float) -> SubsurfaceMaximum:
+    """Largest von Mises stress below a line contact: 0.5575 p0 at 0.704 b for ν = 0.3."""
+    return _largest(lambda depth: _mises(line_axis_stress(depth, poisson)))
+
+
+def sphere_largest_shear(poisson: float) -> SubsurfaceMaximum:
+    """Largest shear stress below a sphere: 0.3100 p0 at 0.4809 a for ν = 0.3."""
+
+    def shear(depth: Floats) -> Floats:
+        stress = sphere_axis_stress(depth, poisson)
+        return 0.5 * np.abs(stress.width - stress.depth)
+
+    return _largest(shear)
+
+
+def sphere_edge_tension(poisson: float) -> float:
+    """Largest tension, radial at the edge of the circle: (1 − 2ν)/3 of p0 (Johnson, section 3.4)."""
+    return (1 - 2 * poisson) / 3
+
+
+def _mises(stress: AxisStress) -> Floats:
+    first, second, third = stress
+    return np.sqrt(0.5 * ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2))
+
+
+def _largest(function: Callable[[Floats], Floats]) -> SubsurfaceMaximum:
+    options = {"xatol": 1e-10}
+    found = minimize_scalar(lambda depth: -function(depth), bounds=(1e-6, 3.0), method="bounded", options=options)
+    return SubsurfaceMaximum(float(-found.fun), float(found.x))
+
+
+# --- friction ------------------------------------------------------------------------------------------------------
+
+
+def stick_ratio_line(load_ratio: float) -> float:
+    """c/b = √(1 − Q/μP) of a line contact pushed sideways with Q < μP (Cattaneo; Johnson, section 7.2)."""
+    return sqrt(1 - _partial(load_ratio))
+
+
+def cattaneo_traction(x: Floats, half_width: float, friction: float, peak: float, load_ratio: float) -> Floats:
+    """Shear traction [MPa] q = μp0[√(1−x²/b²) − (c/b)√(1−x²/c²)] in partial slip (Johnson, section 7.2).
+
+    x: places across the contact [mm], any shape; load_ratio is Q/μP, from 0 to 1.
+    """
+    stick = stick_ratio_line(load_ratio)
+    slip = line_pressure(x, half_width, peak)
+    if stick == 0:
+        return friction * slip
+    return friction * (slip - stick * line_pressure(x, stick * half_width, peak))
+
+
+def stick_ratio_sphere(load_ratio: float) -> float:
+    """c/a = (1 − Q/μP)^⅓ of a sphere contact pushed sideways (Mindlin; Johnson, section 7.2)."""
+    return (1 - _partial(load_ratio)) ** (1 / 3)
+
+
+def mindlin_displacement(load: float, radius: float, friction: float, load_ratio: float, compliance: float) -> float:
+    """Sideways shift [mm] δ_x = (3μP/16a)[Σ(2−ν)/G][1−(1−Q/μP)^⅔] of a sphere contact (Johnson, section 7.2).
+
+    load P [N], radius a of the contact [mm], compliance Σ(2−ν)/G over both bodies [1/MPa].
+    """
+    return 3 * friction * load / (16 * radius) * compliance * (1 - (1 - _partial(load_ratio)) ** (2 / 3))
+
+
+class Rolling(NamedTuple):
+    """Half width c [mm] of the stick zone, distance [mm] of its centre ahead of the contact centre, |creep| [-]."""
+
+    stick_half_width: float
+    stick_centre: float
+    creep: float
+
+
+def carter(half_width: float, radius: float, friction: float, load_ratio: float) -> Rolling:
+    """Elastically alike cylinders rolling with traction Q: c = b√(1−Q/μP) at the leading edge (Johnson, section 8.3).
+
+    radius: the relative radius R [mm]; the creep is μ(b − c)/R.
+    """
+    stick = half_width * stick_ratio_line(load_ratio)
+    return Rolling(stick, half_width - stick, friction * (half_width - stick) / radius)
+
+
+def _partial(load_ratio: float) -> float:
+    if not 0 <= load_ratio <= 1:
+        raise ValueError(f"partial slip wants Q/(μP) between 0 and 1, found {load_ratio:g}; above 1 the bodies slide")
+    return load_ratio
+
+
+# --- the estimate of Yang et al. 2022 ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class LoadFactors:
+    """The factors K of Yang et al. 2022, Eq. 3, with the values printed there; `LoadFactors.none()` sets them to 1."""
+
+    application: float = 1.25
+    dynamic: float = 1.293
+    transverse: float = 1.1
+    face: float = 1.2257
+
+    @classmethod
+    def none(cls) -> LoadFactors:
+        """All factors 1: the bare Hertz estimate."""
+        return cls(1.0, 1.0, 1.0, 1.0)
+
+    @property
+    def product(self) -> float:
+        """K = K_A K_v K_α K_β."""
+        return self.application * self.dynamic * self.transverse * self.face
+
+
+def yang_estimate(
+    *,
+    torque: float,
+    face_width: float,
+    reference_diameter: float,
+    contact_ratio: float,
+    teeth_ratio: float,
+    base_helix: float,
+    pressure_angle: float,
+    modulus: float,
+    factors: LoadFactors,
+) -> float:
+    """The paper's Hertz estimate σ_H [MPa], Yang et al. 2022, Eq. 4 as printed:
+
+    σ_H = √{ 2KT1/(B d1² ε_α) · (u+1)/u · 2cos β_b/(sin α_t cos α_t) · 1/[π((1−ν1²)/E1 + (1−ν2²)/E2)] }
+
+    torque T1 on the pinion [N·mm], face_width B [mm], reference_diameter d1 of the pinion [mm], contact_ratio ε_α,
+    teeth_ratio u = z2/z1, base_helix β_b and transverse pressure_angle α_t at the reference circle [rad], modulus E*
+    [MPa]. Its length of contact is the mean one, its curvature that at the reference circle. The paper calls α_t the
+    normal pressure angle and d1 a radius; with those readings the numbers make no sense.
+    """
+    load = 2 * factors.product * torque / (face_width * reference_diameter**2 * contact_ratio)
+    sine_cosine = np.sin(pressure_angle) * np.cos(pressure_angle)
+    curvature = (teeth_ratio + 1) / teeth_ratio * 2 * np.cos(base_helix) / sine_cosine
+    return float(np.sqrt(load * curvature * modulus / pi))

@@ -1,0 +1,1 @@
+"""Equilibrium of the condensed contact system: SNES, tangent, sensitivities."""

@@ -1,0 +1,1 @@
+"""Nitsche's contact operator: recovered flux, Coulomb's law, contact forces."""

@@ -1,0 +1,260 @@
+"""The contact operator of one pair of surfaces at one position.
+
+The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes, e_1 = u_1 − F the extended
+trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar: integrated over
+segments, so that non-matching meshes pass the patch test). Contact is decided at the quadrature points x_q:
+
+    p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) Σ_k N_k(x) (J_k + s_k)_t
+    λ = [p]_+ ,  τ = P_B(μλ)(q)                                   (local components, frames at the nodes)
+    f_k = ∫ N_k (λ, τ) dΓ
+
+f presses −f on body 1 and Πᵀf on body 2. This is the one-sided Nitsche method (Chouly, Fabre, Hild, Mlika, Pousin,
+Renard 2017) with its flux recovered at the nodes (flux_recovery.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from scipy.spatial import cKDTree
+
+from evolvent.contact.nitsche.coulomb import Law
+from evolvent.contact.search.pairing import Pairing
+from evolvent.fem.lagrange import quadrature, tabulate
+from evolvent.fem.nodal_frames import tangent_frames
+from evolvent.fem.surface import Surface, hats
+from evolvent_meshes.arrays import Floats, Ints
+
+LawOf = Callable[[Floats], Law]
+ROUNDING = 1e-15  # entries of the projection below this share of its largest are rounding
+
+
+@dataclass(frozen=True)
+class ContactOperator:
+    """Jump at n nodes of surface 1 and contact at q points on it; in the common frame.
+
+    nodes: (n,) indices into surface 1. frames: (n, d, d) rows n, t1[, t2]. jump1: (n, n1), jump2: (n, n2) the weights
+    of J = jump1·e_1 − jump2·u_2. mass: (n, n) ∫N_k N_l. shape: (q, n) shape functions at the points;
+    hat: (q, n) piecewise linear ones.
+    points: (q, d) positions. weights: (q,) [mm²; mm in 2D]. gap: (q,) [mm]. stabiliser: (q, 2) γ, γ_t [MPa/mm].
+    """
+
+    nodes: Ints
+    frames: Floats
+    jump1: sp.csr_matrix
+    jump2: sp.csr_matrix
+    mass: sp.csr_matrix
+    shape: sp.csr_matrix
+    hat: sp.csr_matrix
+    points: Floats
+    weights: Floats
+    gap: Floats
+    stabiliser: Floats
+
+    @property
+    def d(self) -> int:
+        """Space dimension."""
+        return self.frames.shape[1]
+
+    def pressing_along(self, normals: Floats) -> ContactOperator:
+        """With the pressure along other unit normals (n, d), a few degrees from those of surface 1. The distance along
+        them from a surface 2 that they are normal to is g n·n_1; γ stays, which is off by the square of the angle."""
+        shorter = np.einsum("ja,ja->j", normals, self.frames[:, 0])
+        return replace(self, frames=tangent_frames(normals), gap=self.gap * (self.shape @ shorter))
+
+    def before(self, jump: Floats) -> ContactOperator:
+        """Of surfaces that were searched after displacements with jumps (q, d) at the points: with the gap from before,
+        as a jump counts these displacements too."""
+        normals = self.shape @ self.frames[:, 0]
+        return replace(self, gap=self.gap + np.einsum("qa,qa->q", normals, jump))
+
+    def worn(self, depth: Floats, softness: Floats) -> ContactOperator:
+        """Between surfaces that have lost `depth` (q,) [mm] together, and lose `softness` (q,) [mm/MPa] times the
+        pressure more while it acts: in series with γ, as λ = γ(J − g − h − cλ)."""
+        γ, γ_t = self.stabiliser.T
+        return replace(self, gap=self.gap + depth, stabiliser=np.column_stack([γ / (1.0 + γ * softness), γ_t]))
+
+    def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
+        """Trial tractions (q, k) from local jumps (n, k), k = 1 (normal only) or d; slip (n, d−1) is added to J_t."""
+        k = jump.shape[1]
+        if slip is not None and k > 1:
+            jump = jump + np.hstack([np.zeros((len(jump), 1)), slip])
+        at_points = self.shape @ jump
+        at_points[:, 0] -= self.gap
+        return at_points * self.slope(k)
+
+    def slope(self, k: int) -> Floats:
+        """∂trial/∂J of each local component at the points, (q, k)."""
+        return np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (k - 1))
+
+    def forces(self, traction: Floats) -> Floats:
+        """Nodal forces f (n, k) [N] from tractions at the points (q, k)."""
+        return np.asarray(self.shape.T @ (self.weights[:, None] * traction))
+
+    def tangent(self, law: Law) -> sp.csr_matrix:
+        """∂f/∂J (n·k, n·k), sparse, in whole blocks of two nodes."""
+        active = np.flatnonzero(law.derivative.any(axis=(1, 2)))
+        slope = self.weights[active, None] * self.slope(law.traction.shape[1])[active]
+        return sandwiched(self.shape[active], law.derivative[active] * slope[:, None])
+
+    def averaged(self, traction: Floats) -> tuple[Floats, Floats]:
+        """Weights m_j (n,) and tractions (n, k) averaged with the hat functions: Σ m_j t_j is the whole force."""
+        m = self.hat.T @ self.weights
+        mean = self.hat.T @ (self.weights[:, None] * traction)
+        return m, mean / np.where(m > 0.0, m, 1.0)[:, None]
+
+    def flux(self, traction: Floats) -> Floats:
+        """F = Γ⁻¹S (n, d) [mm] at the nodes in the common frame at a converged state, where the recovered traction S is
+        −(λn + τ); from tractions at the points (q, d). The true trace is u_1 = e_1 + F.
+
+        It is projected, not averaged: doing so again in the next step then changes nothing, and no traction is smeared.
+        """
+        local = spla.splu(self.mass.tocsc()).solve(self.forces(traction / self.slope(self.d)))
+        return -np.einsum("jia,ji->ja", self.frames, local)
+
+    def common(self, traction: Floats) -> Floats:
+        """Tractions (q, d) in the common frame from local ones (q, k)."""
+        axes = [self.shape @ self.frames[:, i] for i in range(traction.shape[1])]
+        return np.asarray(sum(traction[:, i : i + 1] * axis for i, axis in enumerate(axes)))
+
+    def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
+        """(n·d, n_s·d): displacements of surface `side` (1 or 2), in its body's frame, to local jumps.
+
+        rotation (d, d) turns the body's frame into the common one; the sign of the jump is included.
+        """
+        jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2, -1.0)
+        return frames_times(self.frames @ rotation * sign, jump)
+
+
+def frames_times(frames: Floats, weights: sp.csr_matrix) -> sp.csr_matrix:
+    """Blocks frames_j · weights_jk: (n·d, n_s·d)."""
+    n, d, _ = frames.shape
+    blocks = weights.data[:, None, None] * np.repeat(frames, np.diff(weights.indptr), axis=0)
+    shape = (n * d, weights.shape[1] * d)
+    return sp.bsr_matrix((blocks, weights.indices, weights.indptr), shape=shape).tocsr()
+
+
+def sandwiched(N: sp.csr_matrix, D: Floats) -> sp.csr_matrix:
+    """Σ_q N_qi D_q N_qj for N (q, n) and D (q, k, k), as (n·k, n·k) of blocks (i, j).
+
+    Points of one facet follow one another and have the same nodes, so that a facet's sum is a dense product: five times
+    faster than k² sparse ones.
+    """
+    n, k, width = N.shape[1], D.shape[1], np.diff(N.indptr)
+    facets = [_facet_blocks(N[width == w], D[width == w], w) for w in np.unique(width)]
+    if not facets:
+        return sp.csr_matrix((n * k, n * k))
+    pairs, place = np.unique(np.concatenate([i * n + j for i, j, _ in facets]), return_inverse=True)
+    added = sp.csr_matrix((np.ones(len(place)), place, np.arange(len(place) + 1)), (len(place), len(pairs)))
+    blocks = added.T @ np.concatenate([block for _, _, block in facets])
+    i, j = np.divmod(pairs, n)
+    rows = np.searchsorted(i, np.arange(n + 1))
+    return sp.bsr_matrix((blocks.reshape(-1, k, k), j, rows), shape=(n * k, n * k)).tocsr()
+
+
+def _facet_blocks(N: sp.csr_matrix, D: Floats, width: int) -> tuple[Ints, Ints, Floats]:
+    """Nodes i, j and entries (·, k²) of the blocks of each run of points with the same `width` nodes."""
+    nodes, values = N.indices.reshape(-1, width).astype(np.int64), N.data.reshape(-1, width)
+    first = np.flatnonzero(np.append(True, (nodes[1:] != nodes[:-1]).any(axis=1)))
+    right = (values[:, :, None] * D.reshape(len(D), 1, -1)).reshape(len(D), -1)
+    blocks = np.stack([values[a:b].T @ right[a:b] for a, b in pairwise([*first, len(D)])])
+    i, j = np.repeat(nodes[first], width, axis=1), np.tile(nodes[first], width)
+    return i.ravel(), j.ravel(), blocks.reshape(i.size, -1)
+
+
+def contact_operator(
+    pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats, facets: Ints | None = None
+) -> ContactOperator:
+    """The operator from the quadrature points of a search; surfaces in the common frame.
+
+    stabiliser: (n1, 2) γ, γ_t and frames: (n1, d, d) at the nodes of surface 1. facets: of surface 1, whose space holds
+    the jump; by default those that have a point.
+    """
+    facets = np.unique(pairing.facet1) if facets is None else facets
+    nodes = np.unique(first.facets[facets])
+    place = np.full(len(first.points), -1)
+    place[nodes] = np.arange(len(nodes))
+    N1 = tabulate(first.shape, first.order, pairing.xi1)[0]
+    N2 = tabulate(second.shape, second.order, pairing.xi2)[0]
+    ψ = hats(first.shape, first.order, pairing.xi1)
+    own, other = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
+    shape, hat = _rows(own, N1, len(nodes)), _rows(own, ψ, len(nodes))
+    mass = mass_matrix(first, facets, nodes)
+    return ContactOperator(
+        nodes,
+        frames[nodes],
+        sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points))),
+        _projection(pairing, first, second, nodes, mass, shape, _rows(other, N2, len(second.points))),
+        mass,
+        shape,
+        hat,
+        np.einsum("qk,qka->qa", N1, first.points[first.facets[pairing.facet1]]),
+        pairing.weight,
+        pairing.gap,
+        1.0 / (hat @ (1.0 / stabiliser[nodes])),  # as the flux that is divided by it at the nodes
+    )
+
+
+def _projection(
+    pairing: Pairing,
+    first: Surface,
+    second: Surface,
+    nodes: Ints,
+    M: sp.csr_matrix,
+    N1: sp.csr_matrix,
+    N2: sp.csr_matrix,
+) -> sp.csr_matrix:
+    """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is continued from its nearest nodes, so
+    that Π is defined there too and keeps constants."""
+    w = sp.diags(pairing.weight)
+    covered = N1.T @ w @ N1
+    nearest = cKDTree(second.points).query(first.points[nodes])[1]
+    P = sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nearest)), (len(nodes), len(second.points)))
+    right = (N1.T @ w @ N2 + (M - covered) @ P).tocsc()
+    used = np.flatnonzero(np.diff(right.indptr))
+    dense = spla.splu(M.tocsc()).solve(right[:, used].toarray())
+    dense[np.abs(dense) < ROUNDING * np.abs(dense).max()] = 0.0
+    block = sp.csr_matrix(dense)
+    return sp.csr_matrix((block.data, used[block.indices], block.indptr), (len(nodes), len(second.points)))
+
+
+def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
+    """∫N_k N_l over some facets, (n, n) for their nodes, which are sorted."""
+    xi, w = quadrature(surface.shape, 2 * surface.order + 2)
+    N, dN = tabulate(surface.shape, surface.order, xi)
+    tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)
+    area = np.sqrt(np.linalg.det(np.einsum("fqsa,fqta->fqst", tangents, tangents)))
+    values = np.einsum("fq,qi,qj->fij", w * area, N, N, optimize=True)
+    local = np.searchsorted(nodes, surface.facets[facets])
+    i, j = np.broadcast_arrays(local[:, :, None], local[:, None, :])
+    return sp.csr_matrix((values.ravel(), (i.ravel(), j.ravel())), (len(nodes), len(nodes)))
+
+
+def _rows(columns: Ints, values: Floats, count: int) -> sp.csr_matrix:
+    """One row a point: values (q, k) in columns (q, k)."""
+    q, k = columns.shape
+    return sp.csr_matrix((values.ravel(), columns.ravel(), k * np.arange(q + 1)), (q, count))
+
+
+def stacked(operators: list[ContactOperator]) -> ContactOperator:
+    """Several contacts as one list of nodes and points (their jumps stay block-diagonal)."""
+    if len(operators) == 1:
+        return operators[0]
+
+    def rows(name: str) -> Floats:
+        return np.concatenate([getattr(op, name) for op in operators])
+
+    def diagonal(name: str) -> sp.csr_matrix:
+        return sp.block_diag([getattr(op, name) for op in operators], format="csr")
+
+    return ContactOperator(
+        np.concatenate([op.nodes for op in operators]), rows("frames"),
+        diagonal("jump1"), diagonal("jump2"), diagonal("mass"),
+        diagonal("shape"), diagonal("hat"),
+        rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
+    )  # fmt: skip

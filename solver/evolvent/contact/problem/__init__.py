@@ -1,0 +1,1 @@
+"""What a contact problem states, and its bodies condensed."""

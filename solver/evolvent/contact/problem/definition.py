@@ -1,0 +1,216 @@
+"""What a contact problem states: bodies, the surfaces that may touch, the steps of a sweep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from evolvent.contact.nitsche.flux_recovery import SAFETY
+from evolvent.fem.body import Body, Freedom
+from evolvent.fem.surface import boundary_group
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.input_checks import Words, array, is_index, members, number, refuse
+
+Side = tuple[int, str]
+RIGID = 1e-9  # how far a rotation's columns may be from orthonormal
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two facet groups that may touch: (body index, group name) each.
+
+    first: carries the pressure, unless its body is more than ten times as stiff as the other (pressure_carrier.py); the
+        coarser surface.
+    second: the other one, also of the same body.
+    friction: Coulomb's μ.
+    reach: the gap [mm] up to which a node can come into contact within a step; by default a tenth of the first
+        surface's extent.
+    Raises InputError.
+    """
+
+    first: Side
+    second: Side
+    friction: float = 0.0
+    reach: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, side in (("first", self.first), ("second", self.second)):
+            pair = isinstance(side, tuple | list) and len(side) == 2
+            if not (pair and is_index(side[0]) and isinstance(side[1], str)):
+                refuse(f"contact, {name} side", "a body's index and a facet group", side, 'write (0, "top")')
+            object.__setattr__(self, name, (int(side[0]), side[1]))
+        if self.first == self.second:
+            refuse("contact", "two different surfaces", Words(f"{self.first} on both sides"), "name the other surface")
+        remedy = "give Coulomb's μ, 0 without friction"
+        number("contact, friction", self.friction, "a finite number >= 0", remedy, lambda μ: μ >= 0.0)
+        if self.reach is not None:
+            remedy = "leave it out for a tenth of the first surface's extent"
+            number("contact, reach", self.reach, "a finite number > 0 [mm]", remedy, lambda reach: reach > 0.0)
+
+
+@dataclass(frozen=True)
+class Nitsche:
+    """How contact is imposed; the defaults suit nearly all problems.
+
+    safety: γ over its coercivity limit, > 0; θ = 1 needs about 1.2.
+    theta: θ in [−1, 1]: 1 symmetric, 0 incomplete, −1 skew variant.
+    Raises InputError.
+    """
+
+    safety: float = SAFETY
+    theta: float = 1.0
+
+    def __post_init__(self) -> None:
+        number("nitsche, safety", self.safety, "a finite number > 0", f"{SAFETY:g} is the default", lambda x: x > 0.0)
+        number("nitsche, theta", self.theta, "−1 <= θ <= 1", "take 1, 0 or −1", lambda θ: abs(θ) <= 1.0)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Bodies and the contacts between them.
+
+    bodies: all 2D or all 3D, each in at least one contact: one that is in none feels nothing of the others.
+    contacts: every pair of surfaces once.
+    Raises InputError; MeshError for a group that cannot be in contact.
+    """
+
+    bodies: tuple[Body, ...]
+    contacts: tuple[Contact, ...]
+    nitsche: Nitsche = Nitsche()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bodies", members("problem, bodies", self.bodies, (Body,), "(punch, block)"))
+        example = '(Contact((0, "face"), (1, "top")),)'
+        object.__setattr__(self, "contacts", members("problem, contacts", self.contacts, (Contact,), example))
+        if not isinstance(self.nitsche, Nitsche):
+            refuse("problem, nitsche", "a Nitsche", self.nitsche, "write Nitsche(theta=-1.0), or leave it out")
+        for contact in self.contacts:
+            for side in (contact.first, contact.second):
+                self._check_side(side)
+        self._check_all_touched()
+        self._check_distinct()
+        found = sorted({body.mesh.dimension for body in self.bodies})
+        if len(found) > 1:
+            refuse("problem", "all bodies in 2D or all in 3D", Words("both"), "model all of them in the same dimension")
+
+    def _check_side(self, side: Side) -> None:
+        index, group = side
+        if not 0 <= index < len(self.bodies):
+            raise InputError(
+                f"contact: wanted a body index below {len(self.bodies)}, found {index}; bodies are counted from 0"
+            )
+        boundary_group(self.bodies[index].mesh, group, f"contact, body {index} ({self.bodies[index].name!r})")
+
+    def _check_all_touched(self) -> None:
+        touched = {index for contact in self.contacts for index, _ in (contact.first, contact.second)}
+        alone = [f"body {index} ({body.name!r})" for index, body in enumerate(self.bodies) if index not in touched]
+        if alone or not self.contacts:
+            raise InputError(
+                f"problem: wanted at least one contact, and every body in one, found {len(self.contacts)} and none for "
+                f"{', '.join(alone) or 'no body'}; add a contact, or leave the body out"
+            )
+
+    def _check_distinct(self) -> None:
+        """The same facets in contact with the same twice would press twice."""
+        for contact in self.contacts:
+            if contact.first[0] == contact.second[0] and self._shared(contact.first, contact.second):
+                refuse("contact", "two surfaces without common facets", (contact.first, contact.second), "part them")
+        for one, other in combinations(self.contacts, 2):
+            for sides in ((other.first, other.second), (other.second, other.first)):
+                if self._shared(one.first, sides[0]) and self._shared(one.second, sides[1]):
+                    refuse("problem", "every pair of surfaces in one contact", (one, other), "leave out one of the two")
+
+    def _shared(self, one: Side, other: Side) -> bool:
+        """Whether two sides have a facet in common."""
+        if one[0] != other[0]:
+            return False
+        facets = self.bodies[one[0]].mesh.facets
+        rows = (np.unique(np.sort(facets[group], axis=1), axis=0) for group in (one[1], other[1]))
+        both = np.concatenate(list(rows))
+        return one == other or len(np.unique(both, axis=0)) < len(both)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a body stands: x = rotation·X + translation.
+
+    rotation: (d, d), orthonormal columns, determinant 1.
+    translation: (d,) [mm].
+    Raises InputError.
+    """
+
+    rotation: Floats
+    translation: Floats
+
+    def __post_init__(self) -> None:
+        R = array("placement, rotation", self.rotation, ((2, 2), (3, 3)), "np.eye(3) turns nothing")
+        d = len(R)
+        if not (np.abs(R.T @ R - np.eye(d)).max() <= RIGID and np.linalg.det(R) > 0.0):
+            remedy = "make it of cosines and sines in full precision; a body cannot be scaled or mirrored"
+            refuse("placement, rotation", "a rotation: RᵀR = I, det R = 1", R.tolist(), remedy)
+        object.__setattr__(self, "rotation", R)
+        x = array("placement, translation", self.translation, ((d,),), f"give {d} coordinates [mm]")
+        object.__setattr__(self, "translation", x)
+
+    @staticmethod
+    def at_rest(d: int) -> Placement:
+        """Where a body of dimension d stands by itself."""
+        return Placement(np.eye(d), np.zeros(d))
+
+
+@dataclass(frozen=True)
+class Step:
+    """One position of a sweep.
+
+    load: a factor on all loads, prescribed displacements and motions.
+    placements: where the bodies stand, one each (None: at rest).
+    freedoms: (body index, Freedom) pairs that replace, in this step, the body's freedom of the same direction; their
+        values are not multiplied by `load`. So a normal load can come first and a tangential one after it.
+    Raises InputError.
+    """
+
+    load: float = 1.0
+    placements: tuple[Placement, ...] | None = None
+    freedoms: tuple[tuple[int, Freedom], ...] = ()
+
+    def __post_init__(self) -> None:
+        number("step, load", self.load, "a finite factor", "give a number, 1 for the whole load")
+        if self.placements is not None:
+            example = "(Placement.at_rest(2), Placement(R, x)), one a body"
+            placements = members("step, placements", self.placements, (Placement,), example)
+            object.__setattr__(self, "placements", placements)
+        example = '((0, Freedom("x", displacement=0.1)),)'
+        pairs = members("step, freedoms", self.freedoms, (tuple, list), example)
+        for pair in pairs:
+            if not (len(pair) == 2 and is_index(pair[0]) and isinstance(pair[1], Freedom)):
+                refuse("step, freedoms", "pairs of a body's index and a Freedom", pair, f"write {example}")
+        names = [(int(index), freedom.direction) for index, freedom in pairs]
+        if len(set(names)) < len(names):
+            refuse("step, freedoms", "each freedom of a body once", names, "leave out one of the two")
+        object.__setattr__(self, "freedoms", tuple((int(index), freedom) for index, freedom in pairs))
+
+
+def check_step(problem: Problem, step: Step) -> None:
+    """Raises InputError for a step that is none of this problem."""
+    if not isinstance(step, Step):
+        refuse("step", "a Step", step, "write Step(0.5), or a list of steps for a sweep")
+    count, d = len(problem.bodies), problem.bodies[0].mesh.dimension
+    if step.placements is not None and len(step.placements) != count:
+        found = Words(f"{len(step.placements)}")
+        remedy = f"Placement.at_rest({d}) moves nothing"
+        refuse("step, placements", f"one for each of the {count} bodies", found, remedy)
+    if any(len(placement.translation) != d for placement in step.placements or ()):
+        refuse("step, placements", f"rotations ({d}, {d})", step.placements, f"the bodies are {d}D")
+    for index, freedom in step.freedoms:
+        if not 0 <= index < count:
+            raise InputError(f"step, freedoms: wanted body indices below {count}, found {index}; count them from 0")
+        body = problem.bodies[index]
+        names = [f.direction for f in body.rigid.freedoms] if body.rigid else []
+        if freedom.direction not in names:
+            raise InputError(
+                f"step: wanted one of the freedoms {names} of {body.name!r} (body {index}), found "
+                f"{freedom.direction!r}; declare it in the body's Rigid first"
+            )

@@ -1,0 +1,25 @@
+"""Warnings that point to the user's line."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from pathlib import Path
+
+import evolvent
+import evolvent_meshes
+
+OURS = tuple(str(Path(str(package.__file__)).parent) + "/" for package in (evolvent, evolvent_meshes))
+
+
+def warn_user(message: str, category: type[Warning]) -> None:
+    """A warning at the line that called into the packages, however deep it is raised.
+
+    Python shows a warning of the same words once a line; in a loop over meshes each is meant. Filters that an
+    application sets hold as ever.
+    """
+    frame = sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(OURS):
+        frame = frame.f_back
+    name = frame.f_globals.get("__name__", "__main__")
+    warnings.warn_explicit(message, category, frame.f_code.co_filename, frame.f_lineno, module=name)

@@ -1,0 +1,1 @@
+"""Where two surfaces face each other."""

@@ -1,0 +1,1 @@
+"""Contact problems solved: steps, sweeps, reactions, fields."""

@@ -1,0 +1,1 @@
+"""One step of a contact problem: its contact system, its result, and the checks on it."""

@@ -1,0 +1,1 @@
+"""Elastic bodies: mesh, material, supports, loads, contact surfaces, stress."""

@@ -1,0 +1,1 @@
+"""dolfinx, its form compiler and PETSc, with all that depends on their versions."""

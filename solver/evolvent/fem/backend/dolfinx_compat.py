@@ -1,0 +1,280 @@
+"""The only file that knows dolfinx's versions: 0.5.2 (Debian 12) and 0.9.0 (Debian 13), and on.
+
+It asks what a function is called or which arguments it has, never for a version number. Everything here works on one
+body on one process (MPI.COMM_SELF): each body lives whole on the rank that owns it.
+
+Node numbers are always those of the caller's mesh (gmsh's); dolfinx renumbers, and the maps back are here.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+import platform
+from collections.abc import Callable
+from importlib import import_module, metadata
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import ufl
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from evolvent.fem.backend.form_compiler import compiling, form_directory, logging_kept
+from evolvent.fem.backend.petsc import PETSc  # before dolfinx, which would start it
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshError
+from evolvent_meshes.mesh.reference_cells import node_count
+from evolvent_meshes.mesh.soundness import check_cells
+
+with logging_kept():  # FFCx gives the root logger a handler, and warnings to it
+    import dolfinx
+    import dolfinx.fem.petsc
+    from dolfinx import cpp, fem
+
+Mesh = Any  # dolfinx and UFL carry no usable type hints in 0.5.2
+Space = Any
+Form = Any
+
+JIT_SECONDS = 1  # how long FFCx may wait for another process's compilation; our lock leaves nothing to wait for
+
+
+def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
+    """One body's dolfinx mesh on this process alone.
+
+    points: (n, 3) [mm]; of a 2D shape only x and y are used.
+    cells: (n_c, k) node indices in gmsh's order, complete Lagrange cells (tri3/6, quad4/9, tet4/10, hex8/27).
+    shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron"; order: 1 or 2.
+    Raises MeshError for what does not fit, as `evolvent_meshes.mesh.soundness.check_cells` does.
+    """
+    check_cells(points, cells, shape, order, "mesh")
+    dimension = CELL_DIMENSION[shape]
+    permuted = np.ascontiguousarray(cells[:, gmsh_permutation(shape, node_count(shape, order))], dtype=np.int64)
+    coordinates = np.ascontiguousarray(points[:, :dimension], dtype=np.float64)
+    domain = _coordinate_domain(shape, order, dimension)
+    # The coordinate element's argument has had two names and two places in the call.
+    name = _first_parameter(dolfinx.mesh.create_mesh, "domain", "e")
+    mesh = dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells=permuted, x=coordinates, **{name: domain})
+    mesh.topology.create_connectivity(dimension - 1, dimension)
+    return mesh
+
+
+def gmsh_permutation(shape: str, count: int) -> Ints:
+    """perm (count,) such that cells[:, perm] has basix's node order where cells of `count` nodes have gmsh's."""
+    return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
+
+
+def vector_space(mesh: Mesh, order: int) -> Space:
+    """Continuous Lagrange displacements, one vector of the mesh's dimension a node."""
+    dimension = mesh.geometry.dim
+    with compiling(dolfinx.__version__):
+        if hasattr(fem, "functionspace"):
+            return fem.functionspace(mesh, ("Lagrange", order, (dimension,)), **_compiler_options(fem.functionspace))
+        element = ufl.VectorElement("Lagrange", mesh.ufl_cell(), order)
+        return fem.FunctionSpace(mesh, element, **_compiler_options(fem.FunctionSpace.__init__))
+
+
+def input_nodes(mesh: Mesh) -> Ints:
+    """(n_g,) the caller's node number of each of dolfinx's geometry nodes (rows of mesh.geometry.x)."""
+    return np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
+
+
+def input_cells(mesh: Mesh) -> Ints:
+    """(n_c,) the caller's cell number of each of dolfinx's cells."""
+    return np.asarray(mesh.topology.original_cell_index, dtype=np.int64)
+
+
+def cell_nodes(mesh: Mesh) -> Ints:
+    """(n_c, k) the caller's node numbers of dolfinx's cells, in basix's node order."""
+    return input_nodes(mesh)[_geometry_dofmap(mesh)]
+
+
+def node_dofs(space: Space, mesh: Mesh, n_nodes: int | None = None) -> Ints:
+    """(n_nodes,) the block of `space` at each of the caller's nodes; -1 where there is none.
+
+    Degrees of freedom of node i are dimension * block + component. n_nodes: how many nodes the caller has, by default
+    up to the last one used. Nodes that no cell uses have no block, nor have the mid nodes of a second-order mesh in a
+    first-order space. Raises ValueError if the space has blocks where the mesh has no node.
+    """
+    blocks = _rows(space.dofmap.list, _n_cells(mesh))
+    nodes = cell_nodes(mesh)
+    if blocks.shape[1] > nodes.shape[1]:
+        raise ValueError(f"space: wanted at most the mesh's {nodes.shape[1]} nodes a cell, found {blocks.shape[1]}")
+    count = int(nodes.max()) + 1 if n_nodes is None else n_nodes
+    result = np.full(count, -1, dtype=np.int64)
+    # basix lists vertices first, then edges, then the interior: a lower order is a leading part of a higher one.
+    result[nodes[:, : blocks.shape[1]]] = blocks
+    return result
+
+
+def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
+    """(n_f,) dolfinx's indices of facets given by the caller's nodes, corners first as gmsh orders them: (n_f, k).
+
+    Raises MeshError if one of them is no facet of any cell.
+    """
+    corners = _facet_corners(mesh)
+    wanted = np.sort(facets[:, : corners.shape[1]], axis=1)
+    both, inverse = np.unique(np.vstack([corners, wanted]), axis=0, return_inverse=True)
+    inverse = inverse.reshape(-1)  # NumPy 2.0 gave it a second axis
+    of_row = np.full(len(both), -1, dtype=np.int32)
+    of_row[inverse[: len(corners)]] = np.arange(len(corners), dtype=np.int32)
+    found = of_row[inverse[len(corners) :]]
+    if np.any(found < 0):
+        missing = facets[np.argmax(found < 0)]
+        raise MeshError(
+            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none; mesh the "
+            "boundary together with the volume"
+        )
+    return found
+
+
+def facet_tags(mesh: Mesh, groups: list[Ints]) -> Any:
+    """Mesh tags for ufl.Measure("ds", subdomain_data=...): facets of groups[i], as in `facet_indices`, carry i + 1.
+
+    A facet in two groups keeps the later one.
+    """
+    tags = np.zeros(len(_facet_corners(mesh)), dtype=np.int32)
+    for tag, group in enumerate(groups, start=1):
+        tags[facet_indices(mesh, group)] = tag
+    tagged = np.flatnonzero(tags).astype(np.int32)
+    return dolfinx.mesh.meshtags(mesh, mesh.topology.dim - 1, tagged, tags[tagged])
+
+
+def compile_form(form: Form) -> Form:
+    """A UFL form compiled by FFCx; safe when ranks or runs compile the same one at once, or one was killed at it.
+
+    Raises CompileError, CacheError where it cannot be compiled or kept.
+    """
+    with compiling(dolfinx.__version__):
+        return fem.form(form, **_compiler_options(fem.form))
+
+
+def assemble_csr(form: Form) -> sp.csr_matrix:
+    """The matrix (n_dofs, n_dofs) of a bilinear UFL form, no boundary conditions."""
+    matrix = dolfinx.fem.petsc.assemble_matrix(compile_form(form))
+    matrix.assemble()
+    indptr, indices, data = matrix.getValuesCSR()
+    result = sp.csr_matrix((data, indices, indptr), shape=matrix.getSize())
+    matrix.destroy()
+    return result
+
+
+def assemble_array(form: Form) -> Floats:
+    """The vector (n_dofs,) of a linear UFL form."""
+    vector = fem.assemble_vector(compile_form(form))
+    return np.array(vector.array, dtype=np.float64)
+
+
+def assemble_number(form: Form) -> float:
+    """The value of a UFL functional."""
+    return float(fem.assemble_scalar(compile_form(form)))
+
+
+def constant(mesh: Mesh, value: float | tuple[float, ...]) -> Any:
+    """A number or vector in a form that may change without compiling the form again."""
+    return fem.Constant(mesh, np.asarray(value, dtype=PETSc.ScalarType))
+
+
+def silence_logs() -> None:
+    """dolfinx, FFCx and UFL report errors only: their notes on compilation are no news to an engineer."""
+    dolfinx.log.set_log_level(dolfinx.log.LogLevel.ERROR)
+    for name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY", "dolfinx"):
+        logging.getLogger(name).setLevel(logging.ERROR)
+
+
+def versions() -> dict[str, str]:
+    """What a result depends on: name -> version, "" where unknown."""
+    distributions = ("numpy", "scipy", "gmsh", "pyvista", "mpi4py")
+    found = {name: _distribution_version(name) for name in distributions}
+    return {
+        "evolvent": _distribution_version("evolvent"),
+        "python": platform.python_version(),
+        "dolfinx": dolfinx.__version__,
+        "petsc": ".".join(str(number) for number in PETSc.Sys.getVersion()),
+        "mpi": MPI.Get_library_version().split(",")[0].strip("\x00\n "),
+        **found,
+    }
+
+
+def _distribution_version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+
+
+def _coordinate_domain(shape: str, order: int, dimension: int) -> Any:
+    if hasattr(ufl, "VectorElement"):  # UFL had elements of its own until 2022
+        cell = ufl.Cell(shape, geometric_dimension=dimension)
+        scalar = ufl.FiniteElement("Lagrange", cell, order, variant="equispaced")
+        return ufl.Mesh(ufl.VectorElement(scalar, dim=dimension))
+    import basix.ufl
+
+    element = basix.ufl.element(
+        "Lagrange", shape, order, shape=(dimension,), lagrange_variant=basix.LagrangeVariant.equispaced
+    )
+    return ufl.Mesh(element)
+
+
+def _first_parameter(function: Callable[..., Any], *names: str) -> str:
+    """Whichever of these parameter names the installed dolfinx uses."""
+    known = inspect.signature(function).parameters
+    for name in names:
+        if name in known:
+            return name
+    raise RuntimeError(
+        f"dolfinx {dolfinx.__version__}: {function.__name__} wanted with one of the arguments {', '.join(names)}, "
+        f"found {', '.join(known)}; solver/evolvent/fem/backend/dolfinx_compat.py must learn this version"
+    )
+
+
+def _rows(table: Any, n_cells: int) -> Ints:
+    """A dofmap as (n_cells, k): an array since 0.7, an adjacency list before."""
+    return np.asarray(getattr(table, "array", table), dtype=np.int64).reshape(n_cells, -1)
+
+
+def _n_cells(mesh: Mesh) -> int:
+    return int(mesh.topology.index_map(mesh.topology.dim).size_local)
+
+
+def _geometry_dofmap(mesh: Mesh) -> Ints:
+    return _rows(mesh.geometry.dofmap, _n_cells(mesh))
+
+
+def _facet_corners(mesh: Mesh) -> Ints:
+    """(n_facets, corners) the caller's corner nodes of all of dolfinx's facets, each row sorted."""
+    topology = mesh.topology
+    topology.create_connectivity(topology.dim - 1, 0)
+    cell_vertices = _rows(topology.connectivity(topology.dim, 0), _n_cells(mesh))
+    node_of_vertex = np.zeros(topology.index_map(0).size_local, dtype=np.int64)
+    node_of_vertex[cell_vertices] = cell_nodes(mesh)[:, : cell_vertices.shape[1]]
+    n_facets = topology.index_map(topology.dim - 1).size_local
+    return np.sort(node_of_vertex[_rows(topology.connectivity(topology.dim - 1, 0), n_facets)], axis=1)
+
+
+def _compiler_options(function: Callable[..., Any]) -> dict[str, Any]:
+    """Arguments of a function that compiles: the libraries' defaults, but for cache and patience. They are given in
+    full, for what is not given is read from files of other programs in the current folder and the home's .config."""
+    jit = _defaults("dolfinx.jit", "DOLFINX_DEFAULT_JIT_OPTIONS", "DOLFINX_DEFAULT_JIT_PARAMETERS")
+    own = {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
+    ffcx = _defaults("ffcx", "options.FFCX_DEFAULT_OPTIONS", "parameters.FFCX_DEFAULT_PARAMETERS")
+    return {
+        _first_parameter(function, "jit_options", "jit_params"): jit | own,
+        _first_parameter(function, "form_compiler_options", "form_compiler_params"): ffcx,
+    }
+
+
+def _defaults(package: str, *names: str) -> dict[str, Any]:
+    """Option -> default, from whichever table the installed version has: (value, help), or (type, value, help, ...)."""
+    for name in names:
+        module, _, table = f"{package}.{name}".rpartition(".")
+        if (spec := find_spec(module)) and hasattr(found := import_module(spec.name), table):
+            return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(found, table).items()}
+    raise RuntimeError(
+        f"{package}: wanted one of {', '.join(names)}, found none; "
+        "evolvent.fem.backend.dolfinx_compat must learn this version"
+    )

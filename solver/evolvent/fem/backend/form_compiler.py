@@ -1,0 +1,117 @@
+"""Compiled forms: where FFCx keeps them, one process at a time, and without a word of the compiler's.
+
+FFCx 0.4 (Debian 12) gives the root logger a handler when it is imported, later ones exchange its handlers while they
+compile, and setuptools, by which they do, sets that logger to INFO and adds handlers where there are none
+(`setuptools.logging.configure`): every command of the compiler would be shown. All of them hand Python's warnings to
+the logging, where nobody may listen. An application's own logging is left as it is.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import logging
+import shutil
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from evolvent.fem.backend.cache_folder import cache_directory
+from evolvent_meshes.errors import EvolventError
+
+COMPILER_PACKAGES = ("distutils", "_distutils", "setuptools")
+COMPILER_ERRORS = ("VerificationError", "CompileError", "LinkError")
+FULL, FORBIDDEN = {errno.ENOSPC, errno.EDQUOT}, {errno.EACCES, errno.EPERM, errno.EROFS}
+LEAST_ROOM = 1_000_000  # bytes; a form's library has a tenth of it
+
+
+class CompileError(EvolventError, OSError):
+    """A form could not be compiled, or not be kept."""
+
+
+@contextmanager
+def logging_kept() -> Iterator[None]:
+    """The root logger has the level and the handlers afterwards that it had before, and warnings go where they went;
+    to the terminal where FFCx was imported earlier and handed them to a logging without handlers."""
+    root = logging.getLogger()
+    level, handlers, showing, earlier = root.level, list(root.handlers), warnings.showwarning, "ffcx" in sys.modules
+    try:
+        yield
+    finally:
+        root.setLevel(level)
+        root.handlers[:] = handlers
+        if warnings.showwarning is not showing or (earlier and not _warnings_are_heard()):
+            logging.captureWarnings(False)
+
+
+def _warnings_are_heard() -> bool:
+    loggers = logging.getLogger("py.warnings"), logging.getLogger()
+    return any(not isinstance(each, logging.NullHandler) for logger in loggers for each in logger.handlers)
+
+
+def form_directory(version: str) -> Path:
+    """Of the forms that this version of dolfinx has compiled. Raises CacheError."""
+    return cache_directory(f"dolfinx-{version}")
+
+
+@contextmanager
+def compiling(version: str) -> Iterator[None]:
+    """Where forms are compiled: one process at a time, so that FFCx never waits for another (nor gives up waiting).
+
+    version: dolfinx's. Raises CacheError; CompileError where there is no room, no right to write or no compiler.
+    """
+    directory = form_directory(version)
+    try:
+        with open(directory / "lock", "w") as lock, _silent_compiler():
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            _remove_half_written(directory)
+            yield
+    except Exception as error:
+        if cause := _cause(error, directory):
+            raise CompileError(f"{directory}: wanted to keep compiled forms there, found {cause}") from error
+        raise
+
+
+def _remove_half_written(directory: Path) -> None:
+    """Under our lock that is what a killed run, or one without room, has left."""
+    unfinished = [source for source in directory.glob("*.c") if not source.with_suffix(".c.cached").exists()]
+    for path in (*unfinished, *directory.glob("*.c.~*"), *directory.glob("*.c.failed")):
+        path.unlink()
+
+
+@contextmanager
+def _silent_compiler() -> Iterator[None]:
+    """distutils and setuptools log to the root logger itself; all that others have to say is let through."""
+    root = logging.getLogger()
+    level = root.level
+
+    def of_others(record: logging.LogRecord) -> bool:
+        return record.levelno >= level and not set(COMPILER_PACKAGES) & set(Path(record.pathname).parts)
+
+    with logging_kept():
+        root.addFilter(of_others)
+        try:
+            yield
+        finally:
+            root.removeFilter(of_others)
+
+
+def _cause(error: BaseException | None, directory: Path) -> str:
+    """What went wrong with the folder or the compiler, and the remedy; empty for an error of another kind."""
+    remedy = "name another folder by XDG_CACHE_HOME"
+    known: list[BaseException] = []
+    while error is not None and error not in known:
+        known.append(error)
+        error = error.__cause__ or error.__context__
+    numbers = {each.errno for each in known if isinstance(each, OSError)}
+    failed = [each for each in known if type(each).__name__ in COMPILER_ERRORS]
+    room = shutil.disk_usage(directory).free
+    if numbers & FULL or (failed and room < LEAST_ROOM):
+        return f"{room / 1e6:.1f} MB left on its disk; free some, or {remedy}"
+    if failed:
+        return f"{failed[-1]}; install a C compiler (packages/install does)"
+    if numbers & FORBIDDEN:
+        return f"no right to write; {remedy}"
+    return ""

@@ -1,0 +1,283 @@
+"""A body: mesh, material, and what acts on it; its stiffness, assembled by dolfinx.
+
+A rigidly coupled body is described in the frame of its coupling: the coupled nodes are at rest there, and the small
+rigid motion δ of that frame is an unknown with a load, or is prescribed. A rigid motion carries no stress, so the
+stiffness knows nothing of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+import ufl
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.backend.dolfinx_compat import Mesh
+from evolvent.fem.boundary import AXES, DIRECTIONS, BodyForce, Fixed, Freedom, Rigid, Traction
+from evolvent.fem.material import STEEL, Material
+from evolvent.fem.parallel.memory import keep_freed_memory
+from evolvent.fem.rigid_modes import rigid_modes
+from evolvent.fem.surface import boundary_group, facet_group
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.input_checks import members, refuse, text
+from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
+from evolvent_meshes.mesh.soundness import check_mesh
+
+__all__ = [
+    "DIRECTIONS",
+    "Assembled",
+    "Body",
+    "BodyForce",
+    "Fixed",
+    "Freedom",
+    "Load",
+    "Rigid",
+    "RigidMotions",
+    "Traction",
+    "assemble",
+    "prescribed",
+]
+
+Load = Traction | BodyForce
+
+
+@dataclass(frozen=True)
+class Body:
+    """A deformable body.
+
+    mesh: of `read_msh`, `evolvent_meshes.shapes.blocks` or of one's own arrays.
+    material: isotropic and elastic.
+    supports: what is held; the rigid motions that they leave free are found by equilibrium.
+    loads: tractions and body forces; a step's load factor multiplies them.
+    rigid: a facet group that moves as a rigid body.
+    name: stands in messages and file names.
+    Raises MeshError for a mesh that cannot be used (`evolvent_meshes.mesh.soundness`), InputError for anything else
+    that does not fit.
+    """
+
+    mesh: MeshData
+    material: Material = STEEL
+    supports: tuple[Fixed, ...] = ()
+    loads: tuple[Load, ...] = ()
+    rigid: Rigid | None = None
+    name: str = "body"
+
+    def __post_init__(self) -> None:
+        text("body", self.name, "give the body a name, or leave it out")
+        check_mesh(self.mesh, self.name)
+        if not isinstance(self.material, Material):
+            refuse(self.name, "a Material", self.material, "write Material(210e3, 0.3)")
+        supports = members(f"{self.name}, supports", self.supports, (Fixed,), '(Fixed("bottom"),)')
+        loads = members(f"{self.name}, loads", self.loads, (Traction, BodyForce), '(Traction("top", (0.0, -1.0)),)')
+        object.__setattr__(self, "supports", supports)
+        object.__setattr__(self, "loads", loads)
+        if self.rigid is not None and not isinstance(self.rigid, Rigid):
+            refuse(f"{self.name}, rigid", "a Rigid", self.rigid, 'write Rigid("top"), or leave it out')
+        self._check_groups()
+        self._check_dimension()
+        prescribed(self)
+
+    def _check_groups(self) -> None:
+        for support in self.supports:
+            facet_group(self.mesh, support.group, self.name)
+        for load in self.loads:
+            if isinstance(load, Traction):
+                boundary_group(self.mesh, load.group, f"{self.name}, traction")
+        if self.rigid:
+            facet_group(self.mesh, self.rigid.group, self.name)
+
+    def _check_dimension(self) -> None:
+        d = self.mesh.dimension
+        for support in self.supports:
+            if support.directions != AXES and not set(support.directions) <= set(AXES[:d]):
+                wanted = f'directions out of "{AXES[:d]}", as the body is {d}D'
+                refuse(f"{self.name}, support of {support.group!r}", wanted, support.directions, "leave out the others")
+        for load in self.loads:
+            if len(load.vector) != d:
+                of = f"traction on {load.group!r}" if isinstance(load, Traction) else "body force"
+                refuse(f"{self.name}, {of}", f"{d} components, as the body is {d}D", load.vector, "give as many")
+        for freedom in self.rigid.freedoms if self.rigid else ():
+            if freedom.direction not in DIRECTIONS[d]:
+                known = ", ".join(DIRECTIONS[d])
+                refuse(
+                    f"{self.name}, rigid coupling", f"a rigid motion of {known}, as the body is {d}D",
+                    freedom.direction, "name one of these",
+                )  # fmt: skip
+        if self.rigid and len(self.rigid.centre) < d:
+            refuse(f"{self.name}, rigid coupling", f"a centre of {d} coordinates", self.rigid.centre, "write (x, y, z)")
+
+
+def prescribed(body: Body) -> tuple[NDArray[np.bool_], Floats]:
+    """What the supports hold, (N, d) bool, and the displacements [mm] that they prescribe there, (N, d). Raises
+    InputError where two of them, or one and the rigid coupling, prescribe different ones."""
+    d = body.mesh.dimension
+    held, value = np.zeros((len(body.mesh.points), d), dtype=bool), np.zeros((len(body.mesh.points), d))
+    rigid = np.unique(body.mesh.facets[body.rigid.group]) if body.rigid else np.empty(0, dtype=np.int64)
+    for support in body.supports:
+        nodes = np.unique(body.mesh.facets[support.group])
+        for axis in (AXES.index(letter) for letter in support.directions if letter in AXES[:d]):
+            given, already = support.displacement, held[nodes, axis]
+            clash = already & (value[nodes, axis] != given)
+            if clash.any() or (given and np.isin(nodes, rigid).any()):
+                other = f"{value[nodes, axis][clash][0]:g} mm of another support" if clash.any() else "a rigid coupling"
+                raise InputError(
+                    f"{body.name}, support of {support.group!r}: wanted one displacement along {AXES[axis]} a node, "
+                    f"found {given:g} mm and {other} at shared nodes; let the groups not touch, or prescribe the same"
+                )
+            held[nodes, axis], value[nodes, axis] = True, given
+    return held, value
+
+
+@dataclass(frozen=True)
+class RigidMotions:
+    """The rigid motions of a body that contact sees.
+
+    shapes: (N, d, r) unit motions at the mesh nodes; load: (r,) their load [N, N·mm], NaN where the motion is
+    prescribed; value: (r,) the prescribed motion [mm, rad], NaN where it is loaded.
+    """
+
+    shapes: Floats
+    load: Floats
+    value: Floats
+
+    @property
+    def free(self) -> Ints:
+        """Indices of the unknown motions."""
+        return np.flatnonzero(np.isnan(self.value))
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """Stiffness and load of a body on all its degrees of freedom (node-major: d·node + component).
+
+    stiffness: (N·d, N·d) without supports.
+    held: (N·d,) bool, where a displacement is prescribed.
+    load: (N·d,) external nodal forces [N].
+    prescribed: (N·d,) displacements where held, zero elsewhere [mm].
+    """
+
+    body: Body
+    stiffness: sp.csr_matrix
+    held: NDArray[np.bool_]
+    load: Floats
+    prescribed: Floats
+    motions: RigidMotions = field(repr=False)
+
+    @cached_property
+    def free(self) -> Ints:
+        """Indices of the degrees of freedom that are not held."""
+        return np.flatnonzero(~self.held)
+
+    @property
+    def d(self) -> int:
+        """Space dimension."""
+        return self.body.mesh.dimension
+
+
+def assemble(body: Body) -> Assembled:
+    """Stiffness by dolfinx, loads, supports and rigid motions of a body.
+
+    A body that its supports let float is held at as many degrees of freedom as it has rigid motions left, and these
+    motions become unknowns without load: the reactions of such pins vanish in equilibrium.
+    """
+    keep_freed_memory()  # here, because whatever is large follows from a stiffness
+    d = body.mesh.dimension
+    points = body.mesh.points[:, :d]
+    stiffness, load = _stiffness_and_load(body)
+    held, value = prescribed(body)
+    if body.rigid:
+        motions = _coupled_motions(body, body.rigid, held)
+        held[np.unique(body.mesh.facets[body.rigid.group])] = True
+        _refuse_loose_pieces(body, held)
+    else:
+        _refuse_loose_pieces(body, held)
+        motions = _floating_motions(points, held)
+    resultant = np.einsum("ndr,nd->r", motions.shapes, load.reshape(points.shape))
+    loaded = RigidMotions(motions.shapes, motions.load + resultant, motions.value)
+    return Assembled(body, stiffness, held.ravel(), load, value.ravel(), loaded)
+
+
+def _stiffness_and_load(body: Body) -> tuple[sp.csr_matrix, Floats]:
+    mesh = dolfinx_compat.create_mesh(body.mesh.points, body.mesh.cells, body.mesh.shape, body.mesh.order)
+    space = dolfinx_compat.vector_space(mesh, body.mesh.order)
+    blocks = dolfinx_compat.node_dofs(space, mesh, len(body.mesh.points))
+    d = body.mesh.dimension
+    order = (d * blocks[:, None] + np.arange(d)).ravel()
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    λ, μ = (dolfinx_compat.constant(mesh, float(value)) for value in body.material.lame)
+    dx = ufl.Measure("dx", domain=mesh, metadata={"quadrature_degree": 2 * body.mesh.order})
+    ε = ufl.sym(ufl.grad(u))
+    form = ufl.inner(λ * ufl.tr(ε) * ufl.Identity(d) + 2 * μ * ε, ufl.sym(ufl.grad(v))) * dx
+    stiffness = cast(sp.csr_matrix, dolfinx_compat.assemble_csr(form)[order][:, order].tocsr())
+    stiffness.eliminate_zeros()  # sums drop them too, and who compares patterns must not be misled
+    return stiffness, _load(body, mesh, v)[order] if body.loads else np.zeros(len(order))
+
+
+def _load(body: Body, mesh: Mesh, v: object) -> Floats:
+    terms = []
+    for load in body.loads:
+        f, degree = dolfinx_compat.constant(mesh, load.vector), {"quadrature_degree": 2 * body.mesh.order + 2}
+        if isinstance(load, Traction):
+            tags = dolfinx_compat.facet_tags(mesh, [body.mesh.facets[load.group]])
+            terms.append(ufl.inner(f, v) * ufl.Measure("ds", domain=mesh, subdomain_data=tags, metadata=degree)(1))
+        else:
+            terms.append(ufl.inner(f, v) * ufl.Measure("dx", domain=mesh, metadata=degree))
+    return np.sum([dolfinx_compat.assemble_array(term) for term in terms], axis=0)
+
+
+def _coupled_motions(body: Body, rigid: Rigid, held: NDArray[np.bool_]) -> RigidMotions:
+    d = body.mesh.dimension
+    shapes = rigid_modes(body.mesh.points[:, :d] - np.asarray(rigid.centre)[:d])
+    chosen = shapes[:, :, [DIRECTIONS[d].index(f.direction) for f in rigid.freedoms]]
+    if held.any() and np.abs(chosen[held]).max(initial=0.0) > 1e-12 * np.abs(shapes).max():
+        names = ", ".join(f.direction for f in rigid.freedoms)
+        raise InputError(
+            f"{body.name}: wanted supports that allow the freedoms {names} of the rigid coupling of {rigid.group!r}, "
+            "which move the whole body, found one that holds it there; leave out one of the two, or move the face by "
+            "Fixed(group, direction, displacement) instead"
+        )
+    nan = float("nan")
+    return RigidMotions(
+        chosen,
+        np.array([nan if f.load is None else f.load for f in rigid.freedoms]),
+        np.array([nan if f.displacement is None else f.displacement for f in rigid.freedoms]),
+    )
+
+
+def _refuse_loose_pieces(body: Body, held: NDArray[np.bool_]) -> None:
+    """A mesh in several pieces, for instance because its nodes are not welded, needs each of them held."""
+    cells, points = body.mesh.cells, body.mesh.points[:, : body.mesh.dimension]
+    links = np.ones(cells.size, dtype=np.int8), (np.repeat(cells[:, 0], cells.shape[1]), cells.ravel())
+    count, number = connected_components(sp.csr_matrix(links, shape=(len(points),) * 2), directed=False)
+    for piece in range(count) if count > 1 else ():
+        nodes = np.flatnonzero(number == piece)
+        modes = rigid_modes(points[nodes] - points[nodes].mean(axis=0))
+        stopped = (modes / np.abs(modes).max(axis=(0, 1)))[held[nodes]]
+        if not len(stopped) or np.linalg.matrix_rank(stopped, tol=1e-10) < modes.shape[2]:
+            raise MeshError(
+                f"{body.name}: wanted a mesh in one piece, or every piece held by supports, found {count} pieces, and "
+                f"that with point {nodes[0]} is not held; weld nodes that coincide (gmsh.model.mesh."
+                "removeDuplicateNodes), or make each piece a body of its own"
+            )
+
+
+def _floating_motions(points: Floats, held: NDArray[np.bool_]) -> RigidMotions:
+    """What the supports leave free; pins one degree of freedom a motion in `held`."""
+    shapes = rigid_modes(points - points.mean(axis=0))
+    n, d, r = shapes.shape
+    scale = 1.0 / np.linalg.norm(shapes.reshape(n * d, r), axis=0)
+    basis = np.eye(r) if not held.any() else la.null_space(shapes[held] * scale, rcond=1e-10)
+    shapes = (shapes.reshape(n * d, r) * scale) @ basis * np.sqrt(n)
+    if shapes.shape[1]:
+        pins = la.qr(shapes.T, pivoting=True, mode="r")[1][: shapes.shape[1]]
+        held.reshape(-1)[pins] = True
+    count = shapes.shape[1]
+    return RigidMotions(shapes.reshape(n, d, count), np.zeros(count), np.full(count, np.nan))

@@ -1,0 +1,1 @@
+"""Elimination of a body onto the functionals that couple it with contact."""

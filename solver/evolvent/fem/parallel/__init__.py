@@ -1,0 +1,1 @@
+"""Ranks, cores and memory."""

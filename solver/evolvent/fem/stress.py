@@ -1,0 +1,40 @@
+"""Stress in the cells of a body, for pictures and checks away from the contact (contact pressure is λ, not this)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.fem.lagrange import gmsh_permutation, node_points, tabulate
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.input_checks import refuse
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+
+def cell_stress(mesh: MeshData, material: Material, displacement: Floats) -> Floats:
+    """σ [MPa] at the cells' centres, (n_cells, 3, 3) also in 2D (plane strain: σ_zz = ν(σ_xx + σ_yy)).
+
+    displacement: (N, d) of the mesh nodes [mm]. Raises InputError for another shape.
+    """
+    d = mesh.dimension
+    if np.shape(displacement) != (len(mesh.points), d):
+        wanted = f"numbers of shape {(len(mesh.points), d)}, one row a node of the mesh"
+        refuse("stress, displacement", wanted, displacement, "give what Solution.displacement returns for this body")
+    nodes = mesh.cells[:, gmsh_permutation(mesh.shape, mesh.order)]
+    corners = node_points(mesh.shape, 1)
+    dN = tabulate(mesh.shape, mesh.order, corners.mean(axis=0)[None])[1][0]
+    jacobian = np.einsum("cka,tk->cat", mesh.points[nodes][..., :d], dN)
+    slope = np.einsum("cka,tk,ctb->cab", displacement[nodes], dN, np.linalg.inv(jacobian))
+    strain = np.zeros((len(nodes), 3, 3))
+    strain[:, :d, :d] = 0.5 * (slope + np.swapaxes(slope, 1, 2))
+    λ, μ = material.lame
+    trace = np.trace(strain, axis1=1, axis2=2)
+    stress: Floats = λ * trace[:, None, None] * np.eye(3) + 2.0 * μ * strain
+    return stress
+
+
+def von_mises(stress: Floats) -> Floats:
+    """√(3/2 s:s) [MPa] of stresses (n, 3, 3), s their deviator: (n,)."""
+    deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+    result: Floats = np.sqrt(1.5 * np.einsum("nab,nab->n", deviator, deviator))
+    return result

@@ -1,0 +1,265 @@
+"""A body's contact surface: facets, nodal normals, weights; taken from named facet groups of a mesh.
+
+A surface is plain arrays, so that the search and the contact terms never touch the mesh they came from. Node order in
+a facet is basix's (corners of a quadrilateral in tensor order, then edges, then the interior), and the order of the
+corners is such that t1 × t2 (in 2D: the tangent turned clockwise) points out of the body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_matrix
+
+from evolvent.fem.lagrange import gmsh_permutation
+from evolvent.fem.lagrange import tabulate as shape_functions
+from evolvent.fem.reference_facets import TURNED_OVER, area_vector, hats, monomials, reference_cell, subcell_rule
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import FACET_SHAPE, MeshData, MeshError
+
+# Degree of the rule on each sub-facet for ∫ψ_j N_k: exact on plane facets (also distorted ones), ample on curved ones.
+MASS_DEGREE = 6
+EDGE = np.radians(40.0)  # between a node's normal and that of a facet there: half of an edge of 80°
+INNER_NODES = {("interval", 2): [2], ("quadrilateral", 2): [8], ("triangle", 2): [3, 4, 5]}
+"""Of second-order facets in basix's order: nodes that a facet has for itself; of a triangle those of its edges."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The contact surface of one body.
+
+    points: (n, d) node coordinates [mm], d = 2 or 3.
+    normals: (n, d) outward unit normals: mean of the facets' own normals at the node, weighted by facet area.
+    facets: (m, k) indices into points, basix order, oriented outwards.
+    shape, order: "interval", "quadrilateral" or "triangle"; 1 or 2.
+    nodes: (n,) the node of the body's mesh of each point.
+    """
+
+    points: Floats
+    normals: Floats
+    facets: Ints
+    shape: str
+    order: int
+    nodes: Ints
+
+    @classmethod
+    def from_arrays(cls, points: ArrayLike, facets: ArrayLike, shape: str, order: int,
+                    nodes: ArrayLike | None = None) -> Surface:
+        """A surface of outward oriented facets (basix order); the nodal normals are computed here.
+
+        ValueError if the sizes do not fit, a point is not finite, or a facet is folded or empty.
+        """
+        x, f = np.asarray(points, dtype=np.float64), np.asarray(facets, dtype=np.int64)
+        cell = reference_cell(shape, order)
+        if f.ndim != 2 or f.shape[1] != len(cell.nodes) or x.shape[1] != cell.nodes.shape[1] + 1:
+            raise ValueError(f"{shape} facets of order {order} need (m, {len(cell.nodes)}) node indices and "
+                             f"(n, {cell.nodes.shape[1] + 1}) points; found {f.shape} and {x.shape}")
+        if not np.isfinite(x).all():
+            raise ValueError(f"{int((~np.isfinite(x)).any(axis=1).sum())} of {len(x)} surface points are not finite")
+        own = np.arange(len(x)) if nodes is None else np.asarray(nodes, dtype=np.int64)
+        bare = cls(x, np.zeros_like(x), f, shape, order, own)
+        return replace(bare, normals=_nodal_normals(bare))
+
+    def evaluate(self, field: Floats, facets: Ints, xi: Floats) -> tuple[Floats, list[Floats]]:
+        """A nodal field (n, c) at xi (t, p, dt) of the facets (t,): values (t, p, c), derivative per direction."""
+        cell = reference_cell(self.shape, self.order)
+        nodal = cell.coefficients @ field[self.facets[facets]]
+        value, first = monomials(cell, xi)
+        return value @ nodal, [f @ nodal for f in first]
+
+    def positions(self, facets: Ints, xi: Floats) -> Floats:
+        """The points [mm] at xi (t, p, dt) of the facets (t,): (t, p, d)."""
+        return self.evaluate(self.points, facets, xi)[0]
+
+    def area_vectors(self, facets: Ints, xi: Floats) -> Floats:
+        """Outward facet normal times dA/dξ [mm or mm²] at xi (t, p, dt) of the facets (t,): (t, p, d)."""
+        return area_vector(self.evaluate(self.points, facets, xi)[1])
+
+    def areas(self) -> Floats:
+        """The length [mm] or area [mm²] of each facet: (m,)."""
+        return self._rule()[2].sum(axis=1)
+
+    @property
+    def size(self) -> float:
+        """Median length [mm] of the facets: in 3D the root of the area."""
+        return float(np.median(self.areas()) ** (1.0 / (self.points.shape[1] - 1)))
+
+    def weights(self) -> Floats:
+        """m_j = ∫ψ_j [mm or mm²], ψ_j the hats of the node grid: (n,), all positive."""
+        psi, _, measure = self._rule()
+        total = np.bincount(self.facets.ravel(), (measure @ psi).ravel(), minlength=len(self.points))
+        return total.astype(np.float64)
+
+    def mass(self) -> Any:
+        """M_jk = ∫ψ_j N_k [mm or mm²], N_k the Lagrange shape functions: scipy csr (n, n). Its row sums are m_j."""
+        psi, shape, measure = self._rule()
+        local = np.einsum("mq,qj,qk->mjk", measure, psi, shape, optimize=True)
+        k = self.facets.shape[1]
+        rows, columns = np.repeat(self.facets, k, axis=1).ravel(), np.tile(self.facets, (1, k)).ravel()
+        return csr_matrix((local.ravel(), (rows, columns)), shape=(len(self.points),) * 2)
+
+    def with_volume_of_hats(self, field: Floats) -> Floats:
+        """A nodal field (n,) whose interpolation by shape functions has the integral that the hats give the one it
+        comes from, nearly facet by facet; only inner nodes of facets (edge nodes of triangles) differ. In order 1 both
+        are the same."""
+        inner = INNER_NODES.get((self.shape, self.order))
+        if inner is None:
+            return field
+        psi, shape, measure = self._rule()
+        missing = np.einsum("mk,mk->m", measure @ (psi - shape), field[self.facets])
+        whole = np.bincount(self.facets.ravel(), (measure @ shape).ravel(), minlength=len(field))  # ∫N_k
+        nodes, result = self.facets[:, inner], field.copy()
+        np.add.at(result, nodes, (missing / whole[nodes].sum(axis=1))[:, None])
+        return result
+
+    def hat_matrix(self, facets: Ints, xi: Floats) -> csr_matrix:
+        """(q, n) ψ_j at xi (q, dt) of the facets (q,); a point that lies a little outside counts to the rim."""
+        inside = np.maximum(xi, 0.0)
+        if self.shape == "triangle":
+            inside = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1.0)
+        psi = hats(self.shape, self.order, np.minimum(inside, 1.0))
+        ends = psi.shape[1] * np.arange(len(psi) + 1)
+        return csr_matrix((psi.ravel(), self.facets[facets].ravel(), ends), shape=(len(psi), len(self.points)))
+
+    def moved(self, rotation: ArrayLike, translation: ArrayLike) -> Surface:
+        """The surface after x -> rotation (d, d) x + translation (d,) [mm]."""
+        turn = np.asarray(rotation, dtype=np.float64)
+        return replace(self, points=self.points @ turn.T + np.asarray(translation), normals=self.normals @ turn.T)
+
+    def displaced(self, u: Floats) -> Surface:
+        """The surface whose nodes have moved by u (n, d) [mm], with normals of its own. Raises ValueError where a facet
+        has folded."""
+        return Surface.from_arrays(self.points + u, self.facets, self.shape, self.order, self.nodes)
+
+    def _rule(self) -> tuple[Floats, Floats, Floats]:
+        """Hats (q, k), shape functions (q, k) and measures (m, q) of a rule on all sub-facets."""
+        xi, w = subcell_rule(self.shape, self.order, MASS_DEGREE)
+        every = np.arange(len(self.facets))
+        vectors = self.area_vectors(every, np.broadcast_to(xi, (len(every), *xi.shape)))
+        psi, shape = hats(self.shape, self.order, xi), shape_functions(self.shape, self.order, xi)[0]
+        return psi, shape, np.linalg.norm(vectors, axis=-1) * w
+
+
+def _nodal_normals(surface: Surface) -> Floats:
+    cell = reference_cell(surface.shape, surface.order)
+    every = np.arange(len(surface.facets))
+    points = np.concatenate([cell.nodes, cell.centre[None]])
+    vectors = surface.area_vectors(every, np.broadcast_to(points, (len(every), *points.shape)))
+    vectors, centre = vectors[:, :-1], vectors[:, -1:]
+    if np.any(folded := np.sum(vectors * centre, axis=2).min(axis=1) <= 0.0):
+        bad = int(np.argmax(folded))
+        raise ValueError(f"{folded.sum()} of {len(every)} facets are folded or empty (first: {bad}, its normals at the "
+                         "nodes and at the centre should differ by less than 90°): mend or refine the mesh")
+    unit = vectors / np.linalg.norm(vectors, axis=2, keepdims=True)
+    total = np.zeros_like(surface.points)
+    np.add.at(total, surface.facets, surface.areas()[:, None, None] * unit)
+    return total / np.linalg.norm(total, axis=1, keepdims=True)
+
+
+def refuse_edges(surface: Surface, of: str) -> None:
+    """A contact surface that goes round a sharp edge has normals there that neither face has, and wrong pressures.
+    Raises MeshError where a facet's normal is further than EDGE from that of one of its nodes."""
+    cell, every = reference_cell(surface.shape, surface.order), np.arange(len(surface.facets))
+    own = surface.area_vectors(every, np.broadcast_to(cell.nodes, (len(every), *cell.nodes.shape)))
+    own = own / np.linalg.norm(own, axis=2, keepdims=True)
+    agreement = np.einsum("mkd,mkd->mk", own, surface.normals[surface.facets])
+    facet, node = np.unravel_index(int(np.argmin(agreement)), agreement.shape)
+    if agreement[facet, node] < np.cos(EDGE):
+        place = ", ".join(f"{x:.4g}" for x in surface.points[surface.facets[facet, node]])
+        raise MeshError(
+            f"{of}: wanted a surface without sharp edges, found one at ({place}) mm; leave the faces behind its edges "
+            "out of the facet group, or give each face a contact of its own"
+        )
+
+
+def surface_of(mesh: MeshData, group: str | Sequence[str]) -> Surface:
+    """The contact surface made of one or more named facet groups, turned outwards with the cells behind the facets.
+
+    MeshError if a group is unknown (the message lists the known ones) or empty, or if a facet is not on the boundary.
+    """
+    names = [group] if isinstance(group, str) else list(group)
+    shape, order = FACET_SHAPE[mesh.shape], mesh.order
+    found = [facet_group(mesh, name, "contact surface") for name in names]
+    gmsh = np.concatenate([f for f in found if len(f)])[:, gmsh_permutation(shape, order)]
+    facets = _outward(mesh, gmsh, shape)
+    nodes, local = np.unique(facets, return_inverse=True)
+    points = mesh.points[nodes, : mesh.dimension]
+    return Surface.from_arrays(points, local.reshape(facets.shape), shape, order, nodes)
+
+
+def _outward(mesh: MeshData, facets: Ints, shape: str) -> Ints:
+    """The facets (global nodes), those turned over whose normal points into the cell behind them."""
+    points = mesh.points[:, : mesh.dimension]
+    corners = {"triangle": 3, "quadrilateral": 4, "tetrahedron": 4, "hexahedron": 8}[mesh.shape]
+    behind = cells_behind(mesh.cells[:, :corners], facets[:, : len(reference_cell(shape, 1).nodes)], len(points))
+    surface = Surface(points, points, facets, shape, mesh.order, np.arange(len(points)))
+    every = np.arange(len(facets))
+    middle = np.broadcast_to(reference_cell(shape, 1).centre, (len(every), 1, mesh.dimension - 1))
+    inside = points[mesh.cells[behind, :corners]].mean(axis=1)
+    away = surface.positions(every, middle)[:, 0] - inside
+    inwards = np.einsum("md,md->m", surface.area_vectors(every, middle)[:, 0], away) < 0.0
+    return np.where(inwards[:, None], facets[:, TURNED_OVER[shape, mesh.order]], facets)
+
+
+def cells_behind(cells: Ints, facets: Ints, n_points: int) -> Ints:
+    """The one cell (f,) that has all nodes of each facet (f, k). Raises MeshError for a facet with none or two."""
+    rows, columns = _behind(cells, facets, n_points)
+    count = np.bincount(rows, minlength=len(facets))
+    if np.any(count != 1):
+        bad = int(np.flatnonzero(count != 1)[0])
+        raise MeshError(
+            f"facets: wanted one cell behind each, as on the boundary of a body, found {count[bad]} behind facet {bad} "
+            f"with nodes {facets[bad].tolist()}; put only boundary facets of this body into the group"
+        )
+    behind = np.empty(len(facets), dtype=np.int64)
+    behind[rows] = columns
+    return behind
+
+
+def _behind(cells: Ints, facets: Ints, n_points: int) -> tuple[Ints, Ints]:
+    """Facets and cells that have all their nodes, in pairs."""
+
+    def incidence(items: Ints) -> Any:
+        rows = np.repeat(np.arange(len(items)), items.shape[1])
+        return csr_matrix((np.ones(items.size), (rows, items.ravel())), shape=(len(items), n_points))
+
+    on_facets = np.zeros(n_points, dtype=bool)
+    on_facets[facets] = True
+    near = np.flatnonzero(on_facets[cells].sum(axis=1) >= facets.shape[1])
+    shared = (incidence(facets) @ incidence(cells[near]).T).tocoo()
+    whole = shared.data > facets.shape[1] - 0.5
+    return shared.row[whole], near[shared.col[whole]]
+
+
+def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The facets (m, k) of a group that is there and not empty, each of a cell, in gmsh's node order. Raises
+    MeshError."""
+    if group not in mesh.facets:
+        known = ", ".join(sorted(mesh.facets)) or "(the mesh has none)"
+        raise MeshError(f"{of}: wanted one of the facet groups {known}, found {group!r}; name one of these")
+    facets = np.asarray(mesh.facets[group], dtype=np.int64)
+    if not len(facets):
+        raise MeshError(f"{of}: wanted at least one facet in the group {group!r}, found it empty; put facets into it")
+    lost = np.setdiff1d(np.arange(len(facets)), _behind(mesh.cells, facets, len(mesh.points))[0])
+    if len(lost):
+        raise MeshError(
+            f"{of}, facet group {group!r}: wanted facets of the mesh's cells, found {len(lost)} that are none, the "
+            f"first has the nodes {facets[lost[0]].tolist()}; mesh the boundary together with the body"
+        )
+    return facets
+
+
+def boundary_group(mesh: MeshData, group: str, of: str) -> Ints:
+    """The same of a group whose facets are on the boundary, each there once. Raises MeshError."""
+    facets = facet_group(mesh, group, of)
+    try:
+        cells_behind(mesh.cells, facets, len(mesh.points))
+    except MeshError as error:
+        raise MeshError(f"{of}, facet group {group!r}: {error}") from error
+    if len(np.unique(np.sort(facets, axis=1), axis=0)) < len(facets):
+        raise MeshError(f"{of}, facet group {group!r}: wanted each facet once, found some twice; leave out the copies")
+    return facets

@@ -1,0 +1,1 @@
+"""The gears of a pair, condensed once for all positions."""

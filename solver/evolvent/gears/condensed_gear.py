@@ -1,0 +1,170 @@
+"""A gear condensed once for all positions: one sector, meshed, condensed, and closed to the ring that the gear is."""
+
+from __future__ import annotations
+
+import time
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
+
+from evolvent.contact.nitsche.flux_recovery import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
+from evolvent.fem.body import Body, Fixed, assemble
+from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
+from evolvent.fem.material import Material
+from evolvent.fem.parallel.cores import Threads
+from evolvent.fem.surface import Surface, surface_of
+from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
+from evolvent.gears.kinematics import turn
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+COUPLING_TOLERANCE = 1e-10  # of the coupling between teeth, which is smooth; relative
+
+
+@dataclass(frozen=True)
+class GearBody:
+    """One gear, seen through the loaded flanks of its teeth.
+
+    flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
+    pressure, else None. chain: compliance of all modelled teeth, tooth
+    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
+    assemble_seconds, condense_seconds: what it took. worn: (n,) depth [mm] that the flank has lost, of which mesh and
+    chain know nothing.
+    """
+
+    gear: GearParameters
+    mesh: MeshData
+    material: Material
+    flank: Surface
+    traction: NitscheTraction | None
+    chain: Compliance
+    sign: int
+    assemble_seconds: float
+    condense_seconds: float
+    worn: Floats | None = None
+
+    def lost(self, facets: Ints, xi: Floats) -> Floats:
+        """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
+        return np.zeros(len(facets)) if self.worn is None else self.flank.hat_matrix(facets, xi) @ self.worn
+
+    @property
+    def d(self) -> int:
+        """Space dimension."""
+        return self.mesh.dimension
+
+    @property
+    def z(self) -> Floats:
+        """Heights (n,) of the flank's nodes [mm]."""
+        return self.flank.points[:, 2] if self.d == 3 else np.zeros(len(self.flank.points))
+
+    @property
+    def roll_length(self) -> Floats:
+        """Transverse involute curvature radius √(r² − r_b²) (n,) at the flank's nodes [mm]."""
+        r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
+        return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
+
+    @cached_property
+    def tip_zone(self) -> np.ndarray:
+        """(n,) bool: the flank nodes on the tip edge."""
+        r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
+        return r > r.max() - 1e-6 * self.gear.normal_module
+
+    def rows(self, tooth: int, nodes: Ints) -> Ints:
+        """(len, 2) rows of the chain for flank nodes of tooth pair i."""
+        return np.column_stack([np.full(len(nodes), self.sign * tooth), nodes])
+
+
+def condensed_gear(
+    gear: GearParameters,
+    mesh: MeshData,
+    material: Material,
+    teeth: list[int],
+    sign: int,
+    carries_pressure: bool,
+    safety: float = SAFETY,
+    whole: bool = False,
+    threads: Threads = nullcontext,
+) -> GearBody:
+    """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch;
+    whole: assemble and condense all sectors instead; threads: in which the largest products run.
+
+    The bore is held in the gear's frame.
+    """
+    begin = time.perf_counter()
+    flank = surface_of(mesh, "flank")
+    traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
+    pitch, numbers = 2.0 * np.pi / gear.z, sorted(sign * tooth for tooth in teeth)
+    if whole:
+        ring = whole_mesh(mesh, matching_cuts(mesh, pitch), gear.z)
+        named, own_safety = range(numbers[0], numbers[-1] + 1), safety if carries_pressure else None
+        system: WholeSystem | SectorSystem = whole_system(ring, material, gear.z, named, own_safety)
+    else:
+        system = _sector_system(sector_body(mesh, material, sign), flank, traction, pitch)
+    assembled = time.perf_counter()
+    condensed: SectorCondensation | Compliance = system.condensed(threads)
+    del system  # gigabytes at the fine end
+    if isinstance(condensed, SectorCondensation):
+        settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
+        condensed = ChainedCompliance(condensed, settings)
+    end = time.perf_counter()
+    return GearBody(gear, mesh, material, flank, traction, condensed, sign, assembled - begin, end - assembled)
+
+
+def sector_body(mesh: MeshData, material: Material, sign: int) -> Body:
+    """A sector held at its bore; sign: see GearBody."""
+    return Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+
+
+def _sector_system(
+    body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
+) -> SectorSystem:
+    """A function of its own so that the full matrices are gone when the elimination starts."""
+    parts = sector_parts(body, flank, traction, pitch)
+    return SectorSystem.of(parts.stiffness, parts.functionals, parts.low, parts.high, parts.graph, parts.free)
+
+
+@dataclass(frozen=True)
+class SectorParts:
+    """A sector with Nitsche's constant term, seen through its flank: stiffness (n, n), functionals (m, n), dofs of the
+    low and of the high cut face in matching order, those that are free, and the pattern of the plain stiffness."""
+
+    stiffness: sp.csr_matrix
+    functionals: sp.csr_matrix
+    low: Ints
+    high: Ints
+    free: Ints
+    graph: sp.csr_matrix
+
+
+def sector_parts(body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float) -> SectorParts:
+    """Assembles a sector."""
+    assembled = assemble(body)
+    K, d = assembled.stiffness, assembled.d
+    P = trace_functionals(flank, K.shape[0])
+    graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
+    if traction is not None:
+        K, P = K - traction.constant_term(), P - traction.flux()
+    cut = [(d * nodes[:, None] + np.arange(d)).ravel() for nodes in matching_cuts(body.mesh, pitch)]
+    low, high = (dofs[~assembled.held[dofs]] for dofs in cut)
+    return SectorParts(K, P, low, high, assembled.free, graph)
+
+
+def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:
+    """Nodes of the low and of the high cut face in matching order: high = low turned by the pitch [rad].
+
+    Raises ValueError where they do not match within 1e-7 mm.
+    """
+    low, high = (np.unique(mesh.facets[name]) for name in ("cut_low", "cut_high"))
+    turned = mesh.points[low] @ turn(pitch, 3).T
+    distance, partner = cKDTree(mesh.points[high]).query(turned)
+    if len(low) != len(high) or distance.max() > 1e-7:
+        raise ValueError(
+            f"sector: wanted cut faces that match when turned by the pitch, found {distance.max():.1e} mm apart"
+        )
+    return low, high[partner]

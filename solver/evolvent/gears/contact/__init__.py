@@ -1,0 +1,1 @@
+"""The contact of a gear pair at one position."""

@@ -1,0 +1,56 @@
+"""Which part of the flanks a search looks at: a window about each contact line, where that is within reach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.fem.surface import Surface
+from evolvent.gears.condensed_gear import GearBody
+from evolvent.gears.kinematics import Stand
+from evolvent_meshes.arrays import Floats, Ints
+
+EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
+
+
+def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) -> Floats:
+    """How far [mm of profile arc] pinion flank nodes lie from their slice's contact line; where that has left the
+    flank, from the flank's end on that side."""
+    pair, base = stand.pair, pinion.gear.base_radius
+    ρ = pinion.roll_length
+    ρ_line = pair.pitch_point_roll_lengths[0] + pair.roll_distance(stand.angle, tooth, pinion.z[node])
+    start, end = pair.path_of_contact
+    low, high = (pair.pitch_point_roll_lengths[0] + end_ for end_ in (start, end))
+    return np.abs(ρ[node] ** 2 - np.clip(ρ_line, low, high) ** 2) / (2.0 * base)
+
+
+def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
+    """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
+    d = bodies[0].d
+    first, second = (
+        body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in enumerate(bodies)
+    )
+    return first, second
+
+
+def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+    """(m,) bool: the pinion's facets that have a node within the window."""
+    near = _near_line(pinion, stand, tooth, half_width)
+    return np.asarray(near[pinion.flank.facets].any(axis=1))
+
+
+def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+    """(n,) bool: the flank nodes within the window; all where it has no end."""
+    every = np.arange(len(pinion.flank.points))
+    if np.isinf(half_width):
+        return np.ones(len(every), dtype=bool)
+    return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
+
+
+def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:
+    """Which flank nodes lie in slices whose contact line is on the path of contact, or near enough its ends that
+    deflection can bring the tip's edge into contact."""
+    pair = stand.pair
+    start, end = pair.path_of_contact
+    ξ = pair.roll_distance(stand.angle, tooth, pinion.z)
+    beyond = EXTENSION * pair.pinion.normal_module
+    return (ξ > start - beyond) & (ξ < end + beyond)

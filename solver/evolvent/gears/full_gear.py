@@ -1,0 +1,116 @@
+"""A gear meshed and factored as a whole: the long way round what `chain` does with one sector of it.
+
+All sectors are one mesh, with Nitsche's constant term on every tooth, as the chained sector has it; the answer is the
+same to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from evolvent.contact.nitsche.flux_recovery import nitsche_traction, trace_functionals
+from evolvent.fem.body import Body, Fixed, assemble
+from evolvent.fem.condensation.schur_complement import compliance
+from evolvent.fem.material import Material
+from evolvent.fem.parallel.cores import Threads
+from evolvent.fem.surface import surface_of
+from evolvent.gears.kinematics import turn
+from evolvent.gears.ring.ring_compliance import Part
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+
+def whole_mesh(sector: MeshData, cuts: tuple[Ints, Ints], count: int) -> MeshData:
+    """All `count` sectors of a gear as one mesh, sector s turned by +2πs/count.
+
+    cuts: the nodes of the low and of the high cut face in matching order. Facet groups: bore, and flank with the facets
+    of tooth 0 first, then of tooth 1, and so on.
+    """
+    low, high = cuts
+    size = len(sector.points)
+    number = size * np.arange(count)[:, None] + np.arange(size)
+    number[:, high] = np.roll(number[:, low], -1, axis=0)  # a sector's high face is the next one's low face
+    used, number = np.unique(number, return_inverse=True)
+    number = number.reshape(count, size)
+    turned = np.concatenate([sector.points @ turn(2.0 * np.pi * s / count, 3).T for s in range(count)])
+    facets = {name: _everywhere(number, sector.facets[name]) for name in ("bore", "flank")}
+    cells = _everywhere(number, sector.cells)
+    return MeshData(turned[used], sector.shape, sector.order, cells, facets, {"gear": np.arange(len(cells))})
+
+
+def _everywhere(number: Ints, entities: Ints) -> Ints:
+    """Entities (m, k) of a sector in all sectors, (count·m, k); number: (count, nodes of a sector)."""
+    return number[:, entities].reshape(-1, entities.shape[1])
+
+
+@dataclass(frozen=True)
+class WholeGear:
+    """Compliance of the flanks of some teeth, in one matrix (teeth·n·d)²; see `chain.Compliance`."""
+
+    matrix: Floats
+    dimension: int
+    teeth: range
+
+    @property
+    def node_count(self) -> int:
+        """Flank nodes n of one tooth."""
+        return len(self.matrix) // (self.dimension * len(self.teeth))
+
+    def block(self, parts: Sequence[Part]) -> Floats:
+        """See `chain.Compliance.block`."""
+        dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
+        rows = [[part.map(other.map(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
+                for part, i in zip(parts, dofs)]  # fmt: skip
+        return np.block(rows)
+
+    def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
+        """See `chain.Compliance.apply`."""
+        picked = self.matrix[np.ix_(self._dofs(*rows_in.T), self._dofs(*rows_out.T))]
+        loads = forces.reshape(*forces.shape[:-2], -1)
+        return np.asarray(loads @ picked).reshape(*forces.shape[:-2], -1, self.dimension)
+
+    def _dofs(self, teeth: Ints, nodes: Ints) -> Ints:
+        places = (teeth - self.teeth.start) * self.node_count + nodes
+        return (places[:, None] * self.dimension + np.arange(self.dimension)).ravel()
+
+
+@dataclass(frozen=True)
+class WholeSystem:
+    """Stiffness K (N·d)² on its `free` rows, functionals P of the named teeth's flanks, and K's pattern without
+    Nitsche's term."""
+
+    stiffness: sp.csr_matrix
+    functionals: sp.csr_matrix
+    free: Ints
+    graph: sp.csr_matrix
+    teeth: range
+    dimension: int
+
+    def condensed(self, threads: Threads = nullcontext) -> WholeGear:
+        """Onto the flanks. Raises NotPositiveDefinite and OutOfMemory."""
+        with threads():
+            dense = compliance(self.stiffness, self.functionals, self.free, graph=self.graph)
+        return WholeGear(dense, self.dimension, self.teeth)
+
+
+def whole_system(
+    mesh: MeshData, material: Material, count: int, teeth: range, safety: float | None
+) -> WholeSystem:
+    """Assembles a `whole_mesh` of `count` sectors, held at its bore. teeth: those whose flanks are wanted, −1 is the
+    last one; safety: that of γ, None for a gear that does not carry the pressure."""
+    assembled = assemble(Body(mesh, material, supports=(Fixed("bore"),), name="whole gear"))
+    K, d = assembled.stiffness.tocsr(), assembled.d
+    flanks = surface_of(mesh, "flank")
+    P = trace_functionals(flanks, K.shape[0])
+    graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
+    if safety is not None:
+        traction = nitsche_traction(mesh, material, flanks, safety)
+        K, P = (K - traction.constant_term()).tocsr(), P - traction.flux()
+    size = P.shape[0] // count  # nodes ascend from tooth to tooth, and so do the flanks' nodes
+    wanted = np.concatenate([size * (tooth % count) + np.arange(size) for tooth in teeth])
+    return WholeSystem(K, P.tocsr()[wanted], assembled.free, graph, teeth, d)

@@ -1,0 +1,112 @@
+"""Two rotating frames: where the gears stand, and how their flanks slip over one another.
+
+The pinion turns by θ_1 = φ − ψ_1 + extra, the wheel by θ_2 = π − ψ_2 − φ z_1/z_2 + extra, ψ the half angle of the tooth
+on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at the pitch point in the mid-face section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.flank import misalignment_rotation
+from evolvent_meshes.gears.pair import GearPair
+
+E_Z = np.array([0.0, 0.0, 1.0])
+
+ROUNDING = 1e-9  # of a step: a position so near the pitch crossing stands at it
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Where both gears stand.
+
+    angle: nominal pinion rotation φ [rad]. extra: rotations [rad, about +z] of pinion and wheel beyond the nominal
+    ones, exact however large.
+    """
+
+    pair: GearPair
+    angle: float
+    extra: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def turns(self) -> tuple[float, float]:
+        """(θ_1, θ_2) [rad] of the gears' own frames."""
+        pinion, wheel = self.pair.gears
+        d1, d2 = self.pair.working_pitch_diameters
+        return (
+            self.angle - pinion.half_angle(d1) + self.extra[0],
+            np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.extra[1],
+        )
+
+    def turned(self, gear: int, δ: float) -> Stand:
+        """With δ [rad] added to the extra rotation of a gear."""
+        extra = list(self.extra)
+        extra[gear] += δ
+        return replace(self, extra=(extra[0], extra[1]))
+
+    def centre(self, gear: int, d: int) -> Floats:
+        """Centre (d,) of gear 0 (pinion) or 1 (wheel)."""
+        return np.array([self.pair.centre_distance * gear, 0.0, 0.0])[:d]
+
+    def rotation(self, gear: int, d: int, tooth: int = 0) -> Floats:
+        """(d, d) from the own frame of a gear's tooth i to the common one: pinion +2πi/z_1, wheel −2πi/z_2."""
+        sign = 1.0 if gear == 0 else -1.0
+        own = turn(self.turns[gear] + sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
+        return own if d == 2 else self.tilt(gear) @ own
+
+    def tilt(self, gear: int) -> Floats:
+        """(3, 3) from a gear's aligned frame to where misalignment puts it; the pinion stays."""
+        return Rotation.from_rotvec(gear * misalignment_rotation(self.pair)).as_matrix()
+
+    def axis(self, gear: int) -> Floats:
+        """(3,) unit vector of a gear's axis."""
+        return self.tilt(gear)[:, 2]
+
+    def roll_distance(self, tooth: int, z: Floats) -> Floats:
+        """ξ [mm] of tooth pair i's contact line at heights z."""
+        return self.pair.roll_distance(self.angle, tooth, z)
+
+
+def line_of_action(pair: GearPair, d: int) -> Floats:
+    """(2, d): unit vector n along the line of action in the transverse section, from pinion to wheel, in which ξ grows,
+    and e_z × n, along which the pinion slides over the wheel by (1 + 1/u) ξ per radian."""
+    α = pair.operating_pressure_angle
+    return np.array([[np.sin(α), np.cos(α), 0.0], [-np.cos(α), np.sin(α), 0.0]])[:, :d]
+
+
+def turn(angle: float, d: int) -> Floats:
+    """Rotation matrix about +z, (d, d)."""
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.eye(d)
+    R[:2, :2] = [[c, -s], [s, c]]
+    return R
+
+
+def spin(points: Floats, centre: Floats, axis: Floats = E_Z) -> Floats:
+    """a × (x − c): displacement per radian about an axis (3,), (n, d); in 2D the axis is z."""
+    arm = points - centre
+    if arm.shape[1] == 2:
+        return np.column_stack([-arm[:, 1], arm[:, 0]])
+    return np.cross(axis, arm)
+
+
+def nominal_slip(rate: Floats, ξ_now: Floats, ξ_before: Floats, along: Floats, ratio: float, span: float) -> Floats:
+    """∫v_s over a step at the nominal ratio, per node (n, d) [mm].
+
+    rate: (n, d) relative velocity of 1 over 2 per radian of φ at the present position; ξ: roll distances of the node's
+    contact line (its slice of the pair) now and before; along: (n, d) unit tangent in which the velocity grows with ξ
+    by (1 + 1/u); ratio u; span Δφ. Where ξ changes sign in the step, slip counts from the pitch crossing: before it,
+    the flanks slipped the other way. Deciding that by slice, not by point, keeps a patch of one sign together. At the
+    crossing itself, to rounding, friction still has the old direction.
+    """
+    step = ξ_now - ξ_before
+    earlier = rate - (1.0 + 1.0 / ratio) * step[:, None] * along
+    zero = ROUNDING * np.abs(step)
+    crossed = (np.abs(ξ_now) > zero) & (np.sign(ξ_now) * ξ_before < zero)
+    part = np.where(crossed, ξ_now / np.where(step == 0.0, 1.0, step), 1.0)
+    mean = np.where(crossed[:, None], 0.5 * rate, 0.5 * (rate + earlier))
+    return mean * (span * part)[:, None]

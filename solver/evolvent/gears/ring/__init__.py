@@ -1,0 +1,1 @@
+"""One condensed sector closed to the ring of all teeth."""

@@ -1,0 +1,1 @@
+"""Positions of a gear pair: friction history, deflected flanks, the pitch."""

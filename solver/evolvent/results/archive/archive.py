@@ -1,0 +1,251 @@
+"""What a run leaves on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
+
+    OUT/results/gears.npz            the two sector meshes' surfaces
+    OUT/results/position_0003.npz    one swept position: converged results of the friction coefficients solved there
+    OUT/results/state.npz            the state to go on from, and how many positions are complete
+
+A file is written under another name and then renamed, so a run killed at any moment leaves complete files only; the
+state is written last and removed first, so what it counts is there and belongs to one run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import zipfile
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evolvent.fem.surface import surface_of
+from evolvent.gears.contact.contact_points import ContactPoints
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.sweep.friction_history import Memory
+from evolvent.gears.sweep.periodic_pitch import one_pitch
+from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.scene.differences import charts, differences, essence
+from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.files import open_file
+from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+Meshes = tuple[MeshData, MeshData]
+"""Sector meshes of pinion and wheel."""
+
+
+class ArchiveError(InputError):
+    """The archive cannot be read or does not belong to this scene; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class GearShape:
+    """A gear's surface for pictures, in its own frame: of one sector, tooth 0.
+
+    points: (n, 3) [mm]; facets: name -> (f, k) corner indices of a sector's boundary ("flank", "back", "tip", "fillet",
+    "face_low", "face_high", "bore"); flank_nodes: (m,) point of each flank node, in the order of PositionResult.node.
+    """
+
+    points: Floats
+    facets: dict[str, Ints]
+    flank_nodes: Ints
+
+
+def gear_shape(mesh: MeshData, flank_nodes: Ints) -> GearShape:
+    """The surface of a sector mesh."""
+    return GearShape(mesh.points, dict(mesh.facets), flank_nodes)
+
+
+def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:
+    """What the archive keeps of both sectors."""
+    pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
+    return pinion, wheel
+
+
+class Archive:
+    """The folder of a run. Only rank 0 writes."""
+
+    def __init__(self, folder: Path, scene: Scene) -> None:
+        self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
+        self.scene, self.fingerprint = scene, fingerprint(scene)
+
+    def keep(self, name: str, arrays: dict[str, Any]) -> None:
+        """Writes OUT/results/name atomically and durably. Raises WriteError, FolderError."""
+        self.files.write(f"results/{name}", arrays_bytes(arrays))
+
+    def write_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
+        """Keeps both gears' surfaces."""
+        arrays: dict[str, Any] = {}
+        for name, shape in zip(("pinion", "wheel"), shapes):
+            arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
+            arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
+        self.keep("gears.npz", arrays)
+
+    def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
+        """Raises ArchiveError if the kept results stand on other meshes."""
+        for kept, own in zip(self.read_gears(), shapes):
+            same = kept.points.shape == own.points.shape and np.allclose(kept.points, own.points, rtol=0.0, atol=1e-9)
+            if not (same and np.array_equal(kept.flank_nodes, own.flank_nodes)):
+                raise ArchiveError(
+                    f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "
+                    "version of Evolvent or gmsh; `evolvent run ... --overwrite` computes them anew"
+                )
+
+    def read_gears(self) -> tuple[GearShape, GearShape]:
+        """(pinion, wheel). Raises ArchiveError."""
+        arrays = read_arrays(self.folder / "gears.npz")
+        return _shape(arrays, "pinion"), _shape(arrays, "wheel")
+
+    def write_position(self, index: int, position: SweptPosition) -> None:
+        """Keeps a position and the state after it."""
+        arrays: dict[str, Any] = {
+            "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
+        }  # fmt: skip
+        for i, result in enumerate(position.results):
+            arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
+        self.keep(f"position_{index:04d}.npz", arrays)
+        self.keep("state.npz", self._state_arrays(index + 1, position.state))
+
+    def read_positions(self, pair: GearPair) -> list[SweptPosition]:
+        """The pitch, each position as it was solved last, without their states. Raises ArchiveError."""
+        return one_pitch(self.read_sweep(pair))
+
+    def read_sweep(self, pair: GearPair) -> list[SweptPosition]:
+        """All positions in the order in which they were solved, without their states. Raises ArchiveError."""
+        count = int(self._state()["complete"])
+        return [self._position(k, pair) for k in range(count)]
+
+    def read_state(self, pair: GearPair) -> SweepState | None:
+        """The state after all complete positions, or None where nothing is kept.
+
+        Raises ArchiveError if the archive belongs to another scene.
+        """
+        if not (self.folder / "state.npz").exists():
+            return None
+        arrays = self._state()
+        memories = tuple(
+            _memory(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
+        )
+        extra = arrays["extra"]
+        return SweepState((float(extra[0]), float(extra[1])), memories)
+
+    def _state(self) -> dict[str, Any]:
+        arrays = read_arrays(self.folder / "state.npz")
+        self.require_own(arrays)
+        return arrays
+
+    def is_own(self) -> bool:
+        """Whether positions of this very scene are kept. Raises ArchiveError where what is kept cannot be read."""
+        path = self.folder / "state.npz"
+        return path.exists() and str(read_arrays(path).get("fingerprint")) == self.fingerprint
+
+    def require_own(self, arrays: dict[str, Any]) -> None:
+        """Raises ArchiveError where what was kept is another scene's."""
+        if str(arrays.get("fingerprint")) != self.fingerprint:
+            raise ArchiveError(
+                f"{self.folder}: wanted the results of this scene, found those of {self._another()}; resume with the "
+                "scene and the settings that it was run with (its scene.toml), name another folder with --out, or "
+                "compute anew with `evolvent run ... --overwrite`"
+            )
+
+    def _another(self) -> str:
+        """Whose results these are, as OUT/scene.toml tells."""
+        path = self.out / "scene.toml"
+        try:
+            found = differences(load_scene(path), self.scene)
+        except SceneError:
+            return f"another one, or of another version of Evolvent ({path} cannot be read)"
+        if found:
+            return f"another one: this one has {found}"
+        return f"another version of Evolvent: no key differs from {path}"
+
+    def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
+        arrays: dict[str, Any] = {
+            "fingerprint": self.fingerprint, "complete": complete, "extra": np.array(state.extra),
+            "memories": len(state.memories),
+        }  # fmt: skip
+        for i, memory in enumerate(state.memories):
+            if memory is not None:
+                arrays |= {
+                    f"{i}/angle": memory.stand.angle, f"{i}/extra": np.array(memory.stand.extra),
+                    f"{i}/pinion_rows": memory.rows[0], f"{i}/wheel_rows": memory.rows[1],
+                    f"{i}/pinion_forces": memory.forces[0], f"{i}/wheel_forces": memory.forces[1],
+                    f"{i}/flux": memory.flux,
+                }  # fmt: skip
+        return arrays
+
+    def _position(self, index: int, pair: GearPair) -> SweptPosition:
+        arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
+        try:
+            results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+            again, closes = bool(arrays["again"]), bool(arrays["closes"])
+        except KeyError as missing:
+            raise ArchiveError(
+                f"{self.folder}: wanted the results of this version of Evolvent, found some without {missing}; "
+                "compute anew with `evolvent run ... --overwrite`"
+            ) from missing
+        return SweptPosition(float(arrays["angle"]), results, SweepState((0.0, 0.0), ()), again, closes)
+
+
+def fingerprint(scene: Scene) -> str:
+    """A hash of all that results depend on: of the scene's values without its title and what says what else is written,
+    and of what its flank charts say, wherever these lie."""
+    bare = essence(scene)
+    values = json.dumps([bare.model_dump(mode="json"), derived_values(bare), *charts(scene)])
+    return hashlib.sha256(values.encode()).hexdigest()
+
+
+def arrays_bytes(arrays: dict[str, Any]) -> memoryview:
+    """The content of a NumPy archive."""
+    content = io.BytesIO()
+    np.savez(content, **{name.replace("/", "|"): value for name, value in arrays.items()})
+    return content.getbuffer()
+
+
+def read_arrays(path: Path) -> dict[str, Any]:
+    """Reads what `arrays_bytes` makes. Raises ArchiveError."""
+    try:
+        with open_file(path) as file, np.load(file, allow_pickle=False) as archive:
+            return {name.replace("|", "/"): archive[name] for name in archive.files}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        remedy = "move or remove it, then compute" if path.exists() else "compute"
+        raise ArchiveError(
+            f"{path}: wanted a results file, found none that can be read ({error}); {remedy} anew with `evolvent run "
+            "... --overwrite`"
+        ) from error
+
+
+def _shape(arrays: dict[str, Any], name: str) -> GearShape:
+    start = f"{name}/facets/"
+    facets = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
+    return GearShape(arrays[f"{name}/points"], facets, arrays[f"{name}/flank_nodes"])
+
+
+def _result_arrays(result: PositionResult) -> dict[str, Any]:
+    arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name not in ("stand", "contact")}
+    arrays |= {f"contact/{f.name}": getattr(result.contact, f.name) for f in fields(ContactPoints)}
+    return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
+
+
+def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
+    own = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
+    stand = Stand(pair, float(own.pop("angle")), (float(own["extra"][0]), float(own.pop("extra")[1])))
+    contact = ContactPoints(**{f.name: own.pop(f"contact/{f.name}") for f in fields(ContactPoints)})
+    own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
+    scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
+    values = own | scalars | {"stand": stand, "contact": contact}
+    return PositionResult(**{f.name: values[f.name] for f in fields(PositionResult)})
+
+
+def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:
+    extra = arrays[start + "extra"]
+    stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
+    rows = arrays[start + "pinion_rows"], arrays[start + "wheel_rows"]
+    forces = arrays[start + "pinion_forces"], arrays[start + "wheel_forces"]
+    return Memory(stand, rows, forces, arrays[start + "flux"])

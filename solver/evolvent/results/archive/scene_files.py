@@ -1,0 +1,31 @@
+"""The scene as it was solved, kept in the folder of its run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.scene.scene import GEARS, Scene
+
+SCENE_FILES = ("flank_pinion.csv", "flank_wheel.csv", "scene.toml")
+
+
+def keep_scene(scene: Scene, folder: RunFolder) -> None:
+    """Writes OUT/scene.toml, and the flank charts that it names beside it. Raises OSError."""
+    texts = scene_texts(scene)
+    for name in SCENE_FILES:
+        if name in texts:
+            folder.write_text(name, texts[name])
+        elif folder.is_ours(folder.out / name):
+            (folder.out / name).unlink()
+
+
+def scene_texts(scene: Scene) -> dict[str, str]:
+    """What `keep_scene` writes: file name -> text."""
+    local: dict[str, Any] = {}
+    texts: dict[str, str] = {}
+    for name in GEARS:
+        if chart := scene.flank_chart(name):
+            texts[f"flank_{name}.csv"] = chart.text()
+            local[name] = getattr(scene, name).model_copy(update={"flank_csv": f"flank_{name}.csv"})
+    return texts | {"scene.toml": scene.model_copy(update=local).resolved_toml()}

@@ -1,0 +1,1 @@
+"""Error bars of a run's figures."""

@@ -1,0 +1,1 @@
+"""Displacement, stress and pressure as fields, for ParaView."""

@@ -1,0 +1,107 @@
+"""Displacement and stress inside the teeth in contact, from what their flanks carry.
+
+A run knows flanks only: the inside of a sector was eliminated with its compliance. Both gears are condensed once more,
+the displacements of the cut faces follow from the forces on all teeth, and one factor a gear gives each sector's field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.fem.condensation.schur_complement import SectorRecovery
+from evolvent.fem.parallel.ranks import together
+from evolvent.fem.stress import cell_stress
+from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
+from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.kinematics import turn
+from evolvent.gears.ring.ring_compliance import ChainedCompliance
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.archive.archive import Archive
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.output import Skipping
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+
+@dataclass(frozen=True)
+class DeformedTooth:
+    """A sector of gear 0 or 1 in tooth pair `tooth`, in its own frame: displacement (N, d) [mm] of its nodes, stress
+    (cells, 3, 3) [MPa] at the cells' centres."""
+
+    gear: int
+    tooth: int
+    mesh: MeshData
+    displacement: Floats
+    stress: Floats
+
+
+class GearField:
+    """One gear under the forces of several positions: rows (m, 2) of its chain and forces (m, d) [N; N/mm in 2D] on
+    them in the gear's frame, at each position."""
+
+    def __init__(self, body: GearBody, rows: Sequence[Ints], forces: Sequence[Floats]) -> None:
+        self.body, self._rows, self._forces = body, rows, forces
+        self._pitch = 2.0 * np.pi / body.gear.z
+        every, place = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
+        loads = np.zeros((len(rows), len(every), body.d))
+        position = np.repeat(np.arange(len(rows)), [len(own) for own in rows])
+        loads[position, place.ravel()] = np.concatenate(forces)
+        assert isinstance(body.chain, ChainedCompliance)
+        self._cuts = body.chain.cut_displacements(every, loads)
+        parts = sector_parts(sector_body(body.mesh, body.material, body.sign), body.flank, body.traction, self._pitch)
+        self._free, number = parts.free, np.full(parts.stiffness.shape[0], -1)
+        number[self._free] = np.arange(len(self._free))
+        K, P = parts.stiffness[self._free][:, self._free], parts.functionals[:, self._free]
+        self._recovery = SectorRecovery(K, P, number[parts.low], number[parts.high])
+
+    def teeth(self, k: int) -> list[int]:
+        """The numbers of the gear's teeth that carry load at position k."""
+        return np.unique(self._rows[k][:, 0]).tolist()
+
+    def displacement(self, k: int, number: int) -> Floats:
+        """(N, d) [mm] of a tooth's sector at position k, in the sector's own frame."""
+        d, own = self.body.d, self._rows[k][:, 0] == number
+        forces = np.zeros((len(self.body.flank.points), d))
+        forces[self._rows[k][own, 1]] = self._forces[k][own] @ turn(number * self._pitch, d)
+        field = np.zeros(len(self.body.mesh.points) * d)
+        field[self._free] = self._recovery.displacement(forces.ravel(), self._cuts[number][k])
+        return field.reshape(-1, d)
+
+
+@dataclass(frozen=True)
+class Deformation:
+    """Both gears at the positions of a pitch, at the first friction coefficient."""
+
+    gears: tuple[GearField, GearField]
+
+    @staticmethod
+    def of(bodies: tuple[GearBody, GearBody], results: Sequence[PositionResult]) -> Deformation:
+        """From condensed gears and the positions' results."""
+        pinion = GearField(bodies[0], [r.pinion_rows for r in results], [r.pinion_forces for r in results])
+        wheel = GearField(bodies[1], [r.wheel_rows for r in results], [r.wheel_forces for r in results])
+        return Deformation((pinion, wheel))
+
+    def teeth(self, k: int) -> list[DeformedTooth]:
+        """Those that carry load at position k."""
+        return [self._tooth(gear, k, number) for gear in (0, 1) for number in self.gears[gear].teeth(k)]
+
+    def _tooth(self, gear: int, k: int, number: int) -> DeformedTooth:
+        body, u = self.gears[gear].body, self.gears[gear].displacement(k, number)
+        return DeformedTooth(gear, body.sign * number, body.mesh, u, cell_stress(body.mesh, body.material, u))
+
+
+def deformation_of(scene: Scene, archive: Archive, comm: MPI.Comm) -> Deformation | None:
+    """Of the run in the archive, on rank 0; None on the others. All ranks must call it. Raises what preparing a model
+    does, and ArchiveError."""
+    ways = Skipping(off=tuple(name for name in scene.skip.off if name != "one-sector"))
+    bodies = prepare_model(scene.model_copy(update={"skip": ways}), comm).model.bodies
+
+    def made() -> Deformation:
+        positions = archive.read_positions(scene.gear_pair())
+        return Deformation.of(bodies, [position.results[0] for position in positions])
+
+    return together(comm, lambda: made() if comm.rank == 0 else None)

@@ -1,0 +1,103 @@
+"""A position's pressures as smooth fields over the exact flank: for maps, pictures, and the gear opposite.
+
+The contact is a narrow ridge that crosses the rows of cells at an angle. Interpolated as it lies, a ridge a few points
+wide turns into a row of beads; interpolated along the contact line, at equal distance s from it, it stays a ridge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.fields.polygons import Polygons
+from evolvent.results.run_data import RunData
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.flank import Flank
+from evolvent_meshes.gears.pair import GearPair
+
+
+@dataclass(frozen=True)
+class FlankField:
+    """Pressure on one tooth pair's flanks at a position.
+
+    heights (h,) [mm]: of the node rows, ascending. distances, values: per row, distances [mm of profile arc] from the
+    contact line, positive towards the pinion's tip and ascending, and the values there; empty rows carry nothing.
+    """
+
+    heights: Floats
+    distances: tuple[Floats, ...]
+    values: tuple[Floats, ...]
+
+    def at(self, distance: Floats, z: Floats) -> Floats:
+        """Values (n, m) at distances (n, m) from the contact line, columns at heights z (m,); 0 off the contact."""
+        last = len(self.heights) - 1
+        if last == 0:
+            return np.column_stack([self._row(0, column) for column in distance.T])
+        below = np.clip(np.searchsorted(self.heights, z, side="right") - 1, 0, last - 1)
+        part = np.clip((z - self.heights[below]) / (self.heights[below + 1] - self.heights[below]), 0.0, 1.0)
+        columns = [
+            (1.0 - t) * self._row(k, column) + t * self._row(k + 1, column)
+            for k, t, column in zip(below, part, distance.T)
+        ]
+        return np.column_stack(columns)
+
+    def _row(self, k: int, distance: Floats) -> Floats:
+        if len(self.distances[k]) == 0:
+            return np.zeros_like(distance)
+        return np.interp(distance, self.distances[k], self.values[k], left=0.0, right=0.0)
+
+
+def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
+    """The pressure of a position on tooth pair `tooth` [MPa], from its averages about the nodes."""
+    mine = np.flatnonzero(result.tooth == tooth)
+    nodes = result.node[mine]
+    z, p = np.round(run.flank.z, 9), result.pressure[mine]
+    s = line_distance(run.pair, result, tooth, 0, run.flank.roll_length[nodes], z[nodes])
+    heights = np.unique(z)
+    members = [np.flatnonzero(z[nodes] == height) for height in heights]
+    rows = [row[np.argsort(s[row])] for row in members]
+    return FlankField(heights, tuple(s[row] for row in rows), tuple(p[row] for row in rows))
+
+
+def line_distance(
+    pair: GearPair, result: PositionResult, tooth: int, gear: int, roll_length: Floats, z: Floats
+) -> Floats:
+    """Profile arc [mm] from the nominal contact line to points at roll lengths ρ and heights z of gear 0 or 1, positive
+    towards the pinion's tip and the wheel's root; s = (ρ² − ρ_line²)/2r_b on an involute."""
+    sign, base = 1 - 2 * gear, pair.gears[gear].base_radius
+    line = pair.pitch_point_roll_lengths[gear] + sign * result.stand.roll_distance(tooth, z)
+    return np.asarray(sign * (roll_length**2 - np.sign(line) * line**2) / (2.0 * base))
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A rectangle of the exact flank of one gear's tooth 0: roll lengths ρ (n,) and heights z (m,) [mm]."""
+
+    gear: int
+    roll_length: Floats
+    z: Floats
+
+    def polygons(self, run: RunData) -> Polygons:
+        """Its surface in the gear's own frame, points in the order of (ρ, z) rows."""
+        ρ, z = np.meshgrid(self.roll_length, self.z, indexing="ij")
+        points = Flank(run.pair.gears[self.gear]).point(ρ, z).reshape(-1, 3)
+        number = np.arange(ρ.size).reshape(ρ.shape)
+        quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
+        return Polygons(points, (quads.reshape(-1, 4),))
+
+    def values(self, run: RunData, result: PositionResult, tooth: int, field: FlankField) -> Floats:
+        """The field (n, m) on it."""
+        ρ, z = np.meshgrid(self.roll_length, self.z, indexing="ij")
+        return field.at(line_distance(run.pair, result, tooth, self.gear, ρ, z), self.z)
+
+
+def flank_patch(run: RunData, gear: int, count: tuple[int, int] = (420, 160)) -> Patch:
+    """The whole meshed flank of a gear as `count` (profile, width) points."""
+    shape = run.shapes[gear]
+    points = shape.points[shape.flank_nodes]
+    base = run.pair.gears[gear].base_radius
+    ρ = np.sqrt(np.maximum(np.hypot(points[:, 0], points[:, 1]) ** 2 - base**2, 0.0))
+    half = 0.5 * run.pair.gears[gear].face_width
+    return Patch(gear, np.linspace(ρ.min(), ρ.max(), count[0]), np.linspace(-half, half, count[1]))

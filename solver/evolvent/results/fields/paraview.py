@@ -1,0 +1,163 @@
+"""Fields for ParaView: a time series of the loaded flanks with their pressures, and of the gears around them.
+
+    OUT/fields/contact.pvd      open this one in ParaView, or with pyvista.get_reader; time is the pinion rotation in °
+    OUT/fields/flanks_0003.vtp  the pinion's and the wheel's loaded flanks in contact, placed where they stand
+    OUT/fields/gears_0003.vtp   the modelled teeth around them, without these flanks
+
+Arrays of the flanks, one set for each friction coefficient, are named "pressure_MPa (mu=0.07)" and so on: pressure_MPa;
+traction_MPa: the contact traction on the pinion (pressure and friction) in space; slip_mm_per_rad: velocity of the
+pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. Pressures are averages about the
+nodes, which keep the force; the peaks are in summary.json. Where a layer of cells bears on a tip edge the pressure is
+singular, ten times that of the flanks: there pressure_MPa and traction_MPa are NaN, and edge_pressure_MPa, 0 elsewhere,
+has the pressure. The wheel's flanks carry pressures only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth
+(pair), roll_distance_mm.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.contact_slices import on_tip_edge
+from evolvent.results.fields.flank_field import flank_field, line_distance
+from evolvent.results.fields.polygons import (
+    Polygons,
+    flank_surface,
+    joined,
+    nodal,
+    on_flank,
+    place,
+    placed_teeth,
+    sliding,
+    space_vectors,
+)
+from evolvent.results.run_data import RunData, SolvedPosition, flank_nodes
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.vtk_xml import xml_bytes
+
+Arrays = dict[str, Floats]
+
+
+def write_fields(run: RunData, folder: RunFolder) -> Path:
+    """Writes the series of a run into OUT/fields; gives the .pvd file. Raises WriteError, FolderError."""
+    collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
+    series = ElementTree.SubElement(collection, "Collection")
+    for k, each in enumerate(run.positions):
+        flanks, arrays = flank_fields(run, each)
+        gears = surrounding(run, each[0].result)
+        for part, (name, surface, values) in enumerate((("flanks", flanks, arrays), ("gears", gears, {}))):
+            file = f"{name}_{k:04d}.vtp"
+            folder.write(f"fields/{file}", vtp_bytes(surface, values))
+            degrees = f"{np.degrees(run.angles[k]):.6f}"
+            ElementTree.SubElement(series, "DataSet", timestep=degrees, group="", part=str(part), name=name, file=file)
+    ElementTree.indent(collection)
+    text = ElementTree.tostring(collection, encoding="unicode")
+    return folder.write_text("fields/contact.pvd", f'<?xml version="1.0"?>\n{text}\n')
+
+
+def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Polygons, Arrays]:
+    """The loaded flanks of both gears' teeth in contact at a position, and their arrays; placed for the first μ."""
+    first = solved[0].result
+    parts, columns = [], []
+    for gear in (0, 1):
+        surface = flank_surface(run.shapes[gear], run.pair.face_width)
+        for tooth in sorted({tooth.tooth for each in solved for tooth in each.teeth}):
+            parts.append(place(first, gear, tooth, surface))
+            columns.append(_tooth_arrays(run, solved, gear, tooth))
+    return joined(parts), {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+
+
+def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, tooth: int) -> Arrays:
+    """The arrays of one tooth's flank."""
+    shape, nodes = run.shapes[gear], flank_nodes(run.pair.gears[gear], run.shapes[gear])
+    ξ = (1 - 2 * gear) * (nodes.roll_length - run.pair.pitch_point_roll_lengths[gear])
+    arrays = {
+        "gear": np.full(len(nodes.points), float(gear)),
+        "tooth": np.full(len(nodes.points), float(tooth)),
+        "roll_distance_mm": ξ,
+    }
+    for each in solved:
+        values = _pinion_values(run, each.result, tooth) if gear == 0 else _wheel_values(run, each.result, tooth)
+        values = _without_edges(values, on_tip_edge(each.cut, tooth, nodes.z))
+        arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
+    return {name: on_flank(shape, value) for name, value in arrays.items()}
+
+
+def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:
+    """The arrays with the pressure of nodes in `edge` (n,) bool apart."""
+    pressure = values["pressure_MPa"]
+    bears = edge & (pressure > 0.0)
+    return values | {
+        "pressure_MPa": np.where(bears, np.nan, pressure),
+        "traction_MPa": np.where(bears[:, None], np.nan, values["traction_MPa"]),
+        "edge_pressure_MPa": np.where(bears, pressure, 0.0),
+    }
+
+
+def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
+    pressure = nodal(run, result, tooth, result.pressure)
+    touching = pressure > 0.0
+    return {
+        "pressure_MPa": pressure,
+        "traction_MPa": -nodal(run, result, tooth, space_vectors(run, result, result.traction)),
+        "slip_mm_per_rad": np.where(touching[:, None], sliding(run, result, tooth), 0.0),
+        "sticks": np.where(touching, _sticking(run, result, tooth), 0.0),
+    }
+
+
+def _sticking(run: RunData, result: PositionResult, tooth: int) -> Floats:
+    """1 at the flank nodes whose nearest contact point sticks."""
+    points, nodes = result.contact, run.flank
+    mine = points.tooth == tooth
+    if not np.any(points.sticks[mine]):
+        return np.zeros(len(nodes.points))
+    s = line_distance(run.pair, result, tooth, 0, nodes.roll_length, nodes.z)
+    _, nearest = cKDTree(np.column_stack([points.across, points.z])[mine]).query(np.column_stack([s, nodes.z]))
+    return points.sticks[mine][nearest].astype(float)
+
+
+def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
+    """The pinion's pressure carried over along the contact line; the vectors stay with the pinion."""
+    nodes = flank_nodes(run.pair.wheel, run.shapes[1])
+    n = len(nodes.points)
+    pressure = np.zeros(n)
+    if np.any(result.tooth == tooth):
+        s = line_distance(run.pair, result, tooth, 1, nodes.roll_length, nodes.z)
+        field = flank_field(run, result, tooth)
+        for z in np.unique(nodes.z):
+            row = nodes.z == z
+            pressure[row] = field.at(s[row][:, None], np.array([z]))[:, 0]
+    zero = np.zeros((n, 3))
+    return {"pressure_MPa": pressure, "traction_MPa": zero, "slip_mm_per_rad": zero, "sticks": np.zeros(n)}
+
+
+def surrounding(run: RunData, result: PositionResult) -> Polygons:
+    """The teeth in contact without their loaded flanks, and one more on each side, of both gears."""
+    bare = {int(tooth) for tooth in np.unique(result.tooth)}
+    teeth = list(range(min(bare) - 1, max(bare) + 2))
+    placed = [placed_teeth(run, result, gear, teeth, bare) for gear in (0, 1)]
+    return joined([surface for surface in placed if surface is not None])
+
+
+def vtp_bytes(surface: Polygons, arrays: Arrays) -> bytes:
+    """The content of a .vtp in single precision."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+    mesh: Any = poly_data(Polygons(surface.points.astype(np.float32), surface.faces))
+    for name, values in arrays.items():
+        mesh.point_data[name] = np.ascontiguousarray(values, dtype=np.float32)
+    return xml_bytes(vtkXMLPolyDataWriter(), mesh)
+
+
+def poly_data(surface: Polygons) -> Any:
+    """A pyvista surface; pyvista, slow to load, is only loaded for it."""
+    import pyvista
+
+    faces = [np.column_stack([np.full(len(face), face.shape[1]), face]).ravel() for face in surface.faces]
+    return pyvista.PolyData(np.ascontiguousarray(surface.points), np.concatenate(faces))

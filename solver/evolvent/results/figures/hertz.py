@@ -1,0 +1,123 @@
+"""Peak pressures beside Hertz for the same loads, and beside estimates."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from evolvent.contact.hertz import LoadFactors
+from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
+from evolvent.results.drawing.teeth import compares_yang
+from evolvent.results.engagement import largest_peak
+from evolvent.results.mesh_facts import cells_across, few_cells_across
+from evolvent.results.run_data import RunData
+from evolvent.scene.checking.check_report import paper_estimate
+from evolvent.scene.checking.scene_warnings import FEWEST_CELLS
+from evolvent.scene.estimates import HertzEstimate
+from evolvent.scene.plain_text import signed
+from evolvent_meshes.arrays import Floats
+
+YANG_PRINTS = 1788.0
+"""Yang et al. 2022, Table 4 [MPa]; their Eq. 4 gives it neither with nor without their factors."""
+HERTZ = "#c98a1b"
+WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+
+
+def hertz_comparison(run: RunData, index: int = 0) -> Figure:
+    """Peak pressures of all slices beside Hertz for their own line load, and beside estimates."""
+    cuts = [each[index].cut for each in run.positions]
+    ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "peak", "hertz"))
+    start, end = run.pair.path_of_contact
+    inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
+    ratio = peak[inside] / hertz[inside] - 1.0
+    middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
+    see = f"Difference from Hertz for a slice's own line load: median {middle} %"
+    see += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
+    if few_cells_across(run):
+        see += f" For looking only: {cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
+    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
+    along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
+    along.plot(
+        ξ[inside],
+        peak[inside],
+        ".",
+        color=PINION,
+        markersize=dot_size(len(ξ)),
+        alpha=0.5,
+        label="computed, every slice",
+    )
+    along.plot(
+        ξ[inside],
+        hertz[inside],
+        ".",
+        color=HERTZ,
+        markersize=dot_size(len(ξ)) - 1,
+        alpha=0.5,
+        label="Hertz, the slice's line load",
+    )
+    estimate, line = run.scene.hertz_estimate(), np.linspace(start, end, 200)
+    along.plot(
+        line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length"
+    )
+    _largest(along, run, index)
+    along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
+    along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
+    along.set_ylim(0.0, 1.32 * along.get_ylim()[1])  # the legend lies above the curves
+    along.legend(loc="upper right")
+    _estimates(bars, run, index, ξ, peak)
+    if not run.plane:
+        pooled = "The largest counts a slice together with its neighbours on the line"
+        foot(figure, f"{pooled}; single slices scatter about it.")
+    return figure
+
+
+def _largest(axes: Axes, run: RunData, index: int) -> None:
+    """The largest pressure that the run reports, with its error bar; it may lie between two positions."""
+    top, bar = largest_peak(run, index), run.errors.bar("max_pressure_MPa", index)
+    face = {"markerfacecolor": "white" if top.at_zone_end else INK}
+    label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")
+    size = bar if np.isfinite(bar) else None
+    axes.errorbar(top.ξ, top.pressure, yerr=size, color=INK, capsize=4.0, linewidth=1.2, label=label, **(HOLLOW | face))
+
+
+def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
+    """Bars: a study's estimates, Hertz at the pitch point, and what was computed there."""
+    estimate = run.scene.hertz_estimate()
+    near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
+    shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
+    rows = [
+        *(_yang_estimates(estimate) if compares_yang(run.scene) else ()),
+        ("Hertz at the pitch point,\nmean line length", float(estimate.peak_pressure(0.0)), HERTZ),
+        ("Hertz at the pitch point,\nshortest line", shortest, HERTZ),
+        *([("computed near the\npitch line, median", float(np.median(peak[near])), PINION)] if near.any() else ()),
+        ("computed, largest", largest_peak(run, index).pressure, PINION),
+    ]
+    bar = run.errors.bar("max_pressure_MPa", index)
+    places = np.arange(len(rows))[::-1]
+    axes.barh(places, [row[1] for row in rows], color=[row[2] for row in rows], height=0.6)
+    known = [*[0.0] * (len(rows) - 1), bar if np.isfinite(bar) else 0.0]
+    for place, (_, value, _), more in zip(places, rows, known):
+        beside = {"xytext": (6, 0), "textcoords": "offset points"}
+        axes.annotate(plus_minus(value, more, 0), (value + more, place), va="center", fontsize=9, bbox=WHITE, **beside)
+    if known[-1]:
+        axes.errorbar(rows[-1][1], places[-1], xerr=known[-1], color=INK, capsize=4.0, linewidth=1.2)
+    axes.set_yticks(places, [row[0] for row in rows], fontsize=9)
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.set(xlabel="contact stress [MPa]", xlim=(0.0, 1.3 * max(row[1] + more for row, more in zip(rows, known))))
+    axes.grid(axis="y", visible=False)
+    if compares_yang(run.scene):
+        axes.axvline(YANG_PRINTS, color=INK, linestyle="--", linewidth=1.0)
+        note(axes, f"dashed: {YANG_PRINTS:.0f} MPa, as the paper prints it", 0.0, 1.05)
+
+
+def _yang_estimates(estimate: HertzEstimate) -> list[tuple[str, float, str]]:
+    """Eq. 4 of Yang et al. 2022 with and without its load factors."""
+    factors = LoadFactors()
+    named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
+    return [
+        ("Yang Eq. 4, $K_A K_v K_α K_β$ =\n" + named, paper_estimate(estimate, factors), "#b9bec7"),
+        ("Yang Eq. 4, K = 1", paper_estimate(estimate, LoadFactors.none()), "#b9bec7"),
+    ]

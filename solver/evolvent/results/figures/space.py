@@ -1,0 +1,116 @@
+"""The figure of the loaded pair in space, and the animation of a pitch: rendered views set into matplotlib figures."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from PIL import Image
+
+from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, palette, reduced, sheet
+from evolvent.results.engagement import Engagement, engagement
+from evolvent.results.figures.flank import pressure_top
+from evolvent.results.figures.scene3d import gear_picture, pair_picture
+from evolvent.results.figures.stress import OWN_ANGLE, STRESS
+from evolvent.results.run_data import RunData
+from evolvent.results.tables.figure_rows import position_row
+
+FRAME_MS = 110
+
+
+def loaded_pair(run: RunData, index: int = 0) -> Figure:
+    """The pair with the pressure on its flanks, and both gears' flanks by themselves."""
+    k = loudest(run, index)
+    result, top = run.positions[k][index].result, pressure_top(run, index)
+    teeth = run.positions[k][index].teeth
+    peak = position_row(run, run.positions[k][index]).max_pressure_MPa
+    load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
+    see = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
+    see += f", μ = {run.frictions[index]:g}."
+    figure = sheet(f"{run.scene.title}: pressure on the flanks", see, (12.4, 7.0))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
+    _image(
+        figure.add_subplot(grid[:, 0]),
+        pair_picture(run, result, top, (1500, 1060)),
+        "the pair, wheel drawn as glass, which tints colours",
+    )
+    _image(
+        figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (960, 560)), "pinion flanks, wheel taken away"
+    )
+    _image(
+        figure.add_subplot(grid[1, 1]), gear_picture(run, result, 1, top, (960, 560)), "wheel flanks, pinion taken away"
+    )
+    bar = figure.colorbar(
+        ScalarMappable(Normalize(0.0, top), PRESSURE_MAP),
+        ax=figure.axes,
+        location="bottom",
+        aspect=55,
+        shrink=0.7,
+        pad=0.015,
+        extend="max",
+    )
+    bar.set_label(f"pressure [MPa]   ({ABOVE})")
+    return figure
+
+
+def loudest(run: RunData, index: int) -> int:
+    """The position at which most teeth carry load, and of these the one of the largest pressure."""
+    keys = [(len(each[index].teeth), position_row(run, each[index]).max_pressure_MPa) for each in run.positions]
+    return max(range(len(keys)), key=keys.__getitem__)
+
+
+def _image(axes: Axes, image: np.ndarray, title: str) -> None:
+    axes.imshow(image)
+    axes.set_title(title, fontsize=10)
+    axes.axis("off")
+
+
+def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: None) -> bytes:
+    """The content of a GIF of one pitch that runs on without a seam: a pitch later every tooth stands where the one
+    before it stood.
+
+    step: called after each frame.
+    """
+    curve, top = engagement(run, index), pressure_top(run, index)
+    frames = []
+    for k in range(len(run.positions)):
+        frames.append(_frame(run, index, k, curve, top))
+        step()
+    colours = palette(frames[0])
+    first, *others = [reduced(frame, colours) for frame in frames]
+    content = io.BytesIO()
+    more = {"append_images": others, "duration": FRAME_MS, "loop": 0, "optimize": True}
+    first.save(content, format="GIF", save_all=True, **more)
+    return content.getvalue()
+
+
+def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
+    """A frame: the pair, and where its teeth stand on the curve of contact stress."""
+    result = run.positions[k][index].result
+    see = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
+    figure = sheet(run.scene.title, see, (9.0, 5.0))
+    left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
+    left.axis("off")
+    scale = ScalarMappable(Normalize(0.0, top), PRESSURE_MAP)
+    bar = {"fraction": 0.06, "pad": 0.01, "shrink": 0.8, "aspect": 40, "extend": "max"}
+    figure.colorbar(scale, ax=left, location="bottom", label=f"pressure [MPa]   ({ABOVE})", **bar)
+    right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
+    here = curve.position == k
+    right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)
+    right.set(xlabel=OWN_ANGLE.split("   ")[0], ylabel=STRESS)
+    right.set_ylim(bottom=0.0)
+    return _drawn(figure)
+
+
+def _drawn(figure: Figure) -> Image.Image:
+    canvas = FigureCanvasAgg(figure)
+    figure.set_dpi(100)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())

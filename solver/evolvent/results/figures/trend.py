@@ -1,0 +1,69 @@
+"""Average and maximum contact stress of the teeth over the friction coefficient (Yang et al. 2022, Fig. 10)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, TEETH, sheet
+from evolvent.results.drawing.teeth import long_name, short_name, shown_teeth
+from evolvent.results.engagement import Engagement, engagements
+from evolvent.results.run_data import RunData
+from evolvent.scene.plain_text import signed
+from evolvent_meshes.arrays import Floats
+
+
+def friction_trend(run: RunData) -> Figure:
+    """Average and maximum contact stress of the teeth over μ, and their changes (Fig. 10)."""
+    curves = sorted(engagements(run), key=lambda c: c.friction)
+    found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
+    each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
+    changes = ", ".join(f"{name} by {signed(change)} %" for name, change in each)
+    see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
+    figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
+    grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
+    for trend, colour, marker in zip(found, TEETH, "osD^"):
+        for column, values in enumerate((trend.average, trend.largest)):
+            grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
+            grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
+        ends = [(μ[k], trend.largest[k]) for k in np.flatnonzero(trend.at_zone_end)]
+        grid[0, 1].plot(*zip(*ends), color=colour, **{**HOLLOW, "marker": marker}) if ends else None
+    for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
+        grid[0, column].set_title(title, fontsize=10)
+        grid[0, column].set_ylim(0.0, (1.3 + 0.09 * len(found)) * max(np.max(t.largest) for t in found))
+        grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
+        grid[1, column].set_xlabel("friction coefficient μ")
+        grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
+    grid[0, 0].set_ylabel("contact stress [MPa]")
+    grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
+    handles, _ = grid[0, 1].get_legend_handles_labels()
+    hollow = [Line2D([], [], color=INK, label=AT_ZONE_END, **HOLLOW)] if any(t.at_zone_end.any() for t in found) else []
+    grid[0, 1].legend(handles=[*handles, *hollow], loc="upper right")
+    return figure
+
+
+@dataclass(frozen=True)
+class Trend:
+    """A tooth over the pitch, entries (n,) over μ ascending: average and maximum contact stress [MPa], and whether the
+    maximum lies where a tip-edge zone begins."""
+
+    tooth: int
+    average: Floats
+    largest: Floats
+    at_zone_end: np.ndarray
+
+
+def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
+    """Of these teeth; the average is along the contact line, then over the positions."""
+    return [_trend(curves, tooth) for tooth in teeth]
+
+
+def _trend(curves: Sequence[Engagement], tooth: int) -> Trend:
+    average = [np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]
+    peaks = [c.peak_of(tooth) for c in curves]
+    largest, at_end = [peak.pressure for peak in peaks], [peak.at_zone_end for peak in peaks]
+    return Trend(tooth, np.array(average), np.array(largest), np.array(at_end))

@@ -1,0 +1,91 @@
+"""The figures of a run: a row a position, a row a friction coefficient, in the units that reports use."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from evolvent.results.contact_slices import ToothSummary, balance_error, pitch_imbalance
+from evolvent.results.engagement import Engagement, crossing, engagements
+from evolvent.results.error_bars.position_spacing import spacing_errors
+from evolvent.results.line_peaks import line_peak
+from evolvent.results.mesh_facts import few_cells_across
+from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
+from evolvent.results.relief_kinks import peak_over_kink
+from evolvent.results.run_data import RunData, SolvedPosition
+from evolvent.results.shaft_forces import shaft_forces
+from evolvent.results.tables.summary_rows import FrictionRow, PositionRow, ToothRow
+
+DEGREES = 6
+"""Decimals of an angle: a hundredth of a micrometre on a flank; beyond them stands the round-off of its conversion."""
+
+
+def degrees(angle: float) -> float:
+    """Of an angle [rad], without the round-off of the conversion."""
+    return round(math.degrees(angle), DEGREES) + 0.0
+
+
+def position_rows(run: RunData) -> list[PositionRow]:
+    """All positions of the pitch, all friction coefficients."""
+    return [position_row(run, solved) for each in run.positions for solved in each]
+
+
+def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
+    """One position."""
+    result, width = solved.result, run.width
+    teeth = tuple(_tooth_row(run, solved, tooth) for tooth in solved.teeth)
+    return PositionRow(
+        pinion_angle_deg=degrees(result.stand.angle),
+        friction=result.friction,
+        torque_pinion_Nm=1e-3 * width * result.torques[0],
+        torque_gear_Nm=1e-3 * width * result.torques[1],
+        transmission_error_um=transmission_error_um(run, solved),
+        mesh_stiffness_N_per_mm_um=mesh_stiffness(run, solved),
+        secant_stiffness_N_per_mm_um=secant_stiffness(run, solved),
+        max_pressure_MPa=float(np.nanmax([tooth.max_pressure_MPa for tooth in teeth])),
+        tip_edge=any(tooth.edge_pressure > 0.0 for tooth in solved.teeth),
+        loss_percent=loss_percent(run, solved),
+        newton_iterations=result.iterations,
+        balance_error=balance_error(result),
+        seconds=result.seconds,
+        teeth=teeth,
+    )
+
+
+def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> ToothRow:
+    length, peak = tooth.contact_length * run.width, line_peak(run.pair, solved.cut, tooth.tooth, run.inner_path)
+    return ToothRow(tooth.tooth, tooth.force * run.width, peak.pressure, length, tooth.edge_pressure)
+
+
+def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
+    """One row per friction coefficient, in the scene's order; inner: see `engagement.engagement`."""
+    curves = engagements(run, inner)
+    lowest = curves[int(np.argmin(run.frictions))]
+    return [_friction_row(run, index, curve, lowest) for index, curve in enumerate(curves)]
+
+
+def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagement) -> FrictionRow:
+    results = [each[index].result for each in run.positions]
+    errors = 1e3 * np.array([result.transmission_error for result in results])
+    top = curve.peak
+    crosses = curve is not lowest and not few_cells_across(run)  # on few cells curves scatter about each other
+    loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
+    return FrictionRow(
+        friction=curve.friction,
+        max_pressure_MPa=top.pressure,
+        max_pressure_angle_deg=degrees(top.angle),
+        max_pressure_at_zone_end=top.at_zone_end,
+        max_pressure_at_relief_start=peak_over_kink(run, index, top) is not None,
+        mean_pressure_MPa=float(np.nanmean(curve.mean_pressure)),
+        transmission_error_peak_to_peak_um=float(np.ptp(errors)),
+        mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
+        secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
+        loss_percent=100.0 * loss,
+        crossing_deg=degrees(crossing(lowest, curve)) if crosses else math.nan,
+        balance_error=pitch_imbalance(results),
+        forces_on_pinion=shaft_forces(run, 0, index),
+        forces_on_wheel=shaft_forces(run, 1, index),
+        estimated_error=run.errors.figures[index] if run.errors.figures else None,
+        spacing_error=spacing_errors(run, index),
+    )

@@ -1,0 +1,175 @@
+"""What a reader has to know before trusting a number of a run: sentences that stand where numbers are printed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from evolvent.results.engagement import engagements, largest_peak
+from evolvent.results.mesh_facts import MeshFacts
+from evolvent.results.relief_kinks import peak_over_kink
+from evolvent.results.run_data import RunData, SolvedPosition
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.summary_rows import FrictionRow
+from evolvent.scene.checking.scene_warnings import FEWEST_CELLS, FINER, few_cells
+from evolvent.scene.plain_text import brief, signed
+
+WORST_CELL = 0.05
+"""Least scaled Jacobian that needs no word: hexahedra of a sector have 0.3 and more, what is cut from them may not."""
+
+FEWEST_NARROW = 1.0
+"""Cells across the narrowest tenth of the contact that need no word: with fewer, peaks were found twice too large."""
+LARGE_BAR = 0.5
+"""Of a figure, beyond which it is not known."""
+SPACING_SAID = 0.03
+"""Share of a figure that may lie between the positions without a word."""
+NAMES = {
+    "max_pressure_MPa": ("largest pressure", "MPa"),
+    "mean_pressure_MPa": ("mean pressure", "MPa"),
+    "transmission_error_peak_to_peak_um": ("peak-to-peak transmission error", "µm"),
+    "mesh_stiffness_N_per_mm_um": ("mesh stiffness", "N/(mm·µm)"),
+    "loss_percent": ("loss", "% of the input"),
+}
+"""Of the figures that have an error bar, and their units; the secant stiffness goes with the tangent."""
+
+
+def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
+    """Of a finished run."""
+    rows = friction_rows(run)
+    about = (
+        _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run), _about_large_bars(rows),
+        _about_error_bars(run), _about_spacing(run, rows),
+    )  # fmt: skip
+    return tuple(sentence for each in about for sentence in each)
+
+
+def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
+    cells, narrow = mesh.cells_across_contact_width, mesh.cells_across_narrow_contact
+    if not (cells >= FEWEST_CELLS and narrow >= FEWEST_NARROW):
+        wide = f"{cells:.1f} elements wide (median; {narrow:.1f} in its narrowest tenth)"
+        yield f"The contact is {wide}; {_few_cells(run)}"
+    if not mesh.min_scaled_jacobian >= WORST_CELL:
+        yield bad_cells(mesh.min_scaled_jacobian)
+
+
+def bad_cells(quality: float) -> str:
+    """What a scaled Jacobian below `WORST_CELL` means."""
+    return (
+        f"The least scaled Jacobian of a cell is {quality:.1g}, below {WORST_CELL:g}: long thin cells, of which none "
+        'is inverted, but which bend too little, above all of order 1; mesh.shape = "hexahedron" has better ones.'
+    )
+
+
+def _few_cells(run: RunData) -> str:
+    """What fewer cells than `FEWEST_CELLS` mean for this run's figures."""
+    if not run.errors.figures:
+        return few_cells()
+    largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
+    bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
+    return (
+        f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for looking only; "
+        f"the largest one is known within its error bar, {brief(bar)} %, but not where it occurs; for better ones "
+        f"{FINER}."
+    )
+
+
+def _about_tip_edges(run: RunData) -> Iterator[str]:
+    bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
+    if not any(bears):
+        return
+    share = max(_edge_share(solved) for each in run.positions for solved in each)
+    yield (
+        f"A tip edge bears at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
+        "the load: the pressure there is singular, grows with every finer mesh, and is reported apart "
+        "(edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
+    )
+    peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
+    if any(peak.at_zone_end for peak in peaks):
+        ξ = next(peak.ξ for peak in peaks if peak.at_zone_end)
+        yield (
+            f"The largest pressure stands where the zone of a tip edge begins (ξ = {signed(ξ, 2)} mm) and would be "
+            "larger further in: its value depends on where that is, and so on the mesh; relieve the tips."
+        )
+
+
+def _edge_share(solved: SolvedPosition) -> float:
+    """Of the load, on the tooth that carries most of those that bear on a tip edge."""
+    edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
+    return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
+
+
+def _about_relief(run: RunData) -> Iterator[str]:
+    curves = engagements(run)
+    found = [
+        peak_over_kink(run, k, curve.peak) for k, curve in enumerate(curves) if np.isfinite(curve.max_pressure).any()
+    ]
+    kinks = [kink for kink in found if kink is not None]
+    if not kinks:
+        return
+    kink = max(kinks, key=lambda kink: kink.pressure)
+    step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
+    yield (
+        f"The largest pressure stands, or may stand between positions, where a linear tip relief begins "
+        f"(ξ = {signed(kink.ξ, 2)} mm): over that kink of the flank Hertz' pressure rises from {brief(kink.hertz)} to "
+        f"about {brief(kink.pressure)} MPa within {2.0 * kink.way:.2g} mm, positions are {step:.2g} mm apart, and how "
+        'far it rises is a matter of how sharp the kink is made; take tip_relief_form = "parabolic", or more positions '
+        "(sweep.positions)."
+    )
+
+
+def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:
+    said = [words for row in rows for name in NAMES if (words := _unknown(row, name))]
+    if said:
+        yield (
+            f"Not known, for the error bar is more than half of it: {', '.join(said)}; nor is where a largest pressure "
+            "occurs. Take a finer mesh (mesh.level), or more positions (sweep.positions) where spacing_error is large."
+        )
+
+
+def _unknown(row: FrictionRow, name: str) -> str:
+    value, bars = getattr(row, name), row.estimated_error
+    if bars is None or not getattr(bars, name) > LARGE_BAR * abs(value) > 0.0:
+        return ""
+    words, unit = NAMES[name]
+    return f"{words} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
+
+
+def _about_error_bars(run: RunData) -> Iterator[str]:
+    if run.scene.output.error_bars and not run.errors.figures:
+        yield f"There are no error bars. {run.errors.missing}"
+
+
+def _about_spacing(run: RunData, rows: Sequence[FrictionRow]) -> Iterator[str]:
+    said = [words for name in NAMES if (words := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
+    if said:
+        step = math.degrees(run.pitch) / len(run.positions)
+        yield (
+            f"Positions are {brief(step)}° apart, and what may lie between them makes "
+            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(said)}; more of them "
+            "(sweep.positions) make that less."
+        )
+
+
+def _spaced(row: FrictionRow, name: str) -> str:
+    """The part of a figure's bar that comes from the spacing of positions, where it is large and most of it."""
+    part, bars = getattr(row.spacing_error, name), row.estimated_error
+    if not _share(row, name) > SPACING_SAID or (bars is not None and part < 0.5 * getattr(bars, name)):
+        return ""
+    words, unit = NAMES[name]
+    return f"± {brief(part)} {unit} of the {words} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
+
+
+def _share(row: FrictionRow, name: str) -> float:
+    """Of a figure that its spacing error is; 0 where there is none."""
+    part, value = getattr(row.spacing_error, name), getattr(row, name)
+    return part / abs(value) if value and math.isfinite(part) else 0.0
+
+
+def few_positions(row: FrictionRow) -> str:
+    """What has to be said below a picture of pressures where positions are too few for it; nothing where not."""
+    share = _share(row, "max_pressure_MPa")
+    if not share > SPACING_SAID:
+        return ""
+    return f"For looking only, positions are too few: between them pressures may be {brief(100.0 * share)} % larger."

@@ -1,0 +1,83 @@
+"""The tables of a run: summary.json, positions.csv, teeth.csv.
+
+`summary` gives plain values in the units that reports use (N·m, µm, MPa, degrees); files are written under another
+name and renamed, so that a reader never sees half a table.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.run_data import RunData
+from evolvent.results.tables.figure_rows import friction_rows, position_rows
+from evolvent.results.tables.run_warnings import warnings_of
+from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, RunFacts, Summary
+
+
+def summary(run: RunData, facts: RunFacts) -> Summary:
+    """What summary.json holds."""
+    return Summary(
+        **vars(facts),
+        schema_version=SCHEMA_VERSION,
+        scene=run.scene.model_dump(mode="json"),
+        warnings=warnings_of(run, facts.mesh),
+        estimated_error=ErrorBars(run.errors.method, run.errors.missing or None),
+        frictions=tuple(friction_rows(run)),
+        positions=tuple(position_rows(run)),
+    )
+
+
+def write_tables(folder: RunFolder, found: Summary) -> None:
+    """Writes summary.json, positions.csv and teeth.csv. Raises WriteError, FolderError."""
+    rows = found.positions
+    folder.write_text("positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
+    teeth = [
+        {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
+        for row in rows
+        for tooth in row.teeth
+    ]
+    folder.write_text("teeth.csv", csv_text(teeth))
+    write_summary(folder, found)
+
+
+def write_summary(folder: RunFolder, found: Summary) -> None:
+    """Writes summary.json. Raises WriteError, FolderError."""
+    values = {"schema_version": found.schema_version, **asdict(found)}
+    text = json.dumps(_without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
+    folder.write_text("summary.json", text + "\n")
+
+
+def _flat(row: dict[str, object]) -> dict[str, object]:
+    """A position without its list of teeth, but with their number."""
+    teeth = row.pop("teeth")
+    assert isinstance(teeth, (list, tuple))
+    return row | {"teeth_in_contact": len(teeth)}
+
+
+def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
+    """Rows with the same keys as a CSV file."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: _shown(value) for key, value in row.items()} for row in rows)
+    return stream.getvalue()
+
+
+def _shown(value: object) -> object:
+    """Nine digits are enough for people and for comparing two runs."""
+    return f"{value:.9g}" if isinstance(value, float) else value
+
+
+def _without_nan(value: object) -> object:
+    """JSON knows no NaN: null."""
+    if isinstance(value, Mapping):
+        return {str(key): _without_nan(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,118 @@
+"""OUT/run.log: held in memory until the run has meshed its gears, so that bad input leaves no file behind."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evolvent.results.archive.run_folder import LOG, RunFolder
+from evolvent_meshes.errors import InputError
+
+LOGGER = "evolvent"
+
+
+class LogFile(logging.Handler):
+    """A handler that keeps its lines until `begin`, then writes them and what follows to OUT/run.log.
+
+    A log without room is no reason to lose a run: what cannot be written is said once on stderr.
+    """
+
+    def __init__(self, folder: RunFolder, append: bool) -> None:
+        super().__init__()
+        self.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+        self._folder, self._mode, self._held = folder, "a" if append else "w", list[str]()
+        self._begun = self._lost = False
+
+    @property
+    def path(self) -> Path:
+        """OUT/run.log."""
+        return self._folder.out / LOG
+
+    def begin(self) -> None:
+        """From here on the run leaves files."""
+        if not self._begun:
+            self._begun = True
+            self._guarded(self._open)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """A line."""
+        line = self.format(record) + "\n"
+        if self._begun:
+            self._guarded(lambda: self._append(line))
+        else:
+            self._held.append(line)
+
+    def _open(self) -> None:
+        self._folder.list_log()
+        with open(self.path, self._mode, encoding="utf-8") as stream:
+            stream.writelines(self._held)
+
+    def _append(self, line: str) -> None:
+        with open(self.path, "a", encoding="utf-8") as stream:
+            stream.write(line)
+
+    def _guarded(self, write: Callable[[], None]) -> None:
+        if self._lost:
+            return
+        try:
+            write()
+        except OSError as error:
+            self._lost = True
+            print(f"evolvent: {self.path}: the log ends here ({error}); the run goes on", file=sys.stderr)
+
+
+class RunLog:
+    """The log of a run: a file on rank 0, nothing elsewhere."""
+
+    def __init__(self, handler: LogFile | None) -> None:
+        self._handler, self._logger = handler, logging.getLogger(LOGGER)
+
+    def begin(self) -> None:
+        """The run begins to leave files: what was held is written."""
+        if self._handler is not None:
+            self._handler.begin()
+
+    def info(self, message: str, *values: object) -> None:
+        """A line of the log."""
+        self._logger.info(message, *values)
+
+    def warning(self, message: str) -> None:
+        """A line of the log that is also said on stderr."""
+        self._logger.warning("warning: %s", message)
+        if self._handler is not None:
+            print(f"evolvent: warning: {message}", file=sys.stderr)
+
+    def error(self, message: str, *values: object) -> None:
+        """A line of the log on what ended the run."""
+        self._logger.error(message, *values)
+
+
+@contextmanager
+def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool) -> Iterator[RunLog]:
+    """The run's log, to which a resumed run adds; with the reason where the run does not end well."""
+    logger = logging.getLogger(LOGGER)
+    level, propagate = logger.level, logger.propagate
+    logger.setLevel(logging.INFO)
+    logger.propagate = False
+    handler: logging.Handler = LogFile(folder, resumed) if comm.rank == 0 else logging.NullHandler()
+    log = RunLog(handler if isinstance(handler, LogFile) else None)
+    logger.addHandler(handler)
+    try:
+        yield log
+    except BaseException as error:
+        if not isinstance(error, InputError):
+            log.begin()
+        with contextlib.suppress(Exception):
+            log.error("%s", str(error) if isinstance(error, KeyboardInterrupt) else f"failed: {error}")
+        raise
+    finally:
+        logger.removeHandler(handler)
+        handler.close()
+        logger.setLevel(level)
+        logger.propagate = propagate

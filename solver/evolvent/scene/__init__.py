@@ -1,0 +1,1 @@
+"""The scene file: read, checked, completed with defaults."""

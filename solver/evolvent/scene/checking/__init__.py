@@ -1,0 +1,1 @@
+"""What can be said of a scene before it is computed."""

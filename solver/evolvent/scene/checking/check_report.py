@@ -1,0 +1,243 @@
+"""The text of `evolvent check`: derived gear data, Hertz estimates, what is skipped, and what the run will cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from evolvent.contact.hertz import LoadFactors, yang_estimate
+from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.scene.checking.problem_size import counted, gigabytes, memory_megabytes, room_problem, sector_sizes
+from evolvent.scene.checking.scene_warnings import scene_warnings
+from evolvent.scene.estimates import HertzEstimate
+from evolvent.scene.gear_pair import working_angle_of
+from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.scene.plain_text import fixed
+from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.schema.wear import Wear
+from evolvent.scene.skips import is_plane, pitches, skipped, switched_off, touching_teeth
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
+
+HANDS = {1: "right", -1: "left"}
+
+
+class Row(NamedTuple):
+    """A line of a table: name, symbol, unit, and one or two values already written with their digits."""
+
+    name: str
+    symbol: str
+    unit: str
+    values: tuple[str, ...]
+
+
+def overview(scene: Scene) -> str:
+    """Everything `evolvent check` prints, as one text; symbols of ISO 21771."""
+    pair, estimate = scene.gear_pair(), scene.hertz_estimate()
+    blocks = [
+        scene.title,
+        table("Gears", [*_gear_rows(pair), *_chart_rows(scene)], GEARS),
+        table("Pair", _pair_rows(pair)),
+        table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
+        *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
+        table("Mesh and cost (estimate)", _cost_rows(scene), GEARS) + _room_line(scene),
+        _skip_lines(scene),
+        *_warning_lines(scene),
+    ]
+    return "\n\n".join(blocks)
+
+
+def _skip_lines(scene: Scene) -> str:
+    left_out = skipped(scene)
+    column = 2 + max((len(skip.name) for skip in left_out), default=0)
+    lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
+    off = switched_off(scene)
+    return "\n".join([*lines, *(["Computed the long way", f"  {', '.join(off)}"] if off else [])])
+
+
+def _warning_lines(scene: Scene) -> list[str]:
+    found = scene_warnings(scene)
+    return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in found)])] if found else []
+
+
+def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
+    """Aligned columns: name, symbol, unit, values to the right."""
+    lines = [f"{title:<62}" + "".join(f"{head:>13}" for head in heads)]
+    for row in rows:
+        lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f" {text:>12}" for text in row.values))
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _both(name: str, symbol: str, unit: str, digits: int, values: Iterable[float]) -> Row:
+    return Row(name, symbol, unit, tuple(fixed(value, digits) for value in values))
+
+
+def _one(name: str, symbol: str, unit: str, digits: int, value: float) -> Row:
+    return _both(name, symbol, unit, digits, (value,))
+
+
+def _gear_rows(pair: GearPair) -> list[Row]:
+    gears = pair.gears
+
+    def each(name: str, symbol: str, unit: str, digits: int, attribute: str) -> Row:
+        return _both(name, symbol, unit, digits, (getattr(gear, attribute) for gear in gears))
+
+    tips = [gear.normal_thickness(gear.tip_diameter) for gear in gears]
+    reliefs = [gear.modifications.tip_relief_um for gear in gears]
+    crownings = [gear.modifications.lead_crowning_um for gear in gears]
+    return [
+        Row("teeth", "z", "", tuple(str(gear.z) for gear in gears)),
+        Row("hand", "", "", tuple(_hand(gear) for gear in gears)),
+        each("profile shift coefficient", "x", "", 4, "profile_shift"),
+        each("reference diameter", "d", "mm", 3, "reference_diameter"),
+        each("base radius", "r_b", "mm", 4, "base_radius"),
+        each("tip diameter", "d_a", "mm", 3, "tip_diameter"),
+        each("root diameter", "d_f", "mm", 3, "root_diameter"),
+        _both("working pitch diameter", "d_w", "mm", 3, pair.working_pitch_diameters),
+        _both("diameter at start of active profile", "d_Nf", "mm", 3, pair.active_start_diameters),
+        each("form diameter, where the fillet begins", "d_Ff", "mm", 3, "root_form_diameter"),
+        _both("addendum of the rack", "h_a*", "m_n", 2, pair.addendum_coefficients),
+        each("dedendum of the rack", "h_f*", "m_n", 2, "dedendum_coefficient"),
+        each("tip radius of the rack", "ρ_f", "mm", 3, "rack_tip_radius"),
+        _both("normal tooth thickness at the tip", "s_an", "mm", 4, tips),
+        _both("tip clearance to the mate's root", "c", "mm", 3, pair.tip_clearances),
+        each("face width", "b", "mm", 3, "face_width"),
+        each("bore diameter, held rigidly", "d_i", "mm", 3, "bore_diameter"),
+        _both("tip relief", "C_a", "µm", 1, reliefs),
+        _both("lead crowning", "C_b", "µm", 1, crownings),
+    ]
+
+
+def _chart_rows(scene: Scene) -> list[Row]:
+    """Of flanks as charted, whose depths come on top of the modifications."""
+    charts = [scene.flank_chart(name) for name in GEARS]
+    if not any(charts):
+        return []
+    files = [Path(getattr(scene, name).flank_csv or "none").name for name in GEARS]
+    deepest = ["–" if chart is None else fixed(1e3 * float(chart.depth.max()), 1) for chart in charts]
+    return [
+        Row("chart of the flank", "", "", tuple(files)),
+        Row("  missing at most, beside C_a and C_b", "", "µm", tuple(deepest)),
+    ]
+
+
+def _hand(gear: GearParameters) -> str:
+    return HANDS[gear.hand] if gear.helix_angle else "spur"
+
+
+def _pair_rows(pair: GearPair) -> list[Row]:
+    pinion = pair.pinion
+    return [
+        _one("normal module", "m_n", "mm", 3, pinion.normal_module),
+        _one("transverse module", "m_t", "mm", 4, pinion.transverse_module),
+        _one("normal pressure angle", "α_n", "°", 4, pinion.normal_pressure_angle_deg),
+        _one("transverse pressure angle", "α_t", "°", 4, math.degrees(pinion.transverse_pressure_angle)),
+        _one("operating pressure angle", "α_wt", "°", 4, math.degrees(pair.operating_pressure_angle)),
+        _one("  without backlash, from x1 + x2", "α_wt", "°", 4, math.degrees(working_angle_of(*pair.gears))),
+        _one("helix angle", "β", "°", 4, pinion.helix_angle_deg),
+        _one("base helix angle", "β_b", "°", 4, math.degrees(pinion.base_helix_angle)),
+        _one("centre distance", "a", "mm", 4, pair.centre_distance),
+        _one("tip shortening that keeps the clearance", "Δy", "m_n", 4, pair.tip_shortening),
+        _one("transverse base pitch", "p_bt", "mm", 4, pinion.transverse_base_pitch),
+        _one("transverse contact ratio", "ε_α", "", 4, pair.transverse_contact_ratio),
+        _one("overlap ratio", "ε_β", "", 4, pair.overlap_ratio),
+        _one("total contact ratio", "ε_γ", "", 4, pair.total_contact_ratio),
+        _one("normal backlash", "j_bn", "µm", 2, 1e3 * pair.normal_backlash),
+        _one("pinion rotation of one engagement", "", "°", 3, math.degrees(pair.engagement_angle)),
+        _one("misalignment over the face width", "", "µm", 1, pair.misalignment_um),
+    ]
+
+
+def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
+    start, end = estimate.pair.path_of_contact
+    shortest, mean, longest = estimate.line_lengths
+
+    def pressure(name: str, xi: float, length: float | None = None) -> Row:
+        return _one(f"p0 {name}", "", "MPa", 1, float(estimate.peak_pressure(xi, length)))
+
+    return [
+        _one(f"torque held on the {scene.load.on}", "T", "N·m", 3, scene.load.torque_Nm),
+        Row("friction coefficients", "μ", "", (", ".join(f"{value:g}" for value in scene.contact.friction),)),
+        _one("normal force on the flanks", "F_bn", "N", 1, estimate.normal_force),
+        _one("contact line length, shortest", "", "mm", 2, shortest),
+        _one("contact line length, mean", "", "mm", 2, mean),
+        _one("contact line length, longest", "", "mm", 2, longest),
+        _one("Hertz half-width at the pitch point", "b_H", "mm", 4, float(estimate.half_width(0.0))),
+        pressure("at the pitch point, mean length", 0.0),
+        pressure("at the pitch point, shortest length", 0.0, shortest),
+        pressure("at the start of engagement, mean length", start),
+        pressure("at the end of engagement, mean length", end),
+        *(_paper_rows(estimate) if scene.output.compare == "yang2022" else ()),
+    ]
+
+
+def _paper_rows(estimate: HertzEstimate) -> list[Row]:
+    """Yang et al. 2022, Eq. 4, with and without the load factors that the paper prints."""
+    factors = LoadFactors()
+    named = f"K = {factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
+    return [
+        _one("Eq. 4 of Yang 2022 with K = 1", "σ_H", "MPa", 1, paper_estimate(estimate, LoadFactors.none())),
+        _one(f"  with {named}", "σ_H", "MPa", 1, paper_estimate(estimate, factors)),
+    ]
+
+
+def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
+    """Yang et al. 2022, Eq. 4, for a scene [MPa]."""
+    pinion = estimate.pair.pinion
+    return yang_estimate(
+        torque=estimate.pinion_torque,
+        face_width=estimate.pair.face_width,
+        reference_diameter=pinion.reference_diameter,
+        contact_ratio=estimate.pair.transverse_contact_ratio,
+        teeth_ratio=estimate.pair.ratio,
+        base_helix=pinion.base_helix_angle,
+        pressure_angle=pinion.transverse_pressure_angle,
+        modulus=estimate.modulus,
+        factors=factors,
+    )
+
+
+def _wear_rows(wear: Wear, estimate: HertzEstimate) -> list[Row]:
+    coefficients = wear.pinion_mm2_per_N, wear.wheel_mm2_per_N
+    depths = [1e3 * wear.cycles * rate for rate in estimate.wear_per_cycle(*coefficients)]
+    return [
+        Row("wear coefficient over hardness", "K/H", "mm²/N", tuple(f"{value:.4g}" for value in coefficients)),
+        Row("revolutions of the pinion", "", "", (f"{wear.cycles:.4g}",)),
+        _both("depth at the ends of the path of contact", "h", "µm", 3, depths),
+    ]
+
+
+def _cost_rows(scene: Scene) -> list[Row]:
+    sectors, plane = sector_resolutions(scene), is_plane(scene)
+    layers = tuple("plane" if plane else counted(sector.face_elements) for sector in sectors)
+    return [
+        Row("level", "", "", (scene.mesh.level,)),
+        Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
+        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(scene)),
+        Row("elements along the loaded flank", "", "", tuple(counted(sector.profile_elements) for sector in sectors)),
+        Row("layers over the face width", "", "", layers),
+        Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
+        Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
+        Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
+        Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
+        Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
+        Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
+    ]
+
+
+def _room_line(scene: Scene) -> str:
+    """What `run` will refuse, if it does."""
+    problem = room_problem(scene, memory_megabytes)
+    return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
+
+
+def _positions_name(scene: Scene) -> str:
+    """With friction some are solved again, how many is seen then."""
+    return "positions, at least" if any(scene.contact.friction) else "positions"
+
+
+def positions_to_solve(scene: Scene) -> int:
+    """Positions of the sweep, each once."""
+    return pitches(scene) * scene.sweep.positions

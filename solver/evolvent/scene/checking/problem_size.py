@@ -1,0 +1,207 @@
+"""How large the sectors of a scene become, told without meshing them, and whether a run of it fits into a machine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from mpi4py import MPI
+
+from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.scene.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolutions
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.core import FEWEST_ELEMENTS, Level
+from evolvent.scene.schema.errors import Problem, SceneError, shown
+from evolvent.scene.schema.output import Skipping
+from evolvent.scene.skips import contact_teeth, is_plane, pitches, skips
+from evolvent_meshes.sector.section import SectorResolution
+
+MEGABYTES_BASE = {2: 150.0, 3: 250.0}
+MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
+DENSE_COPIES = 1.65
+"""Of a run, by dimension, and of its dense matrices. Against what 25 runs of 0.2 to 23 GB took (Yang's pair of both
+orders and shapes up to 829,020 degrees of freedom, He's in 3D; docs/benchmark.md): 12 % less to 35 % more, from 2 GB on
+12 % less to 20 % more."""
+MOST_MODES, SQUARES_PER_TOOTH = 300, 6
+"""In which teeth feel one another (200 in Yang's pair at quick), and square matrices of them for each tooth that is
+looked at (`evolvent.gears.ring.ring_modes`): little, but for hundreds of teeth where far ones are not skipped."""
+NUMBERS_KEPT = 6
+"""Of a result, over the degrees of freedom of the pinion's loaded flank: 3 plane, 5 in space."""
+MEGABYTES_PER_MESHED_DOF = 6e-4
+"""Of `evolvent mesh`, which keeps both sectors and checks their cells: tetrahedra; hexahedra want 4e-4."""
+Need = Callable[[Scene, int], float]
+"""Memory [MB] that a command needs for a scene on so many ranks of a machine."""
+MOST_DOUBLINGS = 60
+"""Of the torque, when one is looked for with which a mesh fits."""
+LEVELS: tuple[Level, ...] = ("fine", "standard", "quick")
+
+
+@dataclass(frozen=True)
+class SectorSize:
+    """Degrees of freedom of a sector, or of its plane section: all, of the loaded flank, of both cut faces."""
+
+    dofs: int
+    flank: int
+    cuts: int
+
+    def times(self, sectors: int, flanks: int) -> SectorSize:
+        """Of so many sectors as one ring, of which so many flanks are looked at."""
+        return SectorSize(sectors * self.dofs, flanks * self.flank, 0)
+
+
+def sector_size(resolution: SectorResolution, order: int, plane: bool) -> SectorSize:
+    """Exact, for order 1 or 2; cutting hexahedra into tetrahedra adds no node.
+
+    A section without holes has corners − edges + cells = 1, and its edges count 4 cells and the outline's twice.
+    """
+    own = resolution
+    alike, rows = own.back_alike, own.profile_elements // 3
+    inner = own.core_elements + 1 + alike  # columns between the bands of both sides
+    below = own.fillet_elements + own.back_elements - 2 * own.neck_elements + inner  # columns of the rim
+    tooth = rows * (13 * (1 + alike) + own.core_elements + 1 - alike)  # 3 × 3 thin cells, 4 that join, then coarse ones
+    band = own.fillet_elements - 1 + 4 + own.back_elements + 3 * alike
+    cells = tooth + band + own.neck_elements * inner + own.rim_elements * below
+    cut = own.rim_elements + 1
+    tip = 3 * (1 + alike) + own.core_elements + 2
+    back = own.back_elements + rows * (3 if alike else 1)
+    outline = own.profile_elements + own.fillet_elements + back + tip + 2 * cut + below
+    nodes = 1 + 4 * cells + outline if order == 2 else 1 + cells + outline // 2
+    levels = 2 if plane else 3 * (order * own.face_elements + 1)
+    flank, cuts = order * own.profile_elements + 1, 2 * (order * cut + 1)
+    return SectorSize(levels * nodes, levels * flank, levels * cuts)
+
+
+def sector_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
+    """(pinion's, wheel's)."""
+    plane = is_plane(scene)
+    pinion, wheel = (sector_size(own, scene.mesh.order, plane) for own in sector_resolutions(scene))
+    return pinion, wheel
+
+
+def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
+    """Largest memory [MB] of a run on so many ranks of one machine: of one, one gear's elimination beside the other's
+    finished compliance; of several, both eliminations at once."""
+    dimension = 2 if is_plane(scene) else 3
+    sizes = pinion, _ = _factored_sizes(scene)
+    first, second = (
+        MEGABYTES_PER_DOF[dimension] * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts)
+        for size in sizes
+    )
+    gears = first + second if ranks > 1 else max(first, second + _square_megabytes(pinion.flank))
+    far = 0 if skips(scene, "far-teeth") else 2 * len(contact_teeth(scene))
+    modes = min(MOST_MODES, max(size.cuts for size in sizes))
+    ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
+    return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
+
+
+def result_count(scene: Scene) -> int:
+    """Positions solved and kept: of all pitches, at all friction coefficients, at all reports of wear."""
+    pairs = 1 if scene.wear is None else 1 + len(scene.wear.reports)
+    return pairs * pitches(scene) * scene.sweep.positions * len(scene.contact.friction)
+
+
+def results_megabytes(scene: Scene) -> float:
+    """Of all results, which are together in memory when tables and pictures are made."""
+    return 8e-6 * NUMBERS_KEPT * sector_sizes(scene)[0].flank * result_count(scene)
+
+
+def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
+    """Largest memory [MB] of writing the mesh of both sectors, which the first rank does alone."""
+    dofs = sum(size.dofs for size in sector_sizes(scene))
+    return ranks * MEGABYTES_BASE[2] + MEGABYTES_PER_MESHED_DOF * dofs
+
+
+def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
+    """Of what is eliminated: the sectors, or whole gears."""
+    pinion, wheel = sector_sizes(scene)
+    if skips(scene, "one-sector"):
+        return pinion, wheel
+    teeth = len(contact_teeth(scene))
+    return pinion.times(scene.pinion.teeth, teeth), wheel.times(scene.wheel.teeth, teeth)
+
+
+def _square_megabytes(rows: int) -> float:
+    return 8e-6 * rows**2
+
+
+def room_problem(scene: Scene, needed: Need, processes: int = 1) -> Problem | None:
+    """What is wrong where the memory that a command needs is more than this machine's, or that of the container; None
+    where it fits. processes: how many of the program run on this machine."""
+    there, wanted = machine_megabytes(), needed(scene, processes)
+    if wanted <= there:
+        return None
+    allowed = f"what fits into {gigabytes(there)}, the memory of this machine or container"
+    if needed is memory_megabytes and (kept := results_megabytes(scene)) > 0.5 * wanted:
+        count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
+        found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
+        remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
+        return Problem("sweep.positions", found, allowed, remedy)
+    name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
+    dofs, ranks = sum(size.dofs for size in sector_sizes(scene)), f" on {processes} ranks" if processes > 1 else ""
+    needs = f"{counted(dofs)} degrees of freedom that want about {gigabytes(wanted)}{ranks}"
+    found = f"{shown(getattr(scene.mesh, name))}, {needs}"
+    return Problem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
+
+
+def require_room(scene: Scene, needed: Need, comm: MPI.Comm) -> None:
+    """Raises SceneError on all ranks where the memory of the machine of one of them does not suffice. All must call
+    it."""
+    node = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    processes = node.size
+    node.Free()
+    for problem in comm.allgather(room_problem(scene, needed, processes)):
+        if problem is not None:
+            raise SceneError([problem])
+
+
+def gigabytes(megabytes: float) -> str:
+    """With three digits."""
+    value = megabytes / 1e3
+    return f"{value:.3g} GB" if value < 1e3 else f"{value:,.0f} GB" if value < 1e6 else f"{value:.1e} GB"
+
+
+def counted(number: int) -> str:
+    """A count for people: every digit up to a thousand million."""
+    return f"{number:,}" if number < 1e9 else f"{number:.1e}"
+
+
+def _remedy(scene: Scene, needed: Need, processes: int, there: float) -> str:
+    """The finest setting with which it fits."""
+    if processes > 1 and needed(scene, 1) <= there:
+        return "run on one rank"
+    for words, other in _coarser(scene):
+        if (wanted := needed(other, processes)) <= there:
+            return f"take {words} ({gigabytes(wanted)})"
+    for doublings in range(1, MOST_DOUBLINGS):
+        torque = scene.load.torque_Nm * 2.0**doublings
+        load = scene.load.model_copy(update={"torque_Nm": torque})
+        other = _meshed(scene, level="quick", elements_per_contact_width=None).model_copy(update={"load": load})
+        if needed(other, processes) <= there:
+            return f"no mesh fits: the contact is too narrow. From about {torque:.4g} N·m on --level quick does"
+    return "no mesh fits: take narrower gears, or a machine with more memory"
+
+
+def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
+    """Options of the command line, and the scene with them: without what is computed the long way, then at coarser
+    levels, then with fewer elements across the contact, down to the fewest."""
+    long_ways = [name for name in ("one-sector", "coarse-body", "plane") if name in scene.skip.off]
+    if long_ways:
+        kept = Skipping(off=tuple(name for name in scene.skip.off if name not in long_ways))
+        scene = scene.model_copy(update={"skip": kept})
+        yield f"{' and '.join(long_ways)} out of skip.off (--no-skip)", scene
+    if (count := scene.mesh.elements_per_contact_width) is None:
+        for level in LEVELS[LEVELS.index(scene.mesh.level) + 1 :]:
+            yield f"--level {level}", _meshed(scene, level=level)
+        scene, prefix, count = _meshed(scene, level="quick"), "--level quick ", ELEMENTS_PER_WIDTH["quick"]
+    else:
+        prefix = ""
+    for tenths in range(math.ceil(10 * count) - 1, round(10 * FEWEST_ELEMENTS) - 1, -1):
+        words = f"{prefix}--set mesh.elements_per_contact_width={tenths / 10:g}"
+        yield words, _meshed(scene, elements_per_contact_width=tenths / 10)
+
+
+def _meshed(scene: Scene, **settings: Any) -> Scene:
+    """The scene with other keys of [mesh]."""
+    return scene.model_copy(update={"mesh": scene.mesh.model_copy(update=settings)})

@@ -1,0 +1,47 @@
+"""What a scene says of its results before anything is computed: sentences that `evolvent check` ends with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from evolvent.scene.meshing.element_sizes import (
+    STIFF_ELEMENTS,
+    elements_per_contact_width,
+    has_stiff_pinion,
+    sector_resolutions,
+)
+from evolvent.scene.meshing.modifications import folding_warnings, modification_warnings
+from evolvent.scene.scene import Scene
+
+FEWEST_CELLS = 2.0
+"""Across the contact width 2b. Below, peak pressures are off by 15 % and more; with 3, by 3 % (docs/benchmark.md)."""
+FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
+
+
+def scene_warnings(scene: Scene) -> tuple[str, ...]:
+    """Of a scene, a sentence each."""
+    return tuple(_expected(scene))
+
+
+def _expected(scene: Scene) -> Iterator[str]:
+    count = elements_per_contact_width(scene)
+    if count < FEWEST_CELLS:
+        yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
+    if count < STIFF_ELEMENTS and has_stiff_pinion(scene):
+        yield (
+            "The pinion, which carries the pressure, is much stiffer than the wheel: with fewer than "
+            f"{STIFF_ELEMENTS:g} elements across the contact single pressures may be several times too large; leave "
+            "mesh.elements_per_contact_width out, or make the softer gear the pinion."
+        )
+    if scene.mesh.shape == "tetrahedron":
+        yield (
+            "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
+            "falls to 1e-3 and below, and those of order 1 bend too little; hexahedra of order 2 are the better choice."
+        )
+    yield from modification_warnings(scene)
+    yield from folding_warnings(scene, sector_resolutions(scene))
+
+
+def few_cells() -> str:
+    """What fewer cells than `FEWEST_CELLS` mean."""
+    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for looking only: {FINER}."

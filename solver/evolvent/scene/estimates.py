@@ -1,0 +1,81 @@
+"""What can be said of a gear pair before it is computed: Hertz on the nominal contact lines.
+
+The estimates are frictionless and spread the load evenly over the contact lines of rigid flanks.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.contact.hertz import contact_modulus, line_half_width, line_peak_pressure
+from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
+
+TOOTH_STIFFNESS = 14.0
+"""c' of a steel tooth pair [N/(mm µm)], ISO 6336-1; each tooth has twice that, in proportion to its modulus."""
+STEEL_MODULUS = 206e3
+
+@dataclass(frozen=True)
+class HertzEstimate:
+    """Hertz contact along the path of contact.
+
+    modulus E* [MPa]; pinion_torque [N·mm].
+    """
+
+    pair: GearPair
+    modulus: float
+    pinion_torque: float
+
+    @classmethod
+    def of(cls, pair: GearPair, materials: tuple[Material, Material], pinion_torque: float) -> HertzEstimate:
+        """The estimate for gears of these materials (pinion, wheel) under the torque on the pinion [N·mm]."""
+        pinion, wheel = materials
+        constants = pinion.youngs_modulus, pinion.poissons_ratio, wheel.youngs_modulus, wheel.poissons_ratio
+        return cls(pair, contact_modulus(*constants), pinion_torque)
+
+    @property
+    def normal_force(self) -> float:
+        """F_bn = T1/(r_b1 cos β_b) [N], normal to the flanks."""
+        return self.pinion_torque / (self.pair.pinion.base_radius * math.cos(self.pair.pinion.base_helix_angle))
+
+    @property
+    def line_lengths(self) -> tuple[float, float, float]:
+        """Shortest, mean and longest total contact line over a pitch [mm]."""
+        lengths = [self.pair.contact_line_length(rotation) for rotation in self._telling_rotations()]
+        mean = self.pair.transverse_contact_ratio * self.pair.face_width / math.cos(self.pair.pinion.base_helix_angle)
+        return min(lengths), mean, max(lengths)
+
+    def _telling_rotations(self) -> Floats:
+        """Pinion rotations between which the line length is linear (helical) or constant (spur)."""
+        pinion, pitch = self.pair.pinion, self.pair.pinion.transverse_base_pitch
+        reach = self.pair.face_width / 2 * math.tan(pinion.base_helix_angle)
+        corners = np.sort([(end + side * reach) % pitch for end in self.pair.path_of_contact for side in (-1, 1)])
+        between = (corners + np.append(corners[1:], corners[0] + pitch)) / 2
+        return (between if reach == 0 else np.append(corners, between)) / pinion.base_radius
+
+    def half_width(self, roll_distance: float | Floats) -> Floats:
+        """b [mm] at roll distances ξ [mm], with the mean line length."""
+        load = np.asarray(self.normal_force / self.line_lengths[1])
+        return line_half_width(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
+
+    def peak_pressure(self, roll_distance: float | Floats, line_length: float | None = None) -> Floats:
+        """p0 [MPa] at roll distances ξ [mm], with the given or the mean line length [mm]."""
+        load = np.asarray(self.normal_force / (line_length or self.line_lengths[1]))
+        return line_peak_pressure(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
+
+    def wear_per_cycle(self, pinion: float, wheel: float) -> tuple[float, float]:
+        """Depth [mm] that a revolution of the pinion takes off pinion and wheel where it is most, K/H [mm²/N] of both:
+        (K/H)(F/L)|1 − v_2/v_1| (He et al. 2022, Eq. 24 without its 4/π) at the ends of the path of contact, with the
+        mean line length."""
+        load = self.normal_force / self.line_lengths[1]
+        slides = [float(np.abs(ζ).max()) for ζ in self.pair.specific_sliding(self.pair.path_of_contact)]
+        return pinion * load * slides[0], wheel * load * slides[1] / self.pair.ratio
+
+    def tooth_deflection(self, pinion: Material, wheel: Material) -> float:
+        """Deflection [mm] of one tooth pair that carries the whole load over the whole face."""
+        compliance = sum(STEEL_MODULUS / material.youngs_modulus for material in (pinion, wheel)) / 2
+        return self.normal_force / self.pair.face_width * compliance / (1e3 * TOOTH_STIFFNESS)

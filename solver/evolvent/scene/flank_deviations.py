@@ -1,0 +1,144 @@
+"""A flank as it was measured, or as wear has left it: a chart of profile and lead in a CSV file.
+
+    diameter_mm,z_mm,depth_um
+    144.2,-10.0,0.3
+
+One line a point of a grid over diameter and height; z_mm, from mid-face, may be left out where the profile is the same
+over the face. depth: what is missing of the designed flank, modifications included, normal to it; negative where there
+is more. Between points the depth is linear in the involute's arc and in z, beyond the chart that of its rim.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+
+from evolvent.scene.csv_tables import Column, TableError, has_column, read_columns
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.gear import GearParameters
+
+DIAMETER, HEIGHT = Column("diameter", (("mm", 1.0),)), Column("z", (("mm", 1.0),))
+DEPTH = Column("depth")
+SAME = 1e-6  # mm: diameters or heights that are one
+DEEPEST = 0.1  # modules: more is no flank any more, or other units
+WIDEST = 1.5  # tip diameters: a chart beyond is of another gear
+
+
+@dataclass(frozen=True)
+class FlankChart:
+    """depth (k, l) [mm] at diameters (k,) and heights (l,) [mm], both ascending; one height: the same over the face."""
+
+    diameters: Floats
+    heights: Floats
+    depth: Floats
+
+    @staticmethod
+    def read(path: Path) -> FlankChart:
+        """From a CSV file; read once while it stays as it is. Raises TableError where it cannot be read or its points
+        are no grid."""
+        try:
+            state = path.stat()
+        except (OSError, ValueError) as error:  # ValueError: the path has a NUL
+            found = error.strerror if isinstance(error, OSError) else "a path with a NUL character"
+            remedy = "check the path; where a scene names it, it starts from the scene's folder"
+            raise TableError(_shown(path), "a readable CSV file", str(found), remedy) from error
+        return _read(path, state.st_mtime_ns, state.st_size)
+
+    @staticmethod
+    def parsed(path: Path) -> FlankChart:
+        """See read."""
+        wanted = (DIAMETER, DEPTH, HEIGHT) if has_column(path, HEIGHT) else (DIAMETER, DEPTH)
+        d, h, *rest = read_columns(path, wanted)
+        z = rest[0] if rest else np.zeros_like(d)
+        (diameters, row), (heights, column) = _levels(d), _levels(z)
+        count = np.zeros((len(diameters), len(heights)), dtype=np.int64)
+        np.add.at(count, (row, column), 1)
+        if len(diameters) < 2 or not (count == 1).all():
+            k, m = np.argwhere(count != 1)[0] if (count != 1).any() else (0, 0)
+            found = f"{count[k, m]} lines for diameter {diameters[k]:g} mm, z {heights[m]:g} mm, and {len(diameters)}"
+            allowed = "every diameter once at every height, and two diameters at least"
+            raise TableError(path, allowed, f"{found} diameters", "fill gaps and leave out repeated points")
+        depth = np.zeros(count.shape)
+        depth[row, column] = h
+        return FlankChart(diameters, heights, depth)
+
+    @property
+    def varies_over_the_face(self) -> bool:
+        """Whether the depth depends on z."""
+        return bool(np.ptp(self.depth, axis=1).max() > 0.0)
+
+    def checked(self, path: Path, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
+        """The chart from the base circle on, if it covers the diameters `active` [mm] of a gear's contact, and is of
+        its size. Raises TableError."""
+        low, high = active
+        slack = 0.02 * (high - low)
+        if self.diameters[0] > low + slack or self.diameters[-1] < high - slack:
+            wanted = f"diameters over the whole active flank, {low:.4g} to {high:.4g} mm"
+            found = f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm"
+            raise TableError(path, wanted, found, "measure further, or mind diameter, not radius")
+        if not (self.diameters[0] > 0.0 and self.diameters[-1] <= WIDEST * gear.tip_diameter):
+            wanted = f"diameters above 0 up to {WIDEST * gear.tip_diameter:.4g} mm, for a tip of {gear.tip_diameter:g}"
+            found = f"{self.diameters[0]:.4g} to {self.diameters[-1]:.4g} mm"
+            raise TableError(path, wanted, found, "mind the unit, and which gear the chart is of")
+        half = gear.face_width / 2.0
+        reach = max(float(np.abs(self.heights).max()) - half, 0.0)
+        if len(self.heights) > 1 and (reach > half or np.ptp(self.heights) < half):
+            wanted = f"heights z from mid-face over a face width of {gear.face_width:g} mm"
+            found = f"{self.heights[0]:g} to {self.heights[-1]:g} mm"
+            raise TableError(path, wanted, found, "mind that z is 0 at mid-face, and mm")
+        largest = float(np.abs(self.depth).max())
+        if largest > DEEPEST * gear.normal_module:
+            wanted = f"depths of at most {DEEPEST:g} normal modules, {1e3 * DEEPEST * gear.normal_module:g} µm"
+            raise TableError(path, wanted, f"{1e3 * largest:.4g} µm", "is the column's unit right?")
+        first = max(0, np.count_nonzero(self.diameters <= gear.base_diameter) - 1)
+        return FlankChart(self.diameters[first:], self.heights, self.depth[first:])
+
+    def arcs(self, gear: GearParameters) -> Floats:
+        """Involute's length (k,) [mm] from a gear's base circle to the diameters."""
+        return np.maximum(self.diameters**2 / 4.0 - gear.base_radius**2, 0.0) / (2.0 * gear.base_radius)
+
+    def at(self, gear: GearParameters, roll_length: Floats, z: Floats) -> Floats:
+        """Depth (n,) [mm] at roll lengths √(r² − r_b²) and heights (n,) of a gear."""
+        arcs = self.arcs(gear)
+        s = np.clip(roll_length**2 / (2.0 * gear.base_radius), arcs[0], arcs[-1])
+        if len(self.heights) == 1:
+            return np.interp(s, arcs, self.depth[:, 0])
+        t = np.clip(z, self.heights[0], self.heights[-1])
+        return np.asarray(RegularGridInterpolator((arcs, self.heights), self.depth)(np.column_stack([s, t])))
+
+    def text(self) -> str:
+        """As a CSV file that `read` gives back: diameters to 1e-9 mm, depths to 1e-9 µm."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        over_face = len(self.heights) > 1
+        writer.writerow(["diameter_mm", *(["z_mm"] if over_face else []), "depth_um"])
+        for d, row in zip(self.diameters, self.depth):
+            for z, h in zip(self.heights, row):
+                writer.writerow([f"{d:.9f}", *([f"{z:.9f}"] if over_face else []), f"{1e3 * h:.9f}"])
+        return stream.getvalue()
+
+
+@lru_cache(maxsize=4)
+def _read(path: Path, changed: int, size: int) -> FlankChart:
+    """See FlankChart.read; changed, size: of the file, so that another one in its place is read anew."""
+    return FlankChart.parsed(path)
+
+
+def _levels(values: Floats) -> tuple[Floats, np.ndarray]:
+    """Ascending different values, and which of them each is."""
+    order = np.argsort(values)
+    new = np.concatenate([[False], np.diff(values[order]) > SAME])
+    which = np.empty(len(values), dtype=np.int64)
+    which[order] = np.cumsum(new)
+    return values[order][np.concatenate([[True], new[1:]])], which
+
+
+def _shown(path: Path) -> str:
+    """A path in a message, whatever its characters."""
+    return str(path) if str(path).isprintable() else ascii(str(path))

@@ -1,0 +1,1 @@
+"""The sector meshes of a scene, and how fine they are."""

@@ -1,0 +1,135 @@
+"""What relief, crowning and misalignment do, before anything is computed.
+
+How much of the contact lines bears, on springs of a tooth pair's stiffness; and whether the mesh below a flank is deep
+enough for what is taken off it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.schema.errors import Problem
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.flank import contact_lines, separation
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.sector.section import SectorResolution
+
+LEAST_SHARE = 0.5
+"""Of the contact lines that bear: less is more than a modification is for, or a load far below the nominal one."""
+MOST_RELIEF = 10.0
+"""Tip relief over the deflection of a tooth pair that carries the whole load: from one on it is all that is needed."""
+FOLDING = 0.5
+"""Of the thin layers' depth: modifications above it may fold them. The papers' pairs at a tenth to ten times their
+loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
+POSITIONS, POINTS = 12, 64
+"""Of a base pitch; along a contact line."""
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """A pitch on springs."""
+
+    share: float
+    """Of the length of all contact lines that bears."""
+    deflection: float
+    """Largest of the springs [mm]."""
+
+
+def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
+    """On springs of this stiffness [N/mm²] along the contact lines, under the normal force [N]."""
+    rotations = np.arange(POSITIONS) * 2.0 * math.pi / pair.pinion.z / POSITIONS
+    each = [_pressed(*_gaps(pair, float(rotation)), force / stiffness) for rotation in rotations]
+    borne, whole, deepest = (np.array(values) for values in zip(*each, strict=True))
+    return Bearing(float(borne.sum() / whole.sum()), float(deepest.max()))
+
+
+def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
+    """Gaps [mm] and lengths [mm] of the pieces of all contact lines, by ascending gap."""
+    gaps, lengths = [], []
+    for line in contact_lines(pair, rotation):
+        ξ, z = (values[1::2] for values in line.points(2 * POINTS + 1))
+        gaps.append(separation(pair, ξ, z))
+        lengths.append(np.full(POINTS, np.ptp(line.z) / math.cos(pair.pinion.base_helix_angle) / POINTS))
+    order = np.argsort(np.concatenate(gaps))
+    return np.concatenate(gaps)[order], np.concatenate(lengths)[order]
+
+
+def _pressed(gaps: Floats, lengths: Floats, load: float) -> tuple[float, float, float]:
+    """Length that bears, length in all [mm], largest deflection [mm]: the approach δ with Σ l (δ − g)₊ = load [mm²]."""
+    borne = np.cumsum(lengths)
+    approach = (load + np.cumsum(lengths * gaps)) / borne  # with the first pieces alone
+    last = int(np.argmax(np.append(gaps[1:], np.inf) >= approach))
+    return float(borne[last]), float(borne[-1]), float(approach[last] - gaps[0])
+
+
+def modification_warnings(scene: Scene) -> Iterator[str]:
+    """Sentences on figures with which much of the flanks would never touch."""
+    given = _given(scene)
+    if not given:
+        return
+    estimate = scene.hertz_estimate()
+    single = estimate.tooth_deflection(*scene.materials())  # one pair with the whole load over the whole face
+    force, width = estimate.normal_force, estimate.pair.face_width
+    stiffness = force / (single * width)
+    whole = bearing(estimate.pair, force, stiffness)
+    alone = {key: bearing(_only(estimate.pair, key), force, stiffness).share for key in given}
+    idle = [key for key in given if key.endswith("tip_relief_um") and given[key] > MOST_RELIEF * single]
+    named = [key for key in given if alone[key] < LEAST_SHARE or key in idle]
+    if not named and whole.share < LEAST_SHARE:
+        named = list(given)
+    if named:
+        figures = " and ".join(f"{key} = {1e3 * given[key]:g}" for key in named)
+        yield (
+            f"{figures} (µm): the flanks bear on about {100.0 * whole.share:.0f} % of the length of their contact "
+            f"lines, where teeth give way by up to {1e3 * whole.deflection:.3g} µm; a pair that carries the whole load "
+            f"over the whole face gives way by {1e3 * single:.3g} µm. Check the figures, their unit and the torque."
+        )
+
+
+def folding_warnings(scene: Scene, resolutions: tuple[SectorResolution, SectorResolution]) -> Iterator[str]:
+    """Sentences on what may fold the mesh."""
+    for index, resolution in enumerate(resolutions):
+        if problem := too_much_relief(scene, index, resolution):
+            yield f"The mesh may fold, which `run` then refuses: {problem}."
+
+
+def too_much_relief(scene: Scene, index: int, resolution: SectorResolution) -> Problem | None:
+    """What is wrong where relief and crowning take most of the thin layers away that lie below the flank; else None."""
+    name, depth = GEARS[index], 1e3 * sum(resolution.layer_depths)
+    gear = getattr(scene, name)
+    taken = gear.tip_relief_um + gear.lead_crowning_um
+    if taken < FOLDING * depth:
+        return None
+    key = "tip_relief_um" if gear.tip_relief_um >= gear.lead_crowning_um else "lead_crowning_um"
+    found = f"{getattr(gear, key):g} (relief and crowning take {taken:.4g} µm off)"
+    allowed = f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine"
+    return Problem(f"{name}.{key}", found, allowed, "lower it, raise the torque, or take a chart as flank_csv")
+
+
+def _given(scene: Scene) -> Mapping[str, float]:
+    """Key of the scene -> figure [mm], of those that are not 0."""
+    found = {"pair.misalignment_um": scene.pair.misalignment_um}
+    for name in GEARS:
+        gear = getattr(scene, name)
+        found |= {f"{name}.{key}": getattr(gear, key) for key in ("tip_relief_um", "lead_crowning_um")}
+    return {key: 1e-3 * value for key, value in found.items() if value}
+
+
+def _only(pair: GearPair, key: str) -> GearPair:
+    """The pair with this figure and no other."""
+
+    def bare(name: str, gear: GearParameters) -> GearParameters:
+        own = gear.modifications
+        relief = own.tip_relief_um if key == f"{name}.tip_relief_um" else 0.0
+        crowning = own.lead_crowning_um if key == f"{name}.lead_crowning_um" else 0.0
+        return replace(gear, modifications=replace(own, tip_relief_um=relief, lead_crowning_um=crowning))
+
+    pinion, wheel = (bare(name, gear) for name, gear in zip(GEARS, pair.gears, strict=True))
+    tilt = pair.misalignment_um if key == "pair.misalignment_um" else 0.0
+    return replace(pair, pinion=pinion, wheel=wheel, misalignment_um=tilt)

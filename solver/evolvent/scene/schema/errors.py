@@ -1,0 +1,187 @@
+"""What is wrong with a scene, in sentences: the key, what was found, what is allowed, and a remedy."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from evolvent.scene.schema.meant_value import expected, meant_value
+from evolvent.scene.schema.nearest_key import nearest_key
+from evolvent.scene.schema.not_supported import not_supported
+from evolvent_meshes.errors import InputError
+
+NOTHING = "nothing"
+MOST = 20
+"""Problems that are told at once."""
+LONGEST_NUMBER = 40
+"""Digits of a whole number that are shown."""
+LONGEST_TEXT = 60
+"""Characters of a value or of a key that are shown."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One error of a scene. `key` is dotted, as `--set` takes it; the other three are phrases without a full stop."""
+
+    key: str
+    found: str
+    allowed: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.key}: found {self.found}; allowed: {self.allowed}; remedy: {self.remedy}"
+
+
+class SceneError(InputError):
+    """A scene that cannot be computed. Its text has one line per problem; nothing has been written.
+
+    problems: at least one; source: the file, if there is one.
+    """
+
+    def __init__(self, problems: Iterable[Problem], source: str = "") -> None:
+        self.problems = tuple(problems)
+        self.source = source
+        super().__init__("\n".join(f"{source}: {problem}" if source else str(problem) for problem in self.problems))
+
+    def __reduce__(self) -> tuple[type[SceneError], tuple[tuple[Problem, ...], str]]:
+        return SceneError, (self.problems, self.source)
+
+
+def scene_problem(problem: Problem) -> PydanticCustomError:
+    """The exception that a validator of the scene raises; the problem's key is relative to what is validated."""
+    return PydanticCustomError("scene", "scene", {"problem": problem})
+
+
+def problems_of(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+    """The problems of a failed validation, in the words of the schema `model`: all, or the first `MOST`."""
+    details = error.errors(include_url=False)
+    problems = [_problem(each, model) for each in details[:MOST]]
+    if len(details) > MOST:
+        more, remedy = len(details) - MOST, "mend these first; is this a scene file at all?"
+        problems.append(Problem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
+    return problems
+
+
+def shown(value: Any) -> str:
+    """A value as it would stand in a scene file, shortened."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return _short("a section with keys " + (", ".join(map(dotted_part, value)) or "(none)"))
+    if isinstance(value, (list, tuple)):
+        return _short("[" + ", ".join(shown(item) for item in value[:MOST]) + "]")
+    if isinstance(value, str):
+        return _short(json.dumps(value[:LONGEST_TEXT], ensure_ascii=False))
+    if isinstance(value, int) and value.bit_length() > LONGEST_NUMBER * 3:  # Python refuses to write 5000 digits
+        return f"a whole number of about {int(value.bit_length() * math.log10(2)) + 1:,} digits"
+    return _short(f"{value:.10g}" if isinstance(value, float) else str(value))
+
+
+def _short(text: str, limit: int = LONGEST_TEXT) -> str:
+    return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def _problem(details: ErrorDetails, model: type[BaseModel]) -> Problem:
+    path = list(details["loc"])
+    if details["type"] == "scene":
+        problem: Problem = details["ctx"]["problem"]
+        return replace(problem, key=dotted([*path, problem.key] if problem.key else path))
+    if details["type"] == "extra_forbidden":
+        return _unknown_key(path, details["input"], model)
+    missing = details["type"] == "missing"
+    field = _declaration([part for part in path if isinstance(part, str)], model)
+    section = section_of(field)
+    if section is not None:
+        return _missing_section(path, section) if missing else _not_a_section(path, details["input"], section)
+    extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
+    allowed, remedy = str(extra["allowed"]), str(extra["remedy"])
+    if missing:
+        return Problem(dotted(path), NOTHING, allowed, remedy)
+    value, meant = details["input"], meant_value(details["input"], field)
+    with_point = isinstance(value, float) and (meant is not None or details["type"] == "int_type")
+    found = repr(value) if with_point else shown(value)  # 20.0 is refused where 20 is not
+    fitting = f"write {shown(meant)}" if meant is not None else expected(details["type"], value)
+    return Problem(dotted(path), found, allowed, fitting or remedy)
+
+
+def dotted(path: Iterable[str | int]) -> str:
+    """["contact", "friction", 2] -> "contact.friction[2]"."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{dotted_part(part)}" if text else dotted_part(part)
+    return text
+
+
+def dotted_part(name: str) -> str:
+    """A key as TOML has it: bare, dotted, or in quotes; shortened."""
+    return _short(name if re.fullmatch(r"[A-Za-z0-9_.\[\]-]+", name) else json.dumps(name, ensure_ascii=False))
+
+
+def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
+    """All keys of a schema, dotted, with their declarations; sections come as their keys."""
+    keys: dict[str, FieldInfo] = {}
+    for name, field in model.model_fields.items():
+        section = section_of(field)
+        if section is None:
+            keys[prefix + name] = field
+        else:
+            keys.update(keys_of(section, f"{prefix}{name}."))
+    return keys
+
+
+def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> Problem:
+    """An unknown key or section: the nearest one is named, or that nothing like it is supported."""
+    name, parents = str(path[-1]), [str(part) for part in path[:-1]]
+    kind = "section" if isinstance(value, dict) else "key"
+    found = f"an unknown {kind}, {shown(value)}"
+    place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
+    allowed = f"{place} that docs/scene.md lists"
+    words = not_supported(name)
+    similar = _similar(name, parents, model, strict=bool(words))
+    if words and not similar:
+        return Problem(dotted(path), found, f"{allowed}; {words}", "delete it")
+    remedy = f"did you mean {similar}? Else delete it" if similar else "delete it, or see docs/scene.md"
+    return Problem(dotted(path), found, allowed, remedy)
+
+
+def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
+    """The key that was meant; empty if there is none."""
+    section = section_of(_declaration(parents, model)) if parents else model
+    assert section is not None
+    prefix = f"{dotted(parents)}." if parents else ""
+    here = {prefix + key: field.description or "" for key, field in section.model_fields.items()}
+    sections = {key: "" for key in model.model_fields}
+    everywhere = sections | {key: field.description or "" for key, field in keys_of(model).items()}
+    return nearest_key(name, here, everywhere, strict)
+
+
+def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> Problem:
+    keys = ", ".join(section.model_fields)
+    name = dotted(path)
+    return Problem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
+
+
+def _missing_section(path: list[str | int], section: type[BaseModel]) -> Problem:
+    required = ", ".join(name for name, field in section.model_fields.items() if field.is_required())
+    return Problem(dotted(path), NOTHING, f"a section with at least {required}", f"add a section [{dotted(path)}]")
+
+
+def _declaration(names: list[str], model: type[BaseModel]) -> FieldInfo:
+    """The declaration of a key or section at the end of a path."""
+    field = model.model_fields[names[0]]
+    section = section_of(field)
+    return field if len(names) == 1 or section is None else _declaration(names[1:], section)
+
+
+def section_of(field: FieldInfo) -> type[BaseModel] | None:
+    """The model of a field that is a section, also of `Section | None`."""
+    candidates = [field.annotation, *getattr(field.annotation, "__args__", ())]
+    return next((c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)), None)

@@ -1,0 +1,55 @@
+"""The sections of a scene file that say what is written, and what is computed although a scene could do without."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, get_args
+
+from pydantic import BeforeValidator, field_validator
+
+from evolvent.scene.schema.core import Section, as_tuple, key
+
+
+class Output(Section):
+    """[output]."""
+
+    pictures: bool = key("draw the PNG pictures", "true or false", default=True)
+    animation: bool = key("draw the animation", "true or false", default=True)
+    fields: bool = key("write the fields for ParaView", "true or false", default=True)
+    deformation: bool = key(
+        "also write displacement and stress of the teeth in contact for ParaView, at the first friction coefficient; "
+        "both gears are condensed once more",
+        "true or false",
+        default=False,
+    )
+    error_bars: bool = key(
+        "solve a coarse companion too, for error bars of the engineering figures", "true or false", default=True
+    )
+    compare: Literal["yang2022"] | None = key(
+        "a published study whose figures stand beside the results, and whose names its teeth and points have",
+        '"yang2022"',
+        "delete the key for results by themselves",
+        default=None,
+    )
+
+
+SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
+                   "deflected-flanks", "coarse-body", "reuse", "error-bars", "fields", "pictures"]  # fmt: skip
+"""What a run leaves out where a scene does not need it: `evolvent.scene.skips`."""
+SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
+
+
+class Skipping(Section):
+    """[skip]: for tests and benchmarks."""
+
+    off: Annotated[tuple[SkipName, ...], BeforeValidator(as_tuple)] = key(
+        "skips that are switched off: what they leave out is computed the long way",
+        f"a list of {', '.join(SKIP_NAMES)}",
+        "give names of this list; `evolvent check` tells which ones apply to the scene",
+        default=(),
+    )
+
+    @field_validator("off")
+    @classmethod
+    def _each_once(cls, names: tuple[SkipName, ...]) -> tuple[SkipName, ...]:
+        """In one order, so that a scene does not depend on theirs."""
+        return tuple(name for name in SKIP_NAMES if name in names)

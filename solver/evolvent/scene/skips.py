@@ -1,0 +1,236 @@
+"""What a scene does not need, and is left out: a registry of skips, each with a name, a sentence and a tolerance.
+
+A skip is automatic where it applies. `--no-skip NAME` (the key skip.off) computes what it leaves out the long way; the
+answer stays the same within the skip's tolerance. The code that skips asks `skips(scene, name)`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.schema.output import Output, SkipName, Skipping
+
+ROUND_OFF = 1e-8
+"""Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
+REPEATED = 1e-10
+"""Nothing is computed otherwise, but two runs differ by rounding as their arrays lie elsewhere (6e-12 was seen)."""
+
+
+@dataclass(frozen=True)
+class Skip:
+    """Something left out.
+
+    applies: whether the scene allows it. sentence: what is left out, for `check`, the log and summary.json. tolerance:
+    by how much the answer may differ from the long way's: transmission error, peak pressure, torques, and what is lost
+    of the input power, each over its largest value in the pitch.
+    """
+
+    name: SkipName
+    applies: Callable[[Scene], bool]
+    sentence: Callable[[Scene], str]
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """A skip that was made, as summary.json tells it."""
+
+    name: SkipName
+    """As in docs/scene.md."""
+    sentence: str
+    """What is left out, in this scene."""
+
+
+def has_equal_sections(scene: Scene) -> bool:
+    """True if every transverse section is the same: a spur pair of one face width without lead variation."""
+    gears = scene.pinion, scene.wheel
+    charts = [scene.flank_chart(name) for name in GEARS]
+    varies = (
+        scene.pair.helix_angle_deg, scene.pair.misalignment_um, *(gear.lead_crowning_um for gear in gears),
+        *(chart is not None and chart.varies_over_the_face for chart in charts),
+    )  # fmt: skip
+    return not any(varies) and gears[0].face_width_mm == gears[1].face_width_mm
+
+
+def _always(_: Scene) -> bool:
+    return True
+
+
+def _has_frictionless(scene: Scene) -> bool:
+    return 0.0 in scene.contact.friction
+
+
+def _pitch_sentence(scene: Scene) -> str:
+    pair = scene.gear_pair()
+    pitch, whole = 360 / pair.pinion.z, math.degrees(pair.engagement_angle)
+    return f"One pitch is solved, {pitch:.2f}° of pinion rotation instead of the {whole:.2f}° of a whole engagement."
+
+
+def _sector_sentence(scene: Scene) -> str:
+    count = " + ".join(str(gear.teeth) for gear in (scene.pinion, scene.wheel))
+    return f"One sector of a gear is meshed and factored; it stands for all {count} teeth."
+
+
+def _reuse_sentence(scene: Scene) -> str:
+    count = len(scene.contact.friction)
+    return f"The stiffness is factored once a gear and reused for all {count} friction coefficients."
+
+
+def _picture_sentence(scene: Scene) -> str:
+    names = [name for name in ("pictures", "animation") if not getattr(scene.output, name)]
+    return f"No {' and '.join(names)}, as the section [output] asks."
+
+
+SKIPS: tuple[Skip, ...] = (
+    Skip(
+        "plane",
+        has_equal_sections,
+        lambda _: "The third dimension: a spur pair without lead variation is solved in 2D plane strain.",
+        # plane strain is the limit of a wide gear. The ends of a real face are free: there the teeth are softer by up
+        # to ν² = 9 %, over a length of about a tooth's thickness
+        tolerance=0.05,
+    ),
+    Skip(
+        "friction-terms",
+        _has_frictionless,
+        lambda _: "Friction terms where μ = 0: normal components only, and nothing is remembered.",
+        tolerance=ROUND_OFF,  # the same equations, the tangential ones decoupled
+    ),
+    # with friction what closing a pitch leaves of where it began: of the peak-to-peak transmission error, of the error
+    # itself that is less (Yang's pair 1e-4); without friction 1e-7
+    Skip("one-pitch", _always, _pitch_sentence, tolerance=1e-2),
+    Skip("one-sector", _always, _sector_sentence, tolerance=ROUND_OFF),  # the ring's coupling is compressed to 1e-10
+    Skip(
+        "far-teeth",
+        _always,
+        lambda scene: f"Teeth that cannot touch: {len(touching_teeth(scene))} pairs can, and their neighbours.",
+        tolerance=ROUND_OFF,
+    ),
+    Skip(
+        "window",
+        _always,
+        lambda _: "The search is kept to a moving window about each contact line.",
+        # the projection of the wheel's displacement is cut off at the window's rim, which is felt within an element or
+        # two. He's pair: pressure 6e-4 at quick, 3e-4 at standard, 6e-6 at fine; a fiftieth of it in the other figures;
+        # 2e-2 on a helical mesh of half an element across the contact, whose pressure is worth nothing anyway
+        tolerance=1e-3,
+    ),
+    Skip(
+        "deflected-flanks",
+        lambda scene: scene.wear is None,  # studies of wear are followed on flanks before deflection
+        lambda _: "A second search, on deflected flanks; a pitch that loses energy without it is solved again.",
+        # of scenes that balance. He's pair: transmission error 3e-4, at ten times its load 1.3e-3; pressure 3e-3 at
+        # quick, 1e-3 at fine, up to 1e-2 on two elements across the contact. Yang's helical pair, unmodified, bears on
+        # its tip edges at every position: transmission error 4e-3; pressure beside these edges 4e-2 at quick, 2.5e-2
+        # at standard, where its error bar is 5e-2; torque ratio 6e-4, loss 1e-4
+        tolerance=5e-2,
+    ),
+    Skip(
+        "coarse-body",
+        _always,
+        lambda _: "Only the loaded flanks are refined; back flanks, fillets, core and rim of the teeth stay coarse.",
+        # what the teeth's bending is wrong by on the coarse body: He's pair 0.3 % at quick, 0.4 at standard, 0.7 at
+        # fine, where thinner layers meet the same coarse columns; the back flank alone 0.01 %
+        tolerance=1e-2,
+    ),
+    Skip("reuse", lambda scene: len(scene.contact.friction) > 1, _reuse_sentence, tolerance=ROUND_OFF),
+    Skip(
+        "error-bars",
+        lambda scene: not scene.output.error_bars,
+        lambda _: "Error bars and the coarse companion that they come from, because output.error_bars is false.",
+        tolerance=REPEATED,
+    ),
+    Skip(
+        "fields",
+        lambda scene: not scene.output.fields,
+        lambda _: "Fields for ParaView, because output.fields is false.",
+        tolerance=REPEATED,
+    ),
+    Skip(
+        "pictures",
+        lambda scene: not (scene.output.pictures and scene.output.animation),
+        _picture_sentence,
+        tolerance=REPEATED,
+    ),
+)
+OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
+"""Skips that results do not depend on."""
+
+
+def skip_named(name: SkipName) -> Skip:
+    """The registry's entry."""
+    return next(skip for skip in SKIPS if skip.name == name)
+
+
+def skips(scene: Scene, name: SkipName) -> bool:
+    """Whether this is left out: the skip applies and is not switched off."""
+    return name not in scene.skip.off and skip_named(name).applies(scene)
+
+
+def skipped(scene: Scene) -> list[Skipped]:
+    """What the scene does without."""
+    return [Skipped(skip.name, skip.sentence(scene)) for skip in SKIPS if skips(scene, skip.name)]
+
+
+def switched_off(scene: Scene) -> list[SkipName]:
+    """The skips that would apply, but are computed the long way."""
+    return [skip.name for skip in SKIPS if skip.name in scene.skip.off and skip.applies(scene)]
+
+
+def with_deflected_flanks(scene: Scene) -> Scene:
+    """The same, with its flanks touching as they have deflected; as it is where that does not apply."""
+    if not skips(scene, "deflected-flanks"):
+        return scene
+    off = Skipping(off=(*scene.skip.off, "deflected-flanks"))
+    return scene.model_copy(update={"skip": off})
+
+
+def is_plane(scene: Scene) -> bool:
+    """Whether the scene is solved in 2D."""
+    return skips(scene, "plane")
+
+
+def pitches(scene: Scene) -> int:
+    """How many pitches are swept: one, or all that a tooth is in mesh."""
+    if skips(scene, "one-pitch"):
+        return 1
+    pair = scene.gear_pair()
+    return math.ceil(pair.engagement_angle * pair.pinion.z / (2 * math.pi))
+
+
+def touching_teeth(scene: Scene) -> range:
+    """The tooth pairs that can touch while the pinion turns from 0 by the pitches that are swept, rigid flanks."""
+    pair = scene.gear_pair()
+    last = pair.teeth_in_contact(0.0)
+    first = pair.teeth_in_contact(pitches(scene) * 2 * math.pi / pair.pinion.z)
+    return range(first[0], last[-1] + 1)
+
+
+def contact_teeth(scene: Scene) -> list[int]:
+    """The tooth pairs that are looked at: those that can touch and those that deflection may bring into contact; all
+    that the gears have where these are not skipped."""
+    teeth = touching_teeth(scene)
+    near = range(teeth[0] - 1, teeth[-1] + 2)
+    if skips(scene, "far-teeth"):
+        return list(near)
+    count = min(scene.pinion.teeth, scene.wheel.teeth)
+    first = (near[0] + near[-1]) // 2 - count // 2
+    return list(range(first, first + count))
+
+
+def wanted_output(scene: Scene) -> Output:
+    """What is written beside the tables."""
+    off = scene.skip.off
+    asked = scene.output
+    drawn = "pictures" in off
+    return Output(
+        pictures=asked.pictures or drawn,
+        animation=asked.animation or drawn,
+        fields=asked.fields or "fields" in off,
+        error_bars=asked.error_bars or "error-bars" in off,
+        compare=asked.compare,
+        deformation=asked.deformation,
+    )

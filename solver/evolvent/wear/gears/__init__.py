@@ -1,0 +1,1 @@
+"""A gear pair that wears."""

@@ -1,0 +1,1 @@
+"""The archive, tables and pictures of a wear study."""

@@ -1,0 +1,227 @@
+"""Pictures of a wear study: depth over the profile and over the flank, its growth, and what it does to the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.offscreen import off_screen
+from evolvent.results.drawing.picture_files import Picture
+from evolvent.results.drawing.style import (
+    ABOVE,
+    FAINT,
+    PINION,
+    PRESSURE_MAP,
+    WHEEL,
+    friction_colours,
+    png,
+    sheet,
+    styled,
+)
+from evolvent.results.engagement import engagement
+from evolvent.results.fields.flank_field import flank_patch
+from evolvent.results.figures.scene3d import flank_picture
+from evolvent.scene.scene import GEARS
+from evolvent.wear.results.report import WornPair, WornRun
+from evolvent_meshes.arrays import Floats
+
+PATCH = (240, 60)  # points of a flank over profile and width: wear is smooth
+Draw = Callable[[WornRun], Figure]
+
+
+def pictures(study: WornRun) -> Iterator[Picture]:
+    """All pictures of a study."""
+    for name, draw in _figures(study):
+        yield Picture(f"{name}.png", partial(_drawn, draw, study))
+
+
+def _drawn(draw: Draw, study: WornRun) -> bytes:
+    with styled(), off_screen():
+        return png(draw(study))
+
+
+def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
+    yield "20_wear_depth", depth_over_profile
+    if not study.pairs[0].run.plane:
+        yield "21_wear_map", depth_over_flank
+    yield "22_wear_growth", growth
+    yield "23_force_as_worn", force_on_tooth
+    yield "24_transmission_error_as_worn", transmission_error
+    yield "25_worn_teeth", worn_teeth
+
+
+def wearing(study: WornRun) -> dict[int, float]:
+    """The gears that wear, and their K/H [mm²/N]."""
+    wear = study.scene.wear
+    assert wear is not None
+    return {gear: K for gear, K in enumerate((wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
+
+
+def cycles_label(cycles: float) -> str:
+    """ "0.4 million", "20 thousand"."""
+    for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand")):
+        if cycles >= 0.1 * size:
+            return f"{cycles / size:.4g}{name}"
+    return f"{cycles:.4g}"
+
+
+def _colours(study: WornRun) -> list[tuple[float, ...]]:
+    return friction_colours([pair.cycles for pair in study.pairs])
+
+
+def depth_over_profile(study: WornRun) -> Figure:
+    """Depth over the diameter at each report, mean over the face."""
+    last, own = study.pairs[-1], wearing(study)
+    found = [getattr(last.report(), GEARS[gear]) for gear in own]
+    deepest = ", ".join(
+        f"{GEARS[gear]} {_three(each.deepest_um)} µm at d = {each.at_diameter_mm:.1f} mm"
+        for gear, each in zip(own, found)
+    )
+    see = f"Deepest on the flank after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
+    figure = sheet("Wear depth over the profile", see)
+    for ax, gear in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own):
+        for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
+            ax.plot(*pair.profile(gear), color=colour, label=f"{cycles_label(pair.cycles)} cycles")
+        ax.axvline(study.pairs[0].run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
+        ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
+        ax.set(xlabel="diameter [mm]")
+        ax.label_outer()
+    figure.axes[0].set(ylabel="wear depth, mean over the face [µm]", ylim=(0.0, None))  # once all curves are there
+    figure.axes[0].legend()
+    return figure
+
+
+def depth_over_flank(study: WornRun) -> Figure:
+    """The worn flanks unrolled, at the end."""
+    last, own = study.pairs[-1], wearing(study)
+    title = f"Worn flanks after {cycles_label(last.cycles)} cycles"
+    figure = sheet(title, f"{_most(study)} The tip is above, the root below.", (5.8 * len(own) + 1.0, 5.6))
+    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+        chart = last.worn[gear]
+        shown = ax.pcolormesh(
+            chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=_deepest(last, gear),
+            shading="gouraud",
+        )  # fmt: skip
+        ax.axhline(last.run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
+        ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
+        ax.set(xlabel="face width z [mm]", ylabel="diameter [mm]")
+        ax.grid(False)
+        _depth_bar(figure, ax, shown)
+    return figure
+
+
+def worn_teeth(study: WornRun) -> Figure:
+    """The worn flanks on their teeth, at the end."""
+    last, own = study.pairs[-1], wearing(study)
+    title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
+    see = f"Little along the pitch line, where the flanks roll. {_most(study)}"
+    figure = sheet(title, see, (6.2 * len(own) + 1.0, 5.0))
+    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+        patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)
+        ρ, z = np.meshgrid(patch.roll_length, patch.z, indexing="ij")
+        depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
+        result = last.run.positions[0][0].result
+        ax.imshow(flank_picture(last.run, result, patch, 1e3 * depth, top, (960, 720)))
+        ax.set_title(f"{GEARS[gear]}, {GEARS[1 - gear]} taken away", fontsize=10)
+        ax.axis("off")
+        _depth_bar(figure, ax, ScalarMappable(Normalize(0.0, top), PRESSURE_MAP))
+    return figure
+
+
+def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
+    """Each gear's own: their depths may be far apart. Tip edges are beyond its end."""
+    figure.colorbar(shown, ax=ax, label=f"wear depth [µm]   ({ABOVE})", shrink=0.85, extend="max")
+
+
+def _most(study: WornRun) -> str:
+    """What stands at the upper end of the colours."""
+    found = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
+    return f"Deepest between the tip-edge zones: {', '.join(found)}."
+
+
+def _three(value: float) -> str:
+    """A number in three digits, also where the last is 0."""
+    return f"{value:#.3g}".removesuffix(".")
+
+
+def _deepest(pair: WornPair, gear: int) -> float:
+    """Deepest wear [µm] of a gear between the tip-edge zones."""
+    return 1e3 * float(pair.worn[gear].depth[pair.inner(gear)].max())
+
+
+def growth(study: WornRun) -> Figure:
+    """Deepest wear and worn volume over the cycles; a dot a block."""
+    error = 100.0 * max(row.error for row in study.rows)
+    see = f"{len(study.rows)} blocks of cycles; estimated error of a block's worn volume at most {error:.1f} %."
+    figure = sheet("How the wear grows", see)
+    left, right = figure.subplots(1, 2)
+    unit, name = _unit(study)
+    for gear in wearing(study):
+        style = {"color": (PINION, WHEEL)[gear], "linestyle": ("-", "--")[gear], "marker": ".", "label": GEARS[gear],
+                 "clip_on": False}  # fmt: skip
+        x = np.array([0.0, *(row.cycles for row in study.rows)]) / unit
+        deepest = [0.0, *(getattr(row, f"deepest_{GEARS[gear]}_um") for row in study.rows)]
+        volume = [0.0, *(getattr(row, f"volume_{GEARS[gear]}_mm3") for row in study.rows)]
+        left.plot(x, deepest, **style)
+        right.plot(x, volume, **style)
+    for ax, label in ((left, "deepest wear between the tip-edge zones [µm]"), (right, "volume worn off a tooth [mm³]")):
+        ax.set(xlabel=f"revolutions of the pinion [{name}]", ylabel=label, ylim=(0.0, None), xlim=(0.0, None))
+        ax.legend()
+    return figure
+
+
+def _unit(study: WornRun) -> tuple[float, str]:
+    cycles = study.pairs[-1].cycles
+    return (1e6, "millions") if cycles >= 5e5 else (1e3, "thousands") if cycles >= 500.0 else (1.0, "1")
+
+
+def force_on_tooth(study: WornRun) -> Figure:
+    """Normal force on a tooth over its engagement at each report."""
+    curves = [engagement(pair.run, 0) for pair in (study.pairs[0], study.pairs[-1])]
+    (first, last), (new, worn) = (c.force.max() for c in curves), (np.degrees(np.ptp(c.ends)) for c in curves)
+    see = f"As new a tooth is engaged over {new:.2f}° and carries at most {first:.0f} N"
+    see += f"; at last {worn:.2f}°, {last:.0f} N."
+    figure = _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
+    figure.axes[0].set(xlabel="pinion rotation of the tooth from the pitch point [°]", ylim=(0.0, None))
+    return figure
+
+
+def _force(pair: WornPair) -> tuple[Floats, Floats]:
+    """From where the tooth takes up load to where it has given it up."""
+    curve = engagement(pair.run, 0)
+    first, last = curve.ends
+    return np.degrees([first, *curve.angle, last]), np.array([0.0, *curve.force, 0.0])
+
+
+def transmission_error(study: WornRun) -> Figure:
+    """Loaded transmission error less its mean over a pitch at each report."""
+    first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
+    see = f"Peak to peak {first:.2f} µm as new, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
+    label = "transmission error less its mean [µm]"
+    return _over_rotation(study, "Transmission error as the flanks wear", see, label, _error)
+
+
+def _error(pair: WornPair) -> tuple[Floats, Floats]:
+    values = np.array([1e3 * each[0].result.transmission_error for each in pair.run.positions])
+    closed = np.append(values, values[0]) - values.mean()
+    angles = np.degrees(np.append(pair.run.angles, pair.run.angles[0] + pair.run.pitch))
+    return angles, closed
+
+
+def _over_rotation(
+    study: WornRun, title: str, see: str, label: str, curve: Callable[[WornPair], tuple[Floats, Floats]]
+) -> Figure:
+    figure = sheet(title, see)
+    ax: Axes = figure.add_subplot()
+    for pair, colour in zip(study.pairs, _colours(study)):
+        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "as new"
+        ax.plot(*curve(pair), color=colour, label=name)
+    ax.set(xlabel="pinion rotation [°]", ylabel=label)
+    ax.legend()
+    return figure

@@ -1,0 +1,178 @@
+"""What a wear study has found, read from its folder: worn flanks and solved pitches at each report, and the blocks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.run_data import RunData, read_run
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.scene.flank_deviations import FlankChart
+from evolvent.scene.scene import GEARS, Scene, load_scene
+from evolvent.wear.gears.flank_grid import inner_arcs
+from evolvent.wear.gears.gear_study import BlockRow
+from evolvent.wear.results.archive import read_study, worn_folder
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True)
+class GearReport:
+    """A gear after some cycles."""
+
+    deepest_um: float
+    """Deepest wear between the tip-edge zones."""
+    at_diameter_mm: float
+    """The diameter where it is."""
+    at_z_mm: float
+    """The height above mid-face where it is."""
+    at_pitch_point_um: float
+    """Wear at the pitch point, mean over the face."""
+    volume_mm3: float
+    """Worn off a tooth in all."""
+
+
+@dataclass(frozen=True)
+class PairReport:
+    """The pair after some cycles; figures as in summary.json."""
+
+    cycles: float
+    """Revolutions of the pinion."""
+    pinion: GearReport
+    """Its wear."""
+    wheel: GearReport
+    """Its wear."""
+    max_pressure_MPa: float
+    """Largest contact pressure of a tooth's engagement."""
+    transmission_error_peak_to_peak_um: float
+    """Largest less smallest transmission error of the pitch."""
+    mesh_stiffness_N_per_mm_um: float
+    """Tangent, mean of the pitch."""
+    loss_percent: float
+    """Friction work of the pitch, of the input."""
+    balance_error: float
+    """Of the energy of the pitch."""
+
+
+@dataclass(frozen=True)
+class WearReport:
+    """wear.json."""
+
+    K_over_H_mm2_per_N: Mapping[str, float]
+    """Archard's coefficient over the hardness, of pinion and wheel."""
+    blocks: int
+    """Blocks of cycles."""
+    refused_blocks: int
+    """Longer ones that were tried and refused."""
+    largest_block_error: float
+    """Share of a block's worn volume that may be taken off in the wrong place, the largest."""
+    reports: tuple[PairReport, ...]
+    """The pair at the beginning and at each report."""
+
+
+@dataclass(frozen=True)
+class WornPair:
+    """cycles; the pitch solved then; worn: what the study has taken off pinion and wheel, charts on the flank's nodes;
+    volumes: off a tooth of each [mm³]."""
+
+    cycles: float
+    run: RunData
+    worn: tuple[FlankChart, FlankChart]
+    volumes: tuple[float, float]
+
+    def inner(self, gear: int) -> np.ndarray:
+        """(k,) bool: the chart's diameters between the tip-edge zones, where pressure is singular and so is wear."""
+        low, high = inner_arcs(self.run.pair, gear)
+        arcs = self.worn[gear].arcs(self.run.pair.gears[gear])
+        return np.asarray((arcs >= low) & (arcs <= high))
+
+    def profile(self, gear: int) -> tuple[Floats, Floats]:
+        """Diameters [mm] between the tip-edge zones, and wear [µm] there, mean over the face."""
+        inner, chart = self.inner(gear), self.worn[gear]
+        return chart.diameters[inner], 1e3 * _mean(chart)[inner]
+
+    def report(self) -> PairReport:
+        """The figures of it."""
+        row = friction_rows(self.run)[0]
+        return PairReport(
+            self.cycles, self._gear(0), self._gear(1), row.max_pressure_MPa, row.transmission_error_peak_to_peak_um,
+            row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
+        )  # fmt: skip
+
+    def _gear(self, gear: int) -> GearReport:
+        chart, inner = self.worn[gear], self.inner(gear)
+        depth = np.where(inner[:, None], chart.depth, -np.inf)
+        row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+        pitch = float(np.interp(self.run.pair.working_pitch_diameters[gear], *self.profile(gear)))
+        return GearReport(
+            1e3 * float(depth[row, column]), float(chart.diameters[row]), float(chart.heights[column]), pitch,
+            self.volumes[gear],
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class WornRun:
+    """A finished study. pairs: at the beginning and at each report."""
+
+    scene: Scene
+    rows: tuple[BlockRow, ...]
+    pairs: tuple[WornPair, ...]
+
+
+def read_worn(folder: Path) -> WornRun:
+    """The study that `folder` holds. Raises SceneError, ArchiveError."""
+    scene = load_scene(folder / "scene.toml")
+    kept = read_study(Archive(folder, scene))
+    if scene.wear is None or kept is None or kept.cycles < scene.wear.cycles:
+        found = "a scene without [wear]" if scene.wear is None else "one that has not reached its last report"
+        raise ArchiveError(f"{folder}: wanted a finished wear study, found {found}; `evolvent run ... --resume`")
+    volumes = {0.0: (0.0, 0.0)} | {row.cycles: (row.volume_pinion_mm3, row.volume_wheel_mm3) for row in kept.rows}
+    ends = np.array(list(volumes))
+    pairs = []
+    for cycles in (0.0, *scene.wear.reports):
+        own = worn_folder(folder, cycles)
+        charts = [_worn(scene, own if cycles else worn_folder(folder, scene.wear.reports[0]), k) for k in (0, 1)]
+        if cycles == 0.0:
+            charts = [FlankChart(c.diameters, c.heights, np.zeros_like(c.depth)) for c in charts]
+        volume = volumes[float(ends[np.argmin(np.abs(ends - cycles))])]
+        pairs.append(WornPair(cycles, read_run(own), (charts[0], charts[1]), volume))
+    return WornRun(scene, kept.rows, tuple(pairs))
+
+
+def _worn(scene: Scene, folder: Path, gear: int) -> FlankChart:
+    """A worn flank less what was charted at the beginning."""
+    chart = FlankChart.read(folder / f"flank_{GEARS[gear]}.csv")
+    before = scene.flank_chart(GEARS[gear])
+    if before is None:
+        return chart
+    own = scene.gear_pair().gears[gear]
+    d, z = np.meshgrid(chart.diameters, chart.heights, indexing="ij")
+    roll = np.sqrt(np.maximum(d.ravel() ** 2 / 4.0 - own.base_radius**2, 0.0))
+    return FlankChart(chart.diameters, chart.heights, chart.depth - before.at(own, roll, z.ravel()).reshape(d.shape))
+
+
+def _mean(chart: FlankChart) -> Floats:
+    """(k,) over the face, by the trapezoid rule."""
+    if len(chart.heights) == 1:
+        return chart.depth[:, 0]
+    return np.asarray(trapezoid(chart.depth, chart.heights, axis=1) / np.ptp(chart.heights))
+
+
+def write_report(study: WornRun, folder: RunFolder) -> None:
+    """OUT/wear.json: the figures at each report. Raises OSError."""
+    wear = study.scene.wear
+    assert wear is not None
+    found = WearReport(
+        {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
+        blocks=len(study.rows),
+        refused_blocks=sum(row.refused for row in study.rows),
+        largest_block_error=max(row.error for row in study.rows),
+        reports=tuple(pair.report() for pair in study.pairs),
+    )
+    folder.write_text("wear.json", json.dumps(asdict(found), ensure_ascii=False, indent=1) + "\n")

@@ -1,0 +1,200 @@
+"""Each idea has a room of its own, a room imports only from rooms above it, and neither grows too large.
+
+A room is a folder's own files. ROOMS has them from the top down, with what each may import: "fem" is a room, "fem.*"
+that room with all rooms below it. Imports inside functions and for type hints count as all others do.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from tests.support.checkout import ROOT
+
+ROOMS: dict[str, tuple[str, ...]] = {
+    "meshes": (),
+    "meshes.mesh": ("meshes",),
+    "meshes.gears": ("meshes",),
+    "meshes.sector": ("meshes", "meshes.mesh", "meshes.gears"),
+    "meshes.shapes": ("meshes", "meshes.mesh"),
+    "fem.parallel": ("meshes",),
+    "fem.backend": ("meshes", "meshes.mesh"),
+    "fem": ("meshes", "meshes.mesh", "fem.parallel", "fem.backend"),
+    "fem.condensation": ("meshes", "fem.parallel", "fem.backend"),
+    "contact": ("meshes",),
+    "contact.search": ("meshes", "fem"),
+    "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
+    "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
+    "contact.problem": ("meshes", "fem", "fem.condensation", "contact.search", "contact.nitsche"),
+    "contact.step": (
+        "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
+    ),
+    "contact.solution": (
+        "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
+        "contact.step",
+    ),
+    "scene.schema": ("meshes",),
+    "scene": ("meshes", "meshes.gears", "fem", "contact", "scene.schema"),
+    "scene.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "scene", "scene.schema"),
+    "scene.checking": (
+        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "scene", "scene.schema", "scene.meshing",
+    ),
+    "gears.ring": ("meshes", "fem.condensation"),
+    "gears": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "fem.condensation", "contact.nitsche", "scene",
+        "scene.meshing", "gears.ring",
+    ),
+    "gears.contact": (
+        "meshes", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton", "gears.ring", "gears",
+    ),
+    "gears.sweep": ("meshes", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact"),
+    "results.archive": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
+    ),
+    "results": ("meshes", "meshes.gears", "fem", "scene", "scene.checking", "gears", "gears.sweep", "results.archive"),
+    "results.error_bars": ("meshes", "results.archive", "results"),
+    "results.tables": ("scene", "scene.checking", "results.archive", "results", "results.error_bars"),
+    "results.fields": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "scene.schema", "gears.ring", "gears", "gears.sweep",
+        "results.archive", "results",
+    ),
+    "results.drawing": ("meshes", "scene", "results.archive", "results"),
+    "results.figures": (
+        "meshes", "meshes.gears", "contact", "scene", "scene.checking", "gears.sweep", "results.archive", "results",
+        "results.tables", "results.fields", "results.drawing",
+    ),
+    "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*", "scene"),
+    "wear.gears": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "scene", "gears",
+        "gears.contact", "gears.sweep", "wear",
+    ),
+    "wear.results": ("meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear.gears"),
+    "run": (
+        "meshes.*", "fem.backend", "fem.parallel", "scene", "scene.schema", "scene.meshing", "gears", "gears.sweep",
+        "results.*", "wear.*",
+    ),
+    "cli": ("meshes", "meshes.mesh", "fem.backend", "scene.*", "results.tables", "wear", "run"),
+}  # fmt: skip
+"""Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
+FILES, BELOW, LINES = 12, 9, 300
+"""Of a room at most: its files, the rooms directly below it, the lines of a file."""
+TREES = ("solver/evolvent", "meshes/evolvent_meshes", "demos")
+Imports = Mapping[str, set[str]]
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the two packages but the doors of rooms (`__init__.py`), which only say what a room has."""
+    roots = (ROOT / "solver", ROOT / "meshes")
+    files = ((root, path) for root in roots for path in sorted(root.rglob("*.py")) if path.name != "__init__.py")
+    return {".".join(path.relative_to(root).with_suffix("").parts): path for root, path in files}
+
+
+def imports() -> dict[str, set[str]]:
+    """Module -> the modules that it imports."""
+    known = modules()
+    return {name: set(_targets(ast.parse(path.read_bytes()), known)) - {name} for name, path in known.items()}
+
+
+def _targets(tree: ast.Module, known: Mapping[str, Path]) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"wanted absolute imports, found {ast.unparse(node)!r}"
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        for name in names:
+            yield from (each for each in (name, name.rpartition(".")[0]) if each in known)
+
+
+def room(module: str) -> str:
+    """The room of ROOMS that a module is in."""
+    parent = module.rpartition(".")[0]
+    return "cli" if parent == "evolvent" else parent.replace("evolvent_meshes", "meshes").removeprefix("evolvent.")
+
+
+def allows(entry: str, target: str) -> bool:
+    """Whether an entry of ROOMS is for a room."""
+    tree = entry.removesuffix(".*")
+    return target == tree or (entry != tree and target.startswith(f"{tree}."))
+
+
+def refused(found: Imports) -> list[str]:
+    """The imports that ROOMS does not allow."""
+    return sorted(
+        f"{module} imports {target}"
+        for module, targets in found.items() for target in targets
+        if room(target) != room(module) and not any(allows(entry, room(target)) for entry in ROOMS[room(module)])
+    )  # fmt: skip
+
+
+def test_a_room_imports_from_rooms_above_it() -> None:
+    """No import is refused, and every room is in the list."""
+    found = imports()
+    assert {room(module) for module in found} == set(ROOMS)
+    assert refused(found) == []
+
+
+def test_the_list_of_rooms_has_no_arrow_up() -> None:
+    """A room may import only what stands before it in the list."""
+    names = list(ROOMS)
+    backwards = [(name, target) for at, name in enumerate(names) for entry in ROOMS[name]
+                 for target in names[at:] if allows(entry, target)]  # fmt: skip
+    assert backwards == []
+
+
+def test_the_list_of_rooms_allows_no_more_than_is_used() -> None:
+    """Every entry of the list stands for an import that there is."""
+    used = {(room(module), room(target)) for module, targets in imports().items() for target in targets}
+    spare = [(name, entry) for name, entries in ROOMS.items() for entry in entries
+             if not any(one == name and allows(entry, other) for one, other in used)]  # fmt: skip
+    assert spare == []
+
+
+def test_no_two_files_need_each_other() -> None:
+    """The imports between files have no circle."""
+    TopologicalSorter(imports()).prepare()
+
+
+def test_the_rule_can_be_broken() -> None:
+    """An import against the list and a circle of two files are found."""
+    found = imports() | {"evolvent.fem.surface": {"evolvent.contact.search.pairing"}}
+    assert refused(found) == ["evolvent.fem.surface imports evolvent.contact.search.pairing"]
+    with pytest.raises(CycleError):
+        TopologicalSorter(found).prepare()
+
+
+def sizes(tree: Path) -> list[str]:
+    """What is too large in a tree of rooms, in words."""
+    found = []
+    for folder in (tree, *(path for path in sorted(tree.rglob("*")) if path.is_dir() and path.name != "__pycache__")):
+        files = [path for path in sorted(folder.glob("*.py")) if path.name != "__init__.py"]
+        rooms = [path for path in folder.iterdir() if path.is_dir() and any(path.rglob("*.py"))]
+        lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in files}
+        found += [f"{folder}: {len(files)} files"] if len(files) > FILES else []
+        found += [f"{folder}: {len(rooms)} rooms"] if len(rooms) > BELOW else []
+        found += [f"{path}: {count} lines" for path, count in lines.items() if count > LINES]
+    return found
+
+
+@pytest.mark.parametrize("tree", TREES)
+def test_rooms_and_files_are_small(tree: str) -> None:
+    """At most 12 files a room, 9 rooms a level and 300 lines a file."""
+    assert sizes(ROOT / tree) == []
+
+
+def test_what_is_too_large_is_found(tmp_path: Path) -> None:
+    """A room with 13 files, a level with 10 rooms and a file with 301 lines are named."""
+    for number in range(FILES + 1):
+        (tmp_path / f"file_{number}.py").write_text("\n" * (LINES + (number == 0)))
+    for number in range(BELOW + 1):
+        (tmp_path / f"room_{number}").mkdir()
+        (tmp_path / f"room_{number}" / "file.py").touch()
+    assert sizes(tmp_path) == [
+        f"{tmp_path}: 13 files", f"{tmp_path}: 10 rooms", f"{tmp_path / 'file_0.py'}: 301 lines",
+    ]  # fmt: skip

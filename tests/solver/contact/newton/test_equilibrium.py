@@ -1,0 +1,222 @@
+"""The condensed contact system: its tangent, what it balances, and the contact conditions at the solution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.contact.newton.equilibrium import (
+    TOLERANCE,
+    Start,
+    _accuracy,
+    _assumed_contact,
+    _Contact,
+    frictional,
+    frictionless,
+    normal_part,
+    stuck,
+)
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
+from evolvent.contact.solution.solver import Contact, Position, Problem, Step, prepare, solve
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent_meshes.shapes.blocks import cylinder_2d, graded_box, graded_rectangle, sphere_quarter
+
+FRICTION = 0.2
+
+
+def cylinder(friction: float = FRICTION, first: int = 0, order: int = 2, extra: tuple[Freedom, ...] = ()) -> Problem:
+    """A steel cylinder of 50 mm radius on an aluminium block, 5 kN/mm, a = 2.35 mm, cells of a/3 on a/4."""
+    bodies = (
+        Body(cylinder_2d(50.0, 0.8, 3.0, order, growth=1.6), rigid=Rigid("top", (Freedom("y", load=-5e3), *extra))),
+        Body(graded_rectangle(60.0, 40.0, 0.63, 3.0, order, growth=1.6), Material(70e3, 0.3), (Fixed("bottom"),)),
+    )
+    sides = ((0, "arc"), (1, "top"))
+    return Problem(bodies, (Contact(sides[first], sides[1 - first], friction, reach=0.5),))
+
+
+def ball(friction: float = FRICTION) -> Problem:
+    """A quarter of a ball of 8 mm radius on a block, coarse."""
+    symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
+    bodies = (
+        Body(
+            sphere_quarter(8.0, 2.0, 2.0, 0.2, 0.4, 1),
+            supports=symmetry,
+            rigid=Rigid("top", (Freedom("z", load=-500.0),)),
+        ),
+        Body(graded_box(2.0, 2.0, 0.17, 0.4, 1), Material(70e3, 0.3), (*symmetry, Fixed("bottom"))),
+    )
+    return Problem(bodies, (Contact((0, "arc"), (1, "top"), friction, reach=0.1),))
+
+
+def _position(problem: Problem) -> Position:
+    return Position(problem, prepare(problem), Step())
+
+
+@pytest.mark.parametrize("make", [cylinder, ball])
+@pytest.mark.parametrize("law", ["coulomb", "starting guess"])
+def test_tangent(make, law):
+    """The residual's derivative [I + MA, −MH; Hᵀ, 0] against central differences, 1e-6 relative, near the solution with
+    open, stuck and sliding points; and a Newton step is its inverse, as accurate as asked for."""
+    position = _position(make())
+    system = position.system()
+    start = stuck(system, position.slip(None))
+    laws = {
+        "coulomb": lambda t: coulomb(t, FRICTION),
+        "starting guess": lambda t: starting_guess(t, FRICTION, np.zeros((len(t), t.shape[1] - 1))),
+    }
+    problem = _Contact(system, laws[law], position.slip(None))
+    step, compared = 2e-4, 0
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        x = problem.join(start.force, start.motion) * (1.0 + 1e-3 * rng.normal(size=problem.n * problem.k + problem.r))
+        direction = rng.normal(size=len(x)) * np.abs(x).max() * 1e-4
+        ahead, behind = x + step * direction, x - step * direction
+        if not np.array_equal(*(problem.state(y)[2].derivative != 0.0 for y in (ahead, behind))):
+            continue  # a point changes its state in between: no derivative there
+        compared += 1
+        tangent = _tangent(problem, x)
+        difference = (problem.residual(ahead) - problem.residual(behind)) / (2.0 * step)
+        assert np.linalg.norm(tangent @ direction - difference) < 1e-6 * np.linalg.norm(difference)
+        for accuracy in (1e-3, 1e-10):
+            solved = system.steps.solve(problem.tangent(x), difference, accuracy)
+            assert np.linalg.norm(tangent @ solved - difference) < accuracy * np.linalg.norm(difference)
+    assert compared >= 3
+
+
+def test_accuracy_of_a_step():
+    """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
+    leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
+    hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
+    for share in 10.0 ** np.arange(-9, 1):
+        left = _accuracy(share * 5e3, 5e3) * share
+        assert left <= max(0.2 * 200.0 * share**2, 1e-2 * TOLERANCE, 1e-7 * share) * (1.0 + 1e-9)
+        assert 1e-7 * share * (1.0 - 1e-9) <= left <= 1e-2 * share * (1.0 + 1e-9)
+    assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
+
+
+@pytest.mark.parametrize("make", [cylinder, ball])
+def test_work_is_the_slope_of_the_energy(make):
+    """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
+    relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
+    and Newton's step begins with a negative one."""
+    system = normal_part(_position(make()).system())
+    problem = _Contact(system, lambda t: coulomb(t, 0.0))
+    solution = frictionless(system)
+    op = system.operator
+
+    def energy(x: np.ndarray) -> float:
+        force, motion = problem.split(x)
+        f = force.ravel()
+        p = np.maximum(op.trial(system.jumps(force, motion))[:, 0], 0.0)
+        return 0.5 * f @ system.compliance @ f + 0.5 * op.weights @ (p**2 / op.stabiliser[:, 0]) - system.load @ motion
+
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        x = problem.join(solution.force * (1.0 + 0.3 * rng.normal(size=(problem.n, 1))), 1.2 * solution.motion)
+        step = problem.solve(x, problem.residual(x))
+        work, h = problem.work(x, step), 1e-5
+        slopes = [work(α) for α in (0.0, 0.3, 1.0)]
+        differences = [(energy(x - (α + h) * step) - energy(x - (α - h) * step)) / (2.0 * h) for α in (0.0, 0.3, 1.0)]
+        assert np.abs(np.subtract(slopes, differences)).max() < 1e-6 * np.abs(slopes).max()
+        assert slopes[0] < 0.0 and np.all(np.diff(slopes) >= 0.0)
+
+
+def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:
+    M = problem.system.operator.tangent(problem.state(x)[2])
+    H = problem.system.motion / problem.system.lever
+    contact = np.hstack([np.eye(len(H)) + M @ problem.system.compliance, -(M @ H)])
+    return np.vstack([contact, np.hstack([H.T, np.zeros((H.shape[1], H.shape[1]))])])
+
+
+@pytest.mark.parametrize("make", [cylinder, ball])
+def test_contact_conditions(make):
+    """At the solution: λ ≥ 0, no weighted overlap beyond what the flux term explains, |τ| ≤ μλ, the load is carried."""
+    problem = make()
+    position = _position(problem)
+    solution, _ = position.solve(None)
+    contact = solution.contacts[0]
+    shear = contact.traction - contact.pressure[:, None] * contact.normals
+    assert contact.pressure.min() >= 0.0
+    assert (np.linalg.norm(shear, axis=1) <= FRICTION * contact.pressure * (1.0 + 1e-9) + 1e-9).all()
+    assert np.linalg.norm(shear, axis=1).max() > 0.05 * contact.pressure.max(), "friction is silently lost"
+    load = problem.bodies[0].rigid.freedoms[0].load
+    assert contact.force[-1] == pytest.approx(load, rel=1e-9)
+    assert solution.imbalance < 1e-10
+
+
+def test_friction_changes_the_answer():
+    """The same cylinder with μ = 0 and 0.2: no shear without friction, and a stiffer contact with it."""
+    smooth, rough = (solve(cylinder(μ)) for μ in (0.0, FRICTION))
+    shear = [
+        np.abs(s.contacts[0].traction - s.contacts[0].pressure[:, None] * s.contacts[0].normals).max()
+        for s in (smooth, rough)
+    ]
+    assert shear[0] < 1e-9 * smooth.contacts[0].pressure.max()
+    assert shear[1] > 1e-2 * smooth.contacts[0].pressure.max()
+    assert smooth.motions[0][0] < rough.motions[0][0] < 0.0
+
+
+@pytest.mark.parametrize("make", [lambda: cylinder(first=0), lambda: cylinder(first=1), ball])
+@pytest.mark.parametrize("friction", [0.0, FRICTION])
+def test_action_is_reaction(make, friction):
+    """Nodal forces on both bodies cancel to 1e-10. Their moments cancel but for what small displacements leave out:
+    the forces act at the undeformed surfaces, which are a gap apart where they touch; at most gap times force."""
+    problem = make()
+    problem = Problem(problem.bodies, tuple(Contact(c.first, c.second, friction, c.reach) for c in problem.contacts))
+    solution = solve(problem)
+    total, moment = [], []
+    for prepared, forces in zip(solution.prepared, solution.nodal_forces, strict=True):
+        d = prepared.assembled.d
+        nodal = (prepared.forces.T @ forces).reshape(-1, d)
+        points = prepared.assembled.body.mesh.points
+        total.append(nodal.sum(axis=0))
+        moment.append(np.cross(points, np.pad(nodal, ((0, 0), (0, 3 - d)))).sum(axis=0))
+    contact = solution.contacts[0]
+    size = np.linalg.norm(total[0])
+    assert np.linalg.norm(total[0] + total[1]) < 1e-10 * size
+    assert np.linalg.norm(total[problem.contacts[0].second[0]] - contact.force) < 1e-10 * size
+    gap = _position(problem).operators[0].gap[contact.pressure > 0.0]
+    assert np.abs(moment[0] + moment[1]).max() <= np.abs(gap).max() * (contact.weights @ contact.pressure)
+
+
+def test_nothing_within_reach():
+    """A cylinder that is loaded but held away from the block by its reach: an error that says what to do."""
+    position = _position(cylinder(0.0))
+    system = normal_part(position.system())
+    none = np.zeros(len(system.operator.weights), dtype=bool)
+    with pytest.raises(NotConverged, match="no node in contact"):
+        _assumed_contact(system, none)
+
+
+def test_start_does_not_matter():
+    """The frictionless solution from all points in contact and from six in the middle is the same."""
+    system = normal_part(_position(cylinder(0.0)).system())
+    few = np.zeros(len(system.operator.weights), dtype=bool)
+    few[np.argsort(system.operator.gap)[:6]] = True
+    a, b = frictionless(system), frictionless(system, few)
+    assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
+
+
+def test_bad_guess_is_no_failure():
+    """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
+    without a guess."""
+    position = _position(cylinder())
+    system, slip = position.system(), position.slip(None)
+    unknown, start = np.zeros((len(system.operator.weights), 1)), frictionless(normal_part(system))
+    wanted = frictional(system, FRICTION, slip, unknown, start)
+    for apart in (-1.0, 1.0):
+        guess = Start(np.zeros_like(wanted.force), wanted.motion + apart)
+        found = frictional(system, FRICTION, slip, unknown, start, guess)
+        assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
+
+
+def test_free_sideways_motion_needs_friction():
+    """A cylinder that may also move sideways, pushed with less than μP: with friction it sticks; without friction on a
+    flat first surface nothing resists, and the error names that."""
+    push = (Freedom("x", load=0.3 * FRICTION * 5e3),)
+    solution = solve(cylinder(first=1, extra=push))
+    assert solution.contacts[0].force[0] == pytest.approx(-0.3 * FRICTION * 5e3, rel=1e-9)
+    with pytest.raises(NotConverged, match="support"):
+        solve(cylinder(friction=0.0, first=1, extra=push))

@@ -1,0 +1,122 @@
+"""Newton steps one after the other: as accurate as asked for, with what they keep from one another and without."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from evolvent.contact.newton import newton_steps
+from evolvent.contact.newton.newton_steps import NewtonSteps
+from evolvent.contact.newton.reduced_tangent import KeptColumns
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.newton.tangent import Tangent
+
+N, K = 60, 3
+RNG = np.random.default_rng
+
+
+def compliance() -> np.ndarray:
+    """A (m, m) of 60 nodes in a row on a soft body: 1/(1 + distance) between equal components, m = 180."""
+    place = np.arange(N)
+    return np.kron(1.0 / (1.0 + np.abs(place[:, None] - place)), np.eye(K))
+
+
+def motion() -> np.ndarray:
+    """H (m, 1): all nodes along their normals."""
+    return np.tile([1.0, 0.0, 0.0], N)[:, None].copy()
+
+
+def sliding(first: int, last: int, friction: float, tangential: float = 0.01) -> Tangent:
+    """T where the nodes from `first` to before `last` slide, stiffness 5, with tangential derivatives that are small
+    beside it and left out."""
+    block = np.array([[1.0, 0.0, 0.0], [friction, 0.0, 0.0], [0.0, 0.0, tangential]])
+    M = sp.csr_matrix(sp.kron(sp.diags(5.0 * ((np.arange(N) >= first) & (np.arange(N) < last))), block))
+    M.eliminate_zeros()
+    return Tangent(M, compliance(), motion(), K * np.arange(first, last), whole=False)
+
+
+def dense(tangent: Tangent) -> np.ndarray:
+    """[I + M A, −M H; Hᵀ, 0]."""
+    M, A, H = tangent.M.toarray(), tangent.A, tangent.H
+    return np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
+
+
+def error(tangent: Tangent, found: np.ndarray, right: np.ndarray) -> float:
+    """What is left of T y = b, over |b|."""
+    return float(np.linalg.norm(right - dense(tangent) @ found) / np.linalg.norm(right))
+
+
+@pytest.fixture
+def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
+    """In which precision each factor was made, and of how many columns."""
+    made: list[tuple[str, int]] = []
+    original = KeptColumns.of
+
+    def counted(M, A, H, columns):
+        made.append((A.dtype.name, len(columns)))
+        return original(M, A, H, columns)
+
+    monkeypatch.setattr(KeptColumns, "of", staticmethod(counted))
+    return made
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-7, 1e-11])
+def test_accuracy(accuracy: float) -> None:
+    """A random right-hand side: T y = b up to the accuracy, beyond that of single precision too."""
+    right = RNG(1).normal(size=N * K + 1)
+    tangent = sliding(20, 40, 0.2)
+    found = NewtonSteps(tangent.A, tangent.H).solve(tangent, right, accuracy)
+    assert error(tangent, found, right) <= 1.1 * accuracy
+
+
+def test_no_residual_no_step() -> None:
+    """T y = 0: y = 0 exactly."""
+    tangent = sliding(20, 40, 0.2)
+    assert not NewtonSteps(tangent.A, tangent.H).solve(tangent, np.zeros(N * K + 1), 1e-7).any()
+
+
+def test_a_factor_serves_more_than_once(factored: list[tuple[str, int]]) -> None:
+    """Three friction coefficients at which the same nodes touch: one factor of their normal columns, and every step is
+    as accurate as asked for. Where others touch too, there is a second one."""
+    steps = NewtonSteps(compliance(), motion())
+    for friction in (0.1, 0.15, 0.2):
+        tangent = sliding(20, 40, friction)
+        right = tangent.M @ RNG(2).normal(size=N * K)
+        assert error(tangent, steps.solve(tangent, np.append(right, 1.0), 1e-8), np.append(right, 1.0)) < 1e-8
+    assert factored == [("float32", 20)]
+    tangent = sliding(18, 40, 0.2)
+    right = np.append(tangent.M @ RNG(3).normal(size=N * K), 1.0)
+    assert error(tangent, steps.solve(tangent, right, 1e-8), right) < 1e-8
+    assert factored == [("float32", 20), ("float32", 22)]
+
+
+def test_a_factor_that_is_no_help_is_made_anew(factored: list[tuple[str, int]]) -> None:
+    """All nodes touch, then only every third: the first factor leads astray, the second step has its own."""
+    steps = NewtonSteps(compliance(), motion())
+    whole = sliding(0, N, 0.1)
+    right = np.append(whole.M @ RNG(4).normal(size=N * K), 1.0)
+    steps.solve(whole, right, 1e-8)
+    some = sp.diags(np.repeat(np.arange(N) % 3 == 0, K).astype(float))
+    tangent = Tangent(sp.csr_matrix(whole.M @ some), whole.A, whole.H, K * np.arange(0, N, 3), whole=False)
+    assert error(tangent, steps.solve(tangent, right, 1e-8), right) < 1e-8
+    assert factored == [("float32", N), ("float32", N // 3)]
+
+
+def test_all_columns_where_iterations_fail(monkeypatch: pytest.MonkeyPatch) -> None:
+    """GMRES that always fails: the step comes from a factor of all columns, exact to rounding."""
+    monkeypatch.setattr(newton_steps, "gmres", lambda T, right, **_: (np.zeros_like(right), 1))
+    tangent = sliding(20, 40, 0.2)
+    right = RNG(5).normal(size=N * K + 1)
+    assert error(tangent, NewtonSteps(tangent.A, tangent.H).solve(tangent, right, 1e-2), right) < 1e-13
+
+
+def test_all_columns_kept_is_the_inverse() -> None:
+    """With all columns that hold anything, T times its inverse is the identity to 1e-13; where nothing touches, a free
+    motion meets no resistance: said so."""
+    tangent = sliding(20, 40, 0.2)
+    right = RNG(6).normal(size=N * K + 1)
+    assert error(tangent, tangent.solve(right), right) < 1e-13
+    nothing = Tangent(0.0 * tangent.M, tangent.A, tangent.H, tangent.kept, whole=True)
+    with pytest.raises(NotConverged, match="no resistance"):
+        nothing.solve(right)

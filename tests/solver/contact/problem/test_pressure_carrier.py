@@ -1,0 +1,92 @@
+"""Bodies of very different stiffness, named in either order: the softer one carries the pressure from a ratio of 10
+on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.contact.problem.pressure_carrier import STIFFER
+from evolvent.contact.solution.solver import Contact, Problem, Solution, Step, solve, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.fem.material import Material
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
+
+RATIOS = (1e-8, 1e-4, 1e-2, 1.0, 1e2, 2e4, 5e4, 1e8)  # from 5e4 on Newton's method stalled with the stiff body first
+SOFT, POISSON = 1e3, 0.3
+SHORTENED = 1e-3  # mm
+
+
+def oedometric(modulus: float) -> float:
+    """Stress over strain [MPa] of a body that cannot get wider."""
+    return modulus * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
+
+
+def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
+    """Two blocks, 2 mm wide and 1 mm high each, one on the other, whose meshes do not match; held to the sides."""
+    if d == 2:
+        sides = (Fixed("left", "x"), Fixed("right", "x"))
+        return rectangle(2.0, 1.0, 4, 2), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0)), sides, "y"
+    sides = (Fixed("left", "x"), Fixed("right", "x"), Fixed("front", "y"), Fixed("back", "y"))
+    sizes = (2.0, 2.0, 1.0)
+    return box(sizes, (2, 2, 1), 1), box(sizes, (3, 3, 1), 1, origin=(0.0, 0.0, -1.0)), sides, "z"
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("order", [0, 1])
+@pytest.mark.parametrize("by_load", [False, True])
+def test_ratios_of_stiffness(d, friction, order, by_load):
+    """A column of two blocks that cannot get wider, its top lowered by δ, either by prescribing δ or by the force that
+    takes: the stress is δ/Σ(h/M), exactly, on any mesh. Force and sinking within 1e-6, for moduli of the upper block
+    1e-8 to 1e8 times that of the lower one, in 2D and 3D, with and without friction, each block named first."""
+    upper, lower, sides, down = column(d)
+    for ratio in RATIOS:
+        moduli = (SOFT * max(ratio, 1.0), SOFT * max(1.0 / ratio, 1.0))
+        force = SHORTENED / sum(1.0 / oedometric(modulus) for modulus in moduli) * 2.0 ** (d - 1)
+        pressing = Freedom(down, load=-force) if by_load else Freedom(down, displacement=-SHORTENED)
+        bodies = (
+            Body(upper, Material(moduli[0], POISSON), sides, rigid=Rigid("top", (pressing,))),
+            Body(lower, Material(moduli[1], POISSON), (*sides, Fixed("bottom"))),
+        )
+        named = ((0, "bottom"), (1, "top"))
+        found = solve(Problem(bodies, (Contact(named[order], named[1 - order], friction, reach=0.1),)))
+        assert abs(found.contacts[0].force[-1]) == pytest.approx(force, rel=1e-6), ratio
+        assert found.motions[0][0] == pytest.approx(-SHORTENED, rel=1e-6), ratio
+
+
+def roller(stiffer: float, order: int) -> Solution:
+    """A roller `stiffer` times as stiff as the block it is pressed on and then pushed to the right along, μ = 0.2."""
+    freedoms = (Freedom("y", load=-50.0), Freedom("x", displacement=0.0))
+    up = Body(cylinder_2d(50.0, 0.8, 3.0, growth=1.6), Material(stiffer * 700.0, 0.3), rigid=Rigid("top", freedoms))
+    low = Body(graded_rectangle(60.0, 40.0, 0.63, 3.0, growth=1.6), Material(700.0, 0.3), (Fixed("bottom"),))
+    named = ((0, "arc"), (1, "top"))
+    problem = Problem((up, low), (Contact(named[order], named[1 - order], 0.2, reach=0.5),))
+    push = Step(freedoms=((0, Freedom("x", displacement=0.5)),))
+    *_, pushed = sweep(problem, [Step(), push])
+    return pushed
+
+
+def test_named_order_keeps_its_meaning():
+    """Whichever surface carries the pressure, force is on the second body, normals point out of the first, slip is of
+    the first over the second. A roller 1e6 times as stiff as its block, named first and second: the same fields, with
+    opposite signs; pushed to the right, it slides and drags the block along with μλ."""
+    first, second = (roller(1e6, order).contacts[0] for order in (0, 1))
+    assert first.carrier == second.carrier == (1, "top")
+    assert first.force == pytest.approx([10.0, -50.0], rel=0.02)  # along normals that the block's shear has turned
+    for name in ("normals", "traction", "slip"):
+        assert np.array_equal(getattr(first, name), -getattr(second, name))
+    assert first.normals[:, 1].max() < 0.0
+    assert first.slip[first.pressure > 0.0, 0].min() > 0.0
+    shear = first.traction - first.pressure[:, None] * first.normals
+    assert np.allclose(np.linalg.norm(shear, axis=1), 0.2 * first.pressure, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("stiffer", "carrier"), [(0.99 * STIFFER, (0, "arc")), (1.01 * STIFFER, (1, "top"))])
+def test_who_carries(stiffer, carrier):
+    """The first surface, and the softer one where the first body is more than STIFFER times as stiff; by either the
+    roller sinks in the same within 1 %."""
+    found = roller(stiffer, 0)
+    assert found.contacts[0].carrier == carrier
+    assert found.motions[0][0] == pytest.approx(roller(stiffer, 1).motions[0][0], rel=0.01)

@@ -1,0 +1,46 @@
+"""Warnings point to the user's line, through all functions of the packages."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import pytest
+
+from evolvent.contact.solution.solver import (
+    CoarseContactWarning,
+    NearlyIncompressibleWarning,
+    Step,
+    Sweep,
+    solve,
+    sweep,
+)
+from tests.support.contact_cases import rubber
+
+COARSE = rubber(4.0, 5.0)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [lambda: solve(COARSE), lambda: Sweep(COARSE).solve(Step()), lambda: [*sweep(COARSE, [Step()])]],
+    ids=["solve", "Sweep", "sweep"],
+)
+def test_where(call: Callable[[], object]) -> None:
+    """Raised at three depths, one of them inside a generator: the line is of this file each time."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    ours = [w for w in caught if issubclass(w.category, CoarseContactWarning | NearlyIncompressibleWarning)]
+    assert {w.category for w in ours} == {CoarseContactWarning, NearlyIncompressibleWarning}
+    assert {w.filename for w in ours} == {__file__}
+
+
+def test_each_of_a_loop() -> None:
+    """The same warning of the same line, twice: with Python's own filters, which show a warning of a line once, both
+    are seen; an application that ignores them sees none."""
+    for action, count in (("default", 2), ("ignore", 0)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter(action)  # type: ignore[arg-type]
+            for _ in range(2):
+                solve(COARSE)
+        assert sum(issubclass(w.category, CoarseContactWarning) for w in caught) == count

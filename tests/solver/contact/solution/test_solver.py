@@ -1,0 +1,274 @@
+"""The public API: steps, sweeps, placements, several contacts, what is refused; and the page of docs that shows it."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.contact.solution import solver as problem_api
+from evolvent.contact.solution.full_system import full_solution
+from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, Sweep, reactions, solve, sweep
+from evolvent.fem.body import Body, Fixed, Freedom, Rigid, Traction
+from evolvent.fem.material import Material
+from evolvent_meshes.shapes.blocks import rectangle
+from tests.solver.contact.newton.test_equilibrium import FRICTION, cylinder
+from tests.support.checkout import ROOT
+
+
+def test_own_problem_page(tmp_path, monkeypatch):
+    """The programs in docs/own_problem.md run as they stand; the first one has at most 40 lines and carries its load,
+    and the peak that it prints is within 0.2 % of that of a mesh ten times as fine, 2275.4 MPa; the ground carries what
+    the contact gives, and ParaView's files are there."""
+    text = (ROOT / "docs/own_problem.md").read_text()
+    first, second = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert len(first.strip().splitlines()) <= 40
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    exec(compile(first, "own_problem.md", "exec"), names)
+    force = names["solution"].contacts[0].force
+    assert force[1] == pytest.approx(-names["LOAD"], rel=1e-8)
+    assert names["contact"].pressure.max() == pytest.approx(2275.4, rel=2e-3)
+    assert f"{names['contact'].pressure.max():,.0f} MPa" in text
+    exec(compile(second, "own_problem.md", "exec"), names)
+    assert names["share"] == 1.0
+    assert names["bottom"].force[1] == pytest.approx(names["LOAD"], rel=1e-8)
+    assert len(list((tmp_path / "out").glob("*.vtu"))) == 3 * len(names["solutions"])
+
+
+def test_page_names_every_class():
+    """The tables of docs/own_problem.md have every public name that a program states or asks for."""
+    text = (ROOT / "docs/own_problem.md").read_text()
+    inner = {"STEEL", "MeshData", "Position", "PreparedBody", "Side", "prepare", "EvolventError", "ResultError"}
+    rows = "\n".join(line.split("|")[1] for line in text.splitlines() if line.startswith("|"))
+    assert [name for name in sorted(set(problem_api.__all__) - inner) if f"`{name}" not in rows] == []
+
+
+def test_surfaces_out_of_reach_are_refused():
+    """Two blocks 1 mm apart, and a reach of 0.1 mm: said, with both surfaces and what to do."""
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0))
+    bodies = Body(upper, rigid=Rigid("top", (Freedom("y", load=-1.0),))), Body(lower, supports=(Fixed("bottom"),))
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    with pytest.raises(SearchError, match=r"'bottom' of body 0 and 'top' of body 1: wanted .* 0\.1 mm.*found none"):
+        solve(problem)
+
+
+def test_load_factor_scales_a_closed_contact():
+    """Two flat blocks that stay in full contact are linear: half the load, half the pressure and displacement."""
+    problem = _flat()
+    half, full = list(sweep(problem, [Step(0.5), Step(1.0)]))
+    assert np.allclose(2.0 * half.contacts[0].pressure, full.contacts[0].pressure, rtol=1e-9)
+    assert np.allclose(2.0 * half.displacement(0), full.displacement(0), atol=1e-12)
+
+
+def test_load_or_displacement():
+    """Prescribing the motion that a load made gives that load back, in a later step of the same sweep too."""
+    problem = cylinder(0.0)
+    by_load = solve(problem)
+    sunk = float(by_load.motions[0][0])
+    _, by_motion = sweep(problem, [Step(), Step(freedoms=((0, Freedom("y", displacement=sunk)),))])
+    assert by_motion.contacts[0].force[1] == pytest.approx(-5e3, rel=1e-8)
+    assert np.allclose(by_motion.contacts[0].pressure, by_load.contacts[0].pressure, atol=1e-6)
+
+
+def test_iterations_count_the_start():
+    """With friction the iterations are those of the frictionless start, the same as without, and at least one more."""
+    assert solve(cylinder(FRICTION)).iterations > solve(cylinder(0.0)).iterations > 0
+
+
+def test_normal_then_tangential():
+    """First pressed, then pushed with half of what slides: the tangential load arrives, some points stick and some
+    slide. Repeating the same step moves the cylinder by less than a thousandth of what the push did; the traction near
+    the edge of sticking, a kink that the stored nodal history cannot follow, moves by some per cent at a/3."""
+    problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
+    push = Step(freedoms=((0, Freedom("x", load=0.5 * FRICTION * 5e3)),))
+    pressed, pushed, again = sweep(problem, [Step(), push, push])
+    assert pushed.contacts[0].force[0] == pytest.approx(-0.5 * FRICTION * 5e3, rel=1e-9)
+    assert pushed.contacts[0].force[1] == pytest.approx(5e3, rel=1e-9)
+    contact = pushed.contacts[0]
+    shear = np.abs(contact.traction[:, 0])
+    touching = contact.pressure > 0.0
+    sticks = shear < FRICTION * contact.pressure * (1.0 - 1e-9)
+    assert (touching & sticks).any()
+    assert (touching & ~sticks).any()
+    assert pushed.motions[0][1] > pressed.motions[0][1]
+    assert again.motions[0][1] == pytest.approx(pushed.motions[0][1], rel=1e-3)
+    change = np.linalg.norm(again.contacts[0].traction - contact.traction, axis=1)
+    assert contact.weights @ change**2 < 0.05**2 * (contact.weights @ (FRICTION * contact.pressure) ** 2)
+
+
+def test_sliding_there_and_back():
+    """The lower block moved to the right and back under the pressed cylinder: friction μP to the right, then to the
+    left. A solver that forgets the last step, or loses μ, cannot do this."""
+    problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
+    places = [(Placement.at_rest(2), Placement(np.eye(2), np.array([x, 0.0]))) for x in (0.0, 0.5, 0.2)]
+    forces = [s.contacts[0].force[0] for s in sweep(problem, [Step(placements=p) for p in places])]
+    assert forces[1] == pytest.approx(FRICTION * 5e3, rel=1e-6)
+    assert forces[2] == pytest.approx(-FRICTION * 5e3, rel=1e-6)
+
+
+def test_frame_does_not_matter():
+    """Both bodies turned and moved together: the same pressure, the traction turned."""
+    problem = cylinder(FRICTION)
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    place = Placement(turn, np.array([5.0, -3.0]))
+    here, there = solve(problem), solve(problem, Step(placements=(place, place)))
+    assert np.allclose(here.contacts[0].pressure, there.contacts[0].pressure, atol=1e-7)
+    assert np.allclose(here.contacts[0].traction @ turn.T, there.contacts[0].traction, atol=1e-7)
+
+
+def test_two_contacts_share_the_load():
+    """A stack of three blocks: the weight of the load passes both interfaces, one with friction and one without."""
+    blocks = [rectangle(2.0, 1.0, n, 2, origin=(0.0, y)) for n, y in ((4, 2.0), (5, 1.0), (3, 0.0))]
+    bodies = (
+        Body(blocks[0], supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -60.0)),)),
+        Body(blocks[1], supports=(Fixed("left", "x"),)),
+        Body(blocks[2], supports=(Fixed("left", "x"), Fixed("bottom", "y"))),
+    )
+    contacts = (Contact((0, "bottom"), (1, "top"), 0.2, reach=0.1), Contact((1, "bottom"), (2, "top"), 0.0, reach=0.1))
+    solution = solve(Problem(bodies, contacts))
+    for contact in solution.contacts:
+        assert np.allclose(contact.pressure, 60.0, rtol=1e-9)
+
+
+def test_separation():
+    """Only part of a tilted load's interface touches: no tension anywhere, the rest of the load where it touches.
+
+    A block 2 wide and 4 high pushed at its top to the side lifts off on one edge."""
+    lower, upper = rectangle(2.0, 1.0, 8, 4), rectangle(2.0, 4.0, 6, 12, origin=(0.0, 1.0))
+    bodies = (
+        Body(upper, loads=(Traction("top", (12.0, -60.0)),)),
+        Body(lower, supports=(Fixed("bottom"),)),
+    )
+    solution = solve(Problem(bodies, (Contact((0, "bottom"), (1, "top"), 0.5, reach=0.1),)))
+    contact = solution.contacts[0]
+    assert contact.pressure.min() == 0.0
+    assert contact.force == pytest.approx([24.0, -120.0], rel=1e-8)
+    assert _centre(solution, 1) == pytest.approx(1.0 + 24.0 * 4.0 / 120.0, abs=1e-9)
+
+
+def _centre(solution: Solution, body: int) -> float:
+    """x of the resultant contact force on a flat body, from its nodal forces (half a hat function at an edge acts
+    inside the edge node, so the nodal pressures alone would not do)."""
+    prepared = solution.prepared[body]
+    force = (prepared.forces.T @ solution.nodal_forces[body]).reshape(-1, 2)[:, 1]
+    return float(force @ prepared.assembled.body.mesh.points[:, 0] / force.sum())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda p: Problem(p.bodies, (Contact((0, "arc"), (2, "top")),)), "below 2"),
+        (lambda p: Problem(p.bodies, (Contact((0, "ark"), (1, "top")),)), "ark"),
+        (lambda p: Problem((*p.bodies, p.bodies[1]), p.contacts), r"found 1 and none for body 2 \('body'\); add"),
+        (lambda p: Problem(p.bodies, ()), "found 0 and none for body 0"),
+        (lambda p: Problem((), ()), "at least one contact"),
+        (lambda p: solve(p, Step(freedoms=((0, Freedom("x", load=1.0)),))), "declare"),
+        (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
+    ],
+)
+def test_bad_input(make, message):
+    """Each mistake is a ValueError that names what was found."""
+    with pytest.raises(ValueError, match=message):
+        make(cylinder())
+
+
+def test_rigid_punch_centre():
+    """A moment about the coupling's centre tilts a punch: the pressure's centre moves by moment over force."""
+    punch = rectangle(2.0, 1.0, 6, 3, origin=(-1.0, 0.0))
+    ground = rectangle(6.0, 3.0, 24, 6, origin=(-3.0, -3.0))
+    rigid = Rigid("top", (Freedom("y", load=-1000.0), Freedom("rz", load=-150.0)), centre=(0.0, 1.0, 0.0))
+    problem = Problem(
+        (Body(punch, rigid=rigid), Body(ground, supports=(Fixed("bottom"),))),
+        (Contact((0, "bottom"), (1, "top"), reach=0.2),),
+    )
+    solution = solve(problem)
+    assert _centre(solution, 1) == pytest.approx(0.15, rel=1e-8)
+    assert solution.contacts[0].force[1] == pytest.approx(-1000.0, rel=1e-9)
+
+
+def test_one_place_for_all_names():
+    """The solver's module has what a program of one's own needs, and nothing that it lists is missing."""
+    assert all(hasattr(problem_api, name) for name in problem_api.__all__)
+    wanted = "Body BodyForce Fixed Freedom Rigid Traction Material Contact Problem Step Sweep Placement solve sweep"
+    wanted += " read_msh reactions write_paraview cell_stress von_mises"
+    wanted += " NotConverged SearchError InputError EvolventError"
+    assert set(wanted.split()) <= set(problem_api.__all__)
+
+
+def test_on_after_a_step_that_failed():
+    """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium, which
+    is said. The same sweep takes a smaller push instead, and gives what a sweep without the failure gives, history
+    included."""
+    problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
+
+    def push(share: float) -> Step:
+        return Step(freedoms=((0, Freedom("x", load=share * FRICTION * 5e3)),))
+
+    run, plain = Sweep(problem), Sweep(problem)
+    for each in (run, plain):
+        each.solve(Step())
+    with pytest.raises(NotConverged, match=r"no equilibrium.*more than μ times.*prescribe that motion"):
+        run.solve(push(1.5))
+    assert run.solved == plain.solved == 1
+    after, wanted = run.solve(push(0.5)), plain.solve(push(0.5))
+    assert np.allclose(after.contacts[0].traction, wanted.contacts[0].traction, atol=1e-6 * 1375.0)
+    assert after.motions[0][1] == pytest.approx(wanted.motions[0][1], rel=1e-8)
+    assert run.solved == 2
+
+
+def test_one_line_a_step(caplog):
+    """The logger "evolvent" tells of each step: its number, the load factor, iterations, force and peak pressure."""
+    with caplog.at_level("INFO", logger="evolvent"):
+        first, _ = sweep(_flat(), [Step(0.5), Step(1.0)])
+    lines = [record.getMessage() for record in caplog.records if record.name == "evolvent"]
+    assert len(lines) == 2
+    assert lines[0] == f"step 1: load factor 0.5, {first.iterations} iterations, contact 100 N/mm at up to 50 MPa"
+    assert lines[1].startswith("step 2: load factor 1, ")
+
+
+def test_a_face_that_is_moved():
+    """Two blocks of height h each pressed by moving the top: uniaxial strain under rollers on all sides,
+    p = E(1−ν)/((1+ν)(1−2ν)) δ/2h, and the reactions at the moved face and at the bottom are p times the width."""
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
+    rolls = (Fixed("left", "x"), Fixed("right", "x"))
+    bodies = (
+        Body(upper, supports=(*rolls, Fixed("top", "y", -0.003))),
+        Body(lower, supports=(*rolls, Fixed("bottom", "y"))),
+    )
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
+    half, whole = sweep(problem, [Step(0.5), Step()])
+    p = 210e3 * 0.7 / (1.3 * 0.4) * 0.003 / 2.0
+    assert np.allclose(half.contacts[0].pressure, 0.5 * p, rtol=1e-9)
+    assert np.allclose(whole.contacts[0].pressure, p, rtol=1e-9)
+    assert np.allclose(whole.displacement(0)[np.unique(upper.facets["top"]), 1], -0.003, rtol=1e-12)
+    moved, bottom = reactions(whole, 0)[2].force, reactions(whole, 1)[2].force
+    assert moved == pytest.approx([0.0, -2.0 * p], rel=1e-9, abs=1e-9)
+    assert bottom == pytest.approx([0.0, 2.0 * p], rel=1e-9, abs=1e-9)
+
+
+def test_a_moved_face_without_condensation():
+    """The same on all degrees of freedom (full_system.py), with friction and a clamped bottom: the same motion."""
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
+    bodies = (
+        Body(upper, supports=(Fixed("left", "x"), Fixed("top", "y", -0.003))),
+        Body(lower, Material(70e3, 0.3), (Fixed("bottom"),)),
+    )
+    problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), 0.2, reach=0.1),))
+    x, _ = full_solution(problem, Step())
+    solution = solve(problem)
+    free = solution.prepared[0].assembled.free
+    condensed = solution.prepared[0].deformation(solution.nodal_forces[0], 1.0)
+    assert np.allclose(x[: len(free)], condensed[free], atol=1e-9 * np.abs(condensed).max())
+
+
+def _flat() -> Problem:
+    upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
+    bodies = (
+        Body(upper, supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -100.0)),)),
+        Body(lower, supports=(Fixed("left", "x"), Fixed("bottom", "y"))),
+    )
+    return Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))

@@ -1,0 +1,86 @@
+"""The stack of large arrays: where arrays lie, and what happens when there is no more."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+
+import numpy as np
+import pytest
+
+from evolvent.fem.parallel.memory import Stack, untouched_square
+from tests.conftest import Run
+
+KEPT = """
+import numpy as np
+from evolvent_meshes.shapes.blocks import rectangle
+from evolvent.fem.body import Body, assemble
+from evolvent.fem.parallel.memory import return_free_memory
+
+def resident():
+    return int(open("/proc/self/statm").read().split()[1]) * 4096
+
+assemble(Body(rectangle(1.0, 1.0, 1, 1)))
+before = resident()
+array = np.ones(1 << 23)
+del array
+kept = resident()
+return_free_memory()
+print(kept - before, resident() - before)
+"""
+
+
+def test_what_is_given_up_is_used_again() -> None:
+    """Three arrays, two of them within a block: the next one made lies where the first of these was, and neither
+    touches the one below."""
+    stack = Stack()
+    below = stack.empty(3, 5)
+    below[:] = 1.0
+    with stack.given_up_after():
+        first = stack.empty(100, 10)
+        second = stack.empty(7, 7)
+        first[:], second[:] = 2.0, 3.0
+        assert np.all(first == 2.0) and np.all(second == 3.0)
+    again = stack.empty(50, 4)
+    assert again.ctypes.data == first.ctypes.data
+    again[:] = 4.0
+    assert np.all(below == 1.0)
+
+
+def test_given_up_after_an_error() -> None:
+    """An error within a block gives up what was made in it."""
+    stack = Stack()
+    made = []
+
+    def fails() -> None:
+        with stack.given_up_after():
+            made.append(stack.empty(2, 2))
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fails()
+    assert stack.empty(2, 2).ctypes.data == made[0].ctypes.data
+
+
+def test_more_than_the_machine_has() -> None:
+    """An array larger than all memory is refused with both sizes, not by the kernel."""
+    columns = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 8
+    with pytest.raises(MemoryError, match="take a coarser mesh"):
+        Stack().empty(2, columns)
+
+
+@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallopt"), reason="what the C library does, here glibc's")
+def test_freed_arrays_stay_until_returned(run_script: Run) -> None:
+    """In a new process, once a stiffness is assembled, 64 MB that were written to and freed are still resident; given
+    back they are not."""
+    done = run_script("-c", KEPT)
+    assert done.returncode == 0, done.stderr[-3000:]
+    kept, returned = map(int, done.stdout.split())
+    assert kept > 60e6 and returned < 10e6
+
+
+def test_untouched_square_is_zero() -> None:
+    """(n × n) zeros that can be written to; n = 0 too."""
+    square = untouched_square(3)
+    square[1, 2] = 5.0
+    assert square.sum() == 5.0 and untouched_square(0).shape == (0, 0)

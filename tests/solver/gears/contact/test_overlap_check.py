@@ -1,0 +1,101 @@
+"""Contact where the window does not look is found: a tip's edge that deep deflection brings against the other flank."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evidence.stress.random_scenes import random_scene
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.contact import pair_contact, tooth_contact
+from evolvent.gears.contact.overlap_check import overlap_outside, unwatched
+from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.sweep import position
+from evolvent.gears.sweep.position import SharedPosition, shared_position
+from tests.support.gear_cases import helical_scene, model_of
+
+DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
+
+TIMES = 5.0  # its torque, so that the teeth give way by a quarter of a module
+
+
+@pytest.fixture(scope="module")
+def deep() -> GearModel:
+    return model_of(random_scene(DEEP))
+
+
+def solved(model: GearModel) -> SharedPosition:
+    return shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
+
+
+def approach(shared: SharedPosition) -> float:
+    """Extra rotation [rad] of the loaded gear."""
+    return sum(shared.contact.stand.extra) + float(shared.smooth.motion[0])
+
+
+def test_contact_outside_the_window_is_found(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: next pair's tip edge overlaps by 70 µm outside its window. Exact: the rotation with whole flanks
+    searched; overlooking it gives another one, more than a tenth larger, as well balanced."""
+    wanted = approach(solved(replace(deep, half_width=np.inf)))
+    found = solved(deep)
+    assert approach(found) == pytest.approx(wanted, rel=1e-4)
+    monkeypatch.setattr(position, "overlap_outside", lambda *_: 0.0)
+    overlooked = solved(deep)
+    assert abs(approach(overlooked)) > 1.1 * abs(wanted)
+    assert overlooked.smooth.residual < 1e-9 * overlooked.system.scale
+    for shared, low, high in ((overlooked, 0.05, np.inf), (found, 0.0, 0.0)):
+        depth = overlap_outside(shared.contact, shared.unwatched, shared.smooth.force, (0.0, 0.0))
+        assert low <= depth <= high
+
+
+def test_nominal_contact_has_nothing_outside() -> None:
+    """A pair at nominal load: the window has all contact, so that it stays as narrow as it was."""
+    model = model_of(helical_scene("contact.friction=0"))
+    found = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
+    assert found.contact.half_width == model.half_width
+
+
+def test_depth_of_an_overlap(deep: GearModel) -> None:
+    """Undeflected flanks (no force) turned into each other by δ: they overlap by up to r_b·δ, the same at every point
+    of an involute's line of action; off the path of contact by no more. Turned on by ε without another search the
+    overlap grows as it does with one, within 5 % (other points are the deepest)."""
+    base, δ = deep.bodies[0].gear.base_radius, 2e-3
+    stand = Stand(deep.pair, 0.0, (δ, 0.0))
+    contact = pair_contact.gear_contact(deep.bodies, stand, list(deep.teeth), 0.5 * deep.half_width)
+    places, nothing = unwatched(contact, deep.teeth), np.zeros((len(contact.node), 1))
+    depth = overlap_outside(contact, places, nothing, (0.0, 0.0))
+    assert 0.0 < depth <= base * δ * (1.0 + 1e-3)
+    ε = 1e-4
+    for rotation in ((ε, 0.0), (0.0, ε)):
+        turned = overlap_outside(contact, places, nothing, rotation)
+        further = pair_contact.gear_contact(
+            deep.bodies, Stand(deep.pair, 0.0, (δ + rotation[0], rotation[1])), list(deep.teeth), 0.5 * deep.half_width
+        )
+        anew = overlap_outside(further, unwatched(further, deep.teeth), np.zeros((len(further.node), 1)), (0.0, 0.0))
+        assert turned > depth and turned - depth == pytest.approx(anew - depth, rel=0.05)
+
+
+def test_deep_overlap_is_not_left_out(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: undeflected flanks overlap by a quarter of a module, so far do the teeth give way. Exact: how deep the
+    search looks does not matter as long as it is deeper; looking 0.2 modules deep loses the contact altogether.
+    More than half a module is refused."""
+    module = deep.pair.pinion.normal_module
+
+    def loaded(times: float) -> SharedPosition:
+        return solved(replace(deep, load=replace(deep.load, torque=times * deep.load.torque)))
+
+    found = loaded(TIMES)
+    assert 0.2 * module < -found.contact.operator.gap.min() < 0.4 * module
+    monkeypatch.setattr(tooth_contact, "PENETRATION", 1.0)
+    assert approach(loaded(TIMES)) == pytest.approx(approach(found), rel=1e-9)
+    monkeypatch.setattr(tooth_contact, "PENETRATION", 0.2)
+    monkeypatch.setattr(GearContact, "too_deep", False)
+    with pytest.raises(NotConverged, match="found none"):
+        loaded(TIMES)
+    monkeypatch.undo()
+    with pytest.raises(NotConverged, match="lower the torque"):
+        loaded(2.0 * TIMES)

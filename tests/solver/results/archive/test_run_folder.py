@@ -1,0 +1,222 @@
+"""What a run may touch in its folder: files that our runs have made and nobody has changed, and nothing else."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from evolvent.results.archive.run_folder import MANIFEST, FolderError, RunFolder
+from evolvent.results.archive.run_lock import locked
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.files import PART, WriteError, part_of, write_text
+from tests.support.checkout import ROOT
+
+THEIRS = ("photo.png", "pictures/photo.png", "results/measured.npz", "fields/contact_mine.vtp", "worn_1000/a.txt")
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file below a folder but Evolvent's own list."""
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*")) if path.is_file() and path != folder / MANIFEST
+    }  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> RunFolder:
+    """A run's files, and beside them, in the same folders, somebody else's."""
+    made = RunFolder(tmp_path)
+    for name in ("scene.toml", "results/state.npz", "pictures/02_flank_pressure.png", "fields/flanks_0007.vtp"):
+        made.write_text(name, f"our {name}")
+    worn = RunFolder(tmp_path / "worn_1000")
+    worn.write_text("results/state.npz", "ours, worn")
+    for name in THEIRS:
+        write_text(tmp_path / name, f"their {name}")
+    return made
+
+
+def test_clear_removes_ours_only(folder: RunFolder) -> None:
+    """Also of worn pairs, also fields of a longer run; a photo among the pictures and measured data stay."""
+    before = hashes(folder.out)
+    folder.clear()
+    assert hashes(folder.out) == {name: before[name] for name in THEIRS}
+    assert not (folder.out / MANIFEST).exists()
+
+
+def test_clear_removes_folders_that_were_ours_alone(tmp_path: Path) -> None:
+    """OUT/results and the like go with their last file."""
+    made = RunFolder(tmp_path)
+    made.write_text("results/state.npz", "a")
+    made.clear()
+    assert not list(tmp_path.iterdir())
+
+
+def test_clear_keeps_what_it_is_told_to(folder: RunFolder) -> None:
+    """The scene stays, and stays ours."""
+    scene = folder.out / "scene.toml"
+    folder.clear(keep=[scene])
+    assert scene.read_text() == "our scene.toml"
+    assert folder.is_ours(scene)
+
+
+def test_a_changed_file_is_theirs(folder: RunFolder) -> None:
+    """A picture that somebody has painted over is neither written over nor removed."""
+    path = folder.out / "pictures/02_flank_pressure.png"
+    path.write_text("painted over", encoding="utf-8")
+    with pytest.raises(FolderError, match=r"02_flank_pressure\.png, found a file of this name that no run has made"):
+        folder.write_text("pictures/02_flank_pressure.png", "new")
+    folder.clear()
+    assert path.read_text(encoding="utf-8") == "painted over"
+
+
+def test_a_link_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
+    """A link in place of a file of ours, even to the same content: not written through, not removed."""
+    target = tmp_path / "elsewhere.toml"
+    (folder.out / "scene.toml").rename(target)
+    (folder.out / "scene.toml").symlink_to(target)
+    with pytest.raises(FolderError):
+        folder.write_text("scene.toml", "new")
+    folder.clear()
+    assert target.read_text() == "our scene.toml"
+    assert (folder.out / "scene.toml").is_symlink()
+
+
+def test_a_linked_folder_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
+    """A link named results to the results of another run: neither removed, nor written over, nor added to."""
+    other = RunFolder(tmp_path / "other")
+    (other.out).mkdir()
+    (other.out / "results").symlink_to(folder.out / "results")
+    before, listed = hashes(folder.out), (folder.out / MANIFEST).read_bytes()
+    with pytest.raises(FolderError, match="the link results to"):
+        other.require_free(["results/*.npz"])
+    for name in ("results/state.npz", "results/new.npz"):
+        with pytest.raises(FolderError):
+            other.write_text(name, "new")
+    other.clear()
+    assert hashes(folder.out) == before
+    assert (folder.out / MANIFEST).read_bytes() == listed
+
+
+def test_the_same_content_is_not_written_again(folder: RunFolder) -> None:
+    """Ours with this very content keeps its date."""
+    path = folder.out / "scene.toml"
+    os.utime(path, (1.0, 1.0))
+    folder.write_text("scene.toml", "our scene.toml")
+    assert path.stat().st_mtime == 1.0
+
+
+def test_others_are_named(folder: RunFolder) -> None:
+    """In the folders where runs write, also below worn pairs; files that are being written are nobody's."""
+    write_text(folder.out / "deep/in/there.txt", "x")
+    part_of(folder.out / "results/state.npz").write_text("half", encoding="utf-8")
+    names = {path.relative_to(folder.out).as_posix() for path in folder.theirs()}
+    assert names == set(THEIRS)
+
+
+def test_parts_of_a_killed_run_go(folder: RunFolder) -> None:
+    """A file that was being written when a run was killed."""
+    part_of(folder.out / "results/state.npz").write_text("half", encoding="utf-8")
+    folder.remove_parts()
+    assert not [path for path in folder.out.rglob("*") if PART in path.name]
+
+
+@pytest.mark.parametrize("cut", [1, 20, 60])
+def test_half_a_line_of_the_list_is_no_harm(cut: int, folder: RunFolder) -> None:
+    """A run killed while it lists a file: what is listed before and after is known."""
+    path = folder.out / MANIFEST
+    folder.write_text("results/gears.npz", "last")
+    path.write_bytes(path.read_bytes()[:-cut])
+    folder.write_text("summary.json", "next")
+    assert folder.is_ours(folder.out / "summary.json")
+    assert folder.is_ours(folder.out / "fields/flanks_0007.vtp")
+
+
+def test_the_list_reaches_no_other_folder(tmp_path: Path) -> None:
+    """A list that names ../mine, from whomever it comes, does not make that file ours."""
+    (tmp_path / "mine").write_text("x", encoding="utf-8")
+    out = tmp_path / "out"
+    made = RunFolder(out)
+    made.write_text("results/a", "x")
+    digest = hashlib.sha256(b"x").hexdigest()
+    with open(out / MANIFEST, "a", encoding="utf-8") as stream:
+        stream.write(f'\n{{"path": "../mine", "sha256": "{digest}"}}\n')
+    made.clear()
+    assert (tmp_path / "mine").exists()
+
+
+def test_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No room: WriteError with file, size and remedy; the earlier content is there, and no part."""
+    path = write_text(tmp_path / "table.csv", "before")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("evolvent_meshes.files.os.fsync", full)
+    with pytest.raises(WriteError, match=r"table\.csv: wanted to write 2e-06 MB, found No space left .*; make room"):
+        write_text(path, "ab")
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_text() == "before"
+
+
+def test_no_room_in_the_list(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No room for a file's line: WriteError, neither the line nor the file is there, and what was listed is."""
+    before = (folder.out / MANIFEST).read_bytes()
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("evolvent.results.archive.run_folder.os.fsync", full)
+    with pytest.raises(WriteError, match=r"evolvent-files\.jsonl: wanted to write"):
+        folder.write_text("summary.json", "new")
+    assert (folder.out / MANIFEST).read_bytes() == before
+    assert not (folder.out / "summary.json").exists()
+
+
+HOLD = """
+import sys
+from pathlib import Path
+from evolvent.results.archive.run_lock import locked
+with locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_lock_names_its_owner_and_ends_with_it(tmp_path: Path) -> None:
+    """A second run is refused and told whose the folder is; after kill -9 of the first one it is free."""
+    out, root = tmp_path / "out", ROOT
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLD, str(out)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=root
+    ) as first:
+        assert first.stdout is not None and first.stdout.readline() == "held\n"
+        owner = rf"found process {first.pid} of .* on .*since"
+        with pytest.raises(FolderError, match=owner), locked(out):
+            pass
+        first.kill()
+        first.wait()
+        with locked(out):
+            pass
+    assert not out.exists() or not list(out.iterdir())
+
+
+@pytest.mark.parametrize("place", ["dangling", "file/out", "/dev/null", "/proc/out", "x" * 300, "a\0b", "file"])
+def test_impossible_folders(place: str, tmp_path: Path) -> None:
+    """Below a file, a device, where nobody may, a name that is too long: InputError, and nothing is made."""
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
+    message = r"--out: found .*; allowed: a directory that can be made and written"
+    with pytest.raises(InputError, match=message), locked(tmp_path / place):
+        pass
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["dangling", "file"]
+
+
+def test_lock_leaves_no_folder_that_was_not_there(tmp_path: Path) -> None:
+    """A run that writes nothing leaves nothing."""
+    with locked(tmp_path / "a" / "b"):
+        pass
+    assert not list(tmp_path.iterdir())

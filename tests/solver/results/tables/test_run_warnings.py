@@ -1,0 +1,125 @@
+"""What is said before a number is trusted: few cells across the contact, bad cells, tip edges, missing error bars."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+
+from evolvent.cli import Exit, main
+from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.mesh_facts import MeshFacts, cells_across
+from evolvent.results.run_data import RunData, SolvedPosition
+from evolvent.results.tables.figure_rows import friction_rows
+from evolvent.results.tables.run_warnings import warnings_of
+from evolvent.results.tables.tables import summary, write_tables
+from evolvent.run.coarse_run import solved_run
+from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.plain_text import brief
+from tests.solver.results.tables.test_tables import FACTS
+from tests.support.gear_cases import spur_scene
+from tests.support.synthetic_run import synthetic_run
+
+GOOD = MeshFacts(0.3, 3.1, 2.0)
+BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 0.1, 0.1, 0.1, 0.1),), "", "")
+
+
+@pytest.fixture(scope="module")
+def quiet() -> RunData:
+    """A made-up run that no tip edge bears in, at positions near enough to follow it."""
+    run = replace(synthetic_run("contact.friction=0.1", "sweep.positions=24"), errors=BARS)
+
+    def inside(solved: SolvedPosition) -> SolvedPosition:
+        bare = tuple(replace(tooth, edge_pressure=0.0) for tooth in solved.teeth)
+        return replace(solved, teeth=bare)
+
+    return replace(run, positions=tuple(tuple(inside(solved) for solved in each) for each in run.positions))
+
+
+def test_nothing_to_say(quiet: RunData) -> None:
+    """Three elements across, good cells, no edge, error bars: no warning."""
+    assert warnings_of(quiet, GOOD) == ()
+
+
+@pytest.mark.parametrize(
+    ("mesh", "said"),
+    [
+        (MeshFacts(0.3, 1.7, 1.2), "The contact is 1.7 elements wide (median; 1.2 in its narrowest tenth); below 2"),
+        (MeshFacts(0.3, 2.1, 0.9), "The contact is 2.1 elements wide (median; 0.9 in its narrowest tenth); below 2"),
+        (MeshFacts(0.3, float("nan"), float("nan")), "elements wide"),
+        (MeshFacts(2.8e-4, 3.1, 2.0), "The least scaled Jacobian of a cell is 0.0003, below 0.05"),
+    ],
+)
+def test_the_mesh(mesh: MeshFacts, said: str, quiet: RunData) -> None:
+    """Each fact about the mesh has its one sentence, with the number."""
+    (sentence,) = warnings_of(quiet, mesh)
+    assert said in sentence
+
+
+def test_tip_edges_and_error_bars(quiet: RunData) -> None:
+    """A pair whose tip edges bear at all 24 positions, and whose largest pressure stands where their zone begins: both
+    are said; so is a companion that failed, but not one that was not asked for."""
+    run = synthetic_run("contact.friction=0.1", "sweep.positions=24")
+    bears, zone, bars = warnings_of(run, GOOD)
+    assert "bears at 24 of 24 positions" in bears and "relieve the tips" in bears
+    assert f"ξ = −{-run.inner_path[0]:.2f} mm" in zone
+    assert "There are no error bars" in bars
+    failed = replace(quiet, errors=EstimatedErrors(missing="It rained."))
+    assert warnings_of(failed, GOOD) == ("There are no error bars. It rained.",)
+    without = failed.scene.model_copy(update={"output": failed.scene.output.model_copy(update={"error_bars": False})})
+    assert warnings_of(replace(failed, scene=without), GOOD) == ()
+
+
+def test_what_is_said_of_a_coarse_mesh_agrees_with_the_bar(quiet: RunData) -> None:
+    """1.7 elements across and a bar of 4.6 % of the largest pressure: the sentence says what the bar is of, with its
+    number, and what it is not of."""
+    peak = friction_rows(quiet)[0].max_pressure_MPa
+    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, 1e-3, 1e-3, 1e-3, 1e-3),), "", "")
+    (said,) = warnings_of(replace(quiet, errors=bars), MeshFacts(0.3, 1.7, 1.2))
+    assert "pressures of single positions may be off by 15 %" in said
+    assert "the largest one is known within its error bar, 4.6 %, but not where it occurs" in said
+
+
+def test_what_is_not_known(quiet: RunData) -> None:
+    """A bar of 1.1 times the largest pressure, of 0.4 times the mean one: the first is said not to be known, with both
+    numbers; the second is not mentioned."""
+    row = friction_rows(quiet)[0]
+    bars = FigureErrors(1.1 * row.max_pressure_MPa, 0.4 * row.mean_pressure_MPa, 1e-3, 1e-3, 1e-3, 1e-3)
+    (said,) = warnings_of(replace(quiet, errors=EstimatedErrors((bars,), "", "")), GOOD)
+    known = f"largest pressure {brief(row.max_pressure_MPa)} ±"
+    assert said.startswith(f"Not known, for the error bar is more than half of it: {known}")
+    assert "mean" not in said
+
+
+def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
+    """summary.json has the same sentences."""
+    write_tables(RunFolder(tmp_path), summary(quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2, 0.8))))
+    found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
+    assert found == list(warnings_of(quiet, MeshFacts(0.3, 1.2, 0.8))) and "1.2 elements" in found[0]
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_cells_across(order: int) -> None:
+    """Problem: He's pair with two elements across the Hertz width of a single pair, meshed by cells of either order.
+    The load is shared by two pairs about the ends of the path, where the contact is 0.7 as wide: 1.3 to 2.2 elements,
+    of either order; counted by halves of second-order cells those of order 1 would be half as many."""
+    scene = spur_scene("mesh.elements_per_contact_width=2", f"mesh.order={order}", "sweep.positions=4")
+    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
+    assert run is not None
+    assert 1.3 < cells_across(run) < 2.4
+
+
+def test_mesh_command_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`evolvent mesh` of first-order triangles: their quality with two digits, and the warning; none for hexahedra."""
+    for shape, warned in (("tetrahedron", True), ("hexahedron", False)):
+        out = tmp_path / f"{shape}.msh"
+        scene = ["demos/he2022.toml", "--level", "quick", "--set", f"mesh.shape={shape}", "--set", "mesh.order=1"]
+        assert main(["mesh", *scene, "--out", str(out)]) == Exit.DONE
+        said = capsys.readouterr()
+        assert ("below 0.05" in said.err) == warned
+        assert "Jacobian 0.017" in said.out or not warned

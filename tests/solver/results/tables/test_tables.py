@@ -1,0 +1,174 @@
+"""The tables of a run."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.run_cost import Timings
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.mesh_facts import MeshFacts
+from evolvent.results.run_data import RunData, read_run
+from evolvent.results.tables.figure_rows import degrees, friction_rows, position_rows
+from evolvent.results.tables.summary_rows import RunFacts
+from evolvent.results.tables.tables import summary, write_tables
+from tests.support.synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
+
+FACTS = RunFacts(
+    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
+)
+KEYS = {"scene", "versions", "ranks", "dofs", "cells", "mesh", "skipped", "timings_s", "peak_memory_MB", "positions"}
+POSITION_KEYS = {
+    "pinion_angle_deg", "friction", "torque_pinion_Nm", "torque_gear_Nm", "transmission_error_um", "max_pressure_MPa",
+    "teeth", "newton_iterations", "balance_error", "seconds",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run() -> RunData:
+    return synthetic_run("contact.friction=[0.0, 0.1]")
+
+
+def test_summary_has_the_promised_keys(run: RunData) -> None:
+    """Every key that users and later tools rely on is there, for every position and friction coefficient."""
+    found = json.loads(json.dumps(asdict(summary(run, FACTS))))
+    assert set(found) >= KEYS
+    assert set(found["timings_s"]) >= {"mesh", "assemble", "factor", "positions", "output", "total"}
+    assert len(found["positions"]) == 2 * 6
+    for row in found["positions"]:
+        assert set(row) >= POSITION_KEYS
+        assert all(set(t) >= {"force_N", "max_pressure_MPa", "contact_length_mm"} for t in row["teeth"])
+
+
+def test_units_and_balance(run: RunData) -> None:
+    """Problem: 250 N·m held on the pinion, frictionless and μ = 0.1. Exact: T_1 = 250 N·m; T_2 = 250·60/17 N·m
+    without friction and u(T_1 − loss) with it; transmission error 20 µm ± 0.8 µm as made up; the forces sum to
+    T_1/(r_b1 cos β_b)."""
+    for row in position_rows(run):
+        assert row.torque_pinion_Nm == pytest.approx(250.0)
+        kept = 1.0 - 0.01 * row.loss_percent
+        assert row.torque_gear_Nm == pytest.approx(250.0 * 60 / 17 * kept, rel=1e-12)
+        assert row.loss_percent == 0.0 or row.friction > 0.0
+        assert 19.19 < row.transmission_error_um < 20.81
+    smooth = [row for row in position_rows(run) if row.friction == 0.0]
+    pinion = run.pair.pinion
+    force = 250e3 / (pinion.base_radius * np.cos(pinion.base_helix_angle))
+    assert force == pytest.approx(14685.0, abs=1.0)
+    sums = [sum(t.force_N for t in row.teeth) for row in smooth]
+    np.testing.assert_allclose(sums, force, rtol=0.04)  # four node intervals across the contact
+    assert np.mean(sums) == pytest.approx(force, rel=0.01)
+
+
+def test_lengths_sum_to_the_contact_line(run: RunData) -> None:
+    """Exact: the teeth's contact lengths sum to the length of all contact lines, to a layer (1.06 mm) a line end."""
+    for row in position_rows(run):
+        exact = run.pair.contact_line_length(np.radians(row.pinion_angle_deg))
+        assert sum(t.contact_length_mm for t in row.teeth) == pytest.approx(exact, abs=1.2 * len(row.teeth))
+
+
+def test_friction_rows(run: RunData) -> None:
+    """Exact: peak to peak 1.6 µm as made up; loss 0 without friction; no crossing with the curve itself."""
+    smooth, rough = friction_rows(run)
+    assert smooth.transmission_error_peak_to_peak_um == pytest.approx(1e3 * PEAK_TO_PEAK, rel=1e-9)
+    assert smooth.loss_percent == 0.0
+    assert rough.loss_percent > 1.0
+    assert np.isnan(smooth.crossing_deg)
+
+
+def test_stiffness_of_the_face(run: RunData) -> None:
+    """Exact: tangents of 3e5 N/mm as made up, over a face of 16.9 mm, in 2D per mm already; the secant T_1/(r_b1 b)
+    over the mean of 1/error."""
+    wanted = 1e-3 * STIFFNESS / 16.9
+    assert friction_rows(run)[0].mesh_stiffness_N_per_mm_um == pytest.approx(wanted)
+    assert position_rows(run)[0].mesh_stiffness_N_per_mm_um == pytest.approx(wanted)
+    plane = synthetic_run(file="demos/he2022.toml")
+    assert friction_rows(plane)[0].mesh_stiffness_N_per_mm_um == pytest.approx(1e-3 * STIFFNESS / 20.0)
+    errors = [row.transmission_error_um for row in position_rows(plane)]
+    wanted = 170e3 / plane.pair.pinion.base_radius / 20.0 * np.mean(1.0 / np.array(errors))
+    assert friction_rows(plane)[0].secant_stiffness_N_per_mm_um == pytest.approx(wanted)
+
+
+def test_charted_flanks_have_no_secant_stiffness(run: RunData, tmp_path: Path) -> None:
+    """The same results of a pair with a charted pinion: what is missing of the flank is part of the transmission error
+    but no deflection, so that no secant is given, and JSON has null; the tangent is there all the same."""
+    pinion = run.scene.pinion.model_copy(update={"flank_csv": "worn.csv"})
+    charted = replace(run, scene=run.scene.model_copy(update={"pinion": pinion}))
+    assert all(np.isfinite(row.secant_stiffness_N_per_mm_um) for row in friction_rows(run))
+    assert all(np.isnan(row.secant_stiffness_N_per_mm_um) for row in friction_rows(charted))
+    assert all(np.isfinite(row.mesh_stiffness_N_per_mm_um) for row in friction_rows(charted))
+    write_tables(RunFolder(tmp_path), summary(charted, FACTS))
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(text)["frictions"][0]["secant_stiffness_N_per_mm_um"] is None
+
+
+def test_plane_run_is_reported_for_the_whole_width() -> None:
+    """Problem: He's spur pair, solved in 2D per mm of width. Exact: 170 N·m on the pinion, F = T/r_b = 2412.1 N over
+    all teeth, contact length 20 mm a tooth."""
+    plane = synthetic_run(file="demos/he2022.toml")
+    assert plane.plane
+    rows = position_rows(plane)
+    for row in rows:
+        assert row.torque_pinion_Nm == pytest.approx(170.0)
+        assert all(t.contact_length_mm == pytest.approx(20.0) for t in row.teeth)
+    mean = np.mean([sum(t.force_N for t in row.teeth) for row in rows])
+    assert mean == pytest.approx(2412.1, rel=0.03)  # four node intervals across the contact, no rows to average over
+
+
+def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
+    """One line a position and friction in positions.csv, one more level down in teeth.csv; strict JSON (no NaN); no
+    half-written file stays behind."""
+    write_tables(RunFolder(tmp_path), summary(run, FACTS))
+    with open(tmp_path / "positions.csv", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    with open(tmp_path / "teeth.csv", encoding="utf-8") as stream:
+        teeth = list(csv.DictReader(stream))
+    assert len(rows) == 12
+    assert len(teeth) == sum(int(row["teeth_in_contact"]) for row in rows)
+    assert float(rows[0]["torque_pinion_Nm"]) == pytest.approx(250.0)
+
+    def refuse(text: str) -> float:
+        raise AssertionError(f"{text} is no JSON")
+
+    text = (tmp_path / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(text, parse_constant=refuse)["frictions"][0]["crossing_deg"] is None
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
+    """Exact: what `read_run` reads equals what was archived, number by number."""
+    store(run, tmp_path)
+    again = read_run(tmp_path)
+    assert repr(position_rows(again)) == repr(position_rows(run))  # repr is exact, and NaN equals NaN in it
+    np.testing.assert_array_equal(again.flank.points, run.flank.points)
+
+
+def store(run: RunData, folder: Path) -> None:
+    """Archives a run as a real one would be."""
+    archive = Archive(folder, run.scene)
+    archive.write_gears(run.shapes)
+    (folder / "scene.toml").write_text(run.scene.resolved_toml(), encoding="utf-8")
+    results = [tuple(solved.result for solved in each) for each in run.positions]
+    state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))
+    for k, each in enumerate(results):
+        archive.write_position(k, SweptPosition(each[0].stand.angle, each, state))
+
+
+def test_angles_without_round_off(tmp_path: Path) -> None:
+    """Problem: a pinion of 17 teeth at six positions, whose steps are 60/17°, in radians and back again. Exact: no
+    angle has more than six decimals in summary.json, and each is within half of the last one; of a pinion of 24 teeth
+    with 20 positions they are multiples of 0.75 as they stand."""
+    run = synthetic_run("contact.friction=[0.0, 0.1]")
+    write_tables(RunFolder(tmp_path), summary(run, FACTS))
+    found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    angles = [row["pinion_angle_deg"] for row in found["positions"]]
+    angles += [row["max_pressure_angle_deg"] for row in found["frictions"]]
+    assert all(len(repr(angle).partition(".")[2]) <= 6 for angle in angles)
+    np.testing.assert_allclose(angles[:12:2], np.arange(6) * 60 / 17, atol=5.1e-7)
+    assert [degrees(k * 2.0 * np.pi / 24 / 20) for k in range(-20, 20)] == [0.75 * k for k in range(-20, 20)]

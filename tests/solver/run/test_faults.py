@@ -1,0 +1,82 @@
+"""`evolvent run` struck by faults: killed at random times again and again, a rank killed, no folder, no room, a NaN.
+
+What is damaged at a chosen moment is in test_archive.py. `make stress` kills 20 times; here it is fewer.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from evidence.stress.faults import Struck, arguments, differs, run, struck_again_and_again
+from evolvent.results.archive.archive import read_arrays
+from tests.conftest import Run
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run that nothing happened to."""
+    out = tmp_path_factory.mktemp("faults") / "whole"
+    done = run(out)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+def test_killed_at_random_times(whole: Path, tmp_path: Path) -> None:
+    """kill -9 at four random moments, each time resumed: every number is that of the undisturbed run within 1e-7, and
+    before the end no table tells of a complete run."""
+    struck: Struck = struck_again_and_again(tmp_path / "out", kills=4, seed=1)
+    assert struck.kills == 4
+    assert differs(tmp_path / "out", whole) < 1e-7
+
+
+def test_difference_is_seen(whole: Path, tmp_path: Path) -> None:
+    """The comparison above sees another torque."""
+    assert run(tmp_path / "out", "--set", "load.torque_Nm=170.1").returncode == 0
+    assert differs(tmp_path / "out", whole) > 1e-5
+
+
+def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) -> None:
+    """kill -9 of one of two ranks in its third turn, after two pairs of positions: the run ends at once with a status
+    that is not 0, what was complete is whole, and resumed on one rank it is the undisturbed run."""
+    out = tmp_path / "out"
+    script = "tests/support/broken_run.py"
+    done = run_script(script, "killrank-1-3", *arguments(out), ranks=2)
+    assert done.returncode != 0
+    assert not (out / "summary.json").exists()
+    assert read_arrays(out / "results" / "state.npz")["complete"] == 4
+    assert run(out, "--resume").returncode == 0
+    assert differs(out, whole) < 1e-7
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can start a process as another user")
+def test_folder_that_may_not_be_written(tmp_path: Path) -> None:
+    """A folder of somebody else: status 2, its name and what to do, no traceback."""
+    out = tmp_path / "theirs"
+    out.mkdir(mode=0o555)
+    for folder in (tmp_path, *tmp_path.parents):
+        if folder.stat().st_mode & 0o055 != 0o055:
+            folder.chmod(folder.stat().st_mode & 0o777 | 0o055)
+    done = run(out, user=65534)
+    if "ModuleNotFoundError" in done.stderr:
+        pytest.skip("another user cannot read the checkout")
+    assert done.returncode == 2
+    assert f"--out: found {str(out)!r} (Permission denied); allowed: a directory that can be made" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("at", [1, 3])
+def test_nan_on_purpose(at: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+    """A compliance that turns into NaN at the first or third position: status 3 and "not a number", no table, the
+    checkpoint before it intact, and once healed --resume completes the run."""
+    out = tmp_path / "out"
+    done = run_script("tests/support/broken_run.py", f"nan-{at}", *arguments(out))
+    assert done.returncode == 3
+    assert "not a number" in done.stderr and "Traceback" not in done.stderr
+    assert not (out / "summary.json").exists()
+    if at > 1:
+        assert read_arrays(out / "results" / "state.npz")["complete"] == at - 1
+    assert run(out, "--resume").returncode == 0
+    assert differs(out, whole) < 1e-7

@@ -1,0 +1,157 @@
+"""What a run shows of itself: its stages on a terminal and in a pipe, and where everything is in the end."""
+
+from __future__ import annotations
+
+import io
+import os
+import pty
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from rich.console import Console
+
+from evolvent.run.output import whereabouts
+from evolvent.run.progress import Progress
+from tests.conftest import Run
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import spur_scene
+
+STAGES = ("meshing", "condensing", "positions", "error bars", "tables and pictures")
+
+
+def shown(progress: Progress) -> list[str]:
+    """The bars as a terminal would show them now: description and counts, those that are complete with a tick."""
+    stream = io.StringIO()
+    Console(file=stream, width=120, force_terminal=False).print(progress._bars.make_tasks_table(progress._bars.tasks))
+    return [
+        " ".join(re.sub(r"[━╸╺\s]+|\d:\d\d:\d\d|-:--:--", " ", line).split()) for line in stream.getvalue().splitlines()
+    ]
+
+
+def terminal() -> Console:
+    return Console(file=io.StringIO(), force_terminal=True, width=120)
+
+
+def test_only_what_has_ended_is_complete() -> None:
+    """Two positions were thought of, a third one follows: with two solved the bar shows 2 of 3, never 2 of 2; a stage
+    that cannot be counted is complete when the next one begins."""
+    with Progress(console=terminal()) as progress:
+        progress.stage("condensing")
+        assert "✓" not in shown(progress)[0]
+        progress.stage("positions", 2)
+        assert shown(progress)[0].startswith("✓ condensing")
+        progress.advance(more=True)
+        progress.advance(more=True)
+        assert "2/3" in shown(progress)[1] and "✓" not in shown(progress)[1]
+        progress.advance(more=False)
+        progress.stage("error bars")
+        assert "3/3" in shown(progress)[1] and "✓" in shown(progress)[1]
+        assert "✓" not in shown(progress)[2]
+
+
+def test_resumed_positions_count() -> None:
+    """Three of four are there already: one more completes the stage."""
+    with Progress(console=terminal()) as progress:
+        progress.stage("positions", 4, done=3)
+        assert "3/4" in shown(progress)[0]
+        progress.advance()
+        assert "4/4" in shown(progress)[0]
+
+
+def test_lines_where_there_is_no_terminal() -> None:
+    """A line a stage, and one for each tenth of its count; no control characters."""
+    stream = io.StringIO()
+    with Progress(console=Console(file=stream)) as progress:
+        progress.stage("condensing")
+        progress.stage("cycles", 1000)
+        for done in (10, 20, 250, 1000):
+            progress.reach(done)
+    words = [line.split("s  ", 1)[1] for line in stream.getvalue().splitlines()]
+    assert words == ["condensing", "cycles: 0 of 1000", "cycles: 250 of 1000", "cycles: 1000 of 1000"]
+    assert re.fullmatch(r"[ -~\n]*", stream.getvalue())
+
+
+def test_nothing_where_it_is_hidden() -> None:
+    """--quiet and ranks other than 0, on a terminal or not."""
+    for console in (terminal(), Console(file=io.StringIO())):
+        with Progress(hidden=True, console=console) as progress:
+            progress.stage("positions", 2)
+            progress.advance()
+        assert console.file.getvalue() == ""  # type: ignore[attr-defined]
+
+
+def test_a_run_in_a_pipe(run_script: Run, tmp_path: Path) -> None:
+    """He's pair at two positions: every stage once and in order on stderr, plainly; the only, and last, line on stdout
+    names tables, pictures and figures that are there. With --quiet nothing but warnings."""
+    out = tmp_path / "out"
+    scene = "demos/he2022.toml", "--level", "quick", "--set", "sweep.positions=2", "--set", "output.animation=false"
+    done = run_script("solver/evolvent/__main__.py", "run", *scene, "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    lines = done.stderr.split("\n")
+    plain = [line for line in lines if not line.startswith("evolvent: warning: ")]  # these have Greek letters
+    assert all(re.fullmatch(r"[ -~]*", line) for line in plain) and all(line.isprintable() for line in lines)
+    begun = [
+        stage
+        for line in done.stderr.splitlines()
+        for stage in STAGES
+        if line.endswith(f"s  {stage}") or ("0 of" in line and stage in line)
+    ]
+    assert begun == list(STAGES)
+    (line,) = done.stdout.splitlines()
+    named = [Path(word.rstrip(",;")) for word in line.split() if str(out) in word]
+    assert {path.relative_to(out).parts[0] for path in named} >= {"summary.json", "positions.csv", "pictures"}
+    assert all(path.exists() for path in named)
+    again = run_script(
+        "solver/evolvent/__main__.py",
+        "run",
+        *scene,
+        "--set",
+        "output.pictures=false",
+        "--quiet",
+        "--out",
+        str(tmp_path / "quiet"),
+    )
+    assert (again.returncode, again.stdout) == (0, "")
+    assert all(line.startswith("evolvent: warning: ") for line in again.stderr.splitlines())
+
+
+def test_a_run_on_a_terminal(tmp_path: Path) -> None:
+    """The same on a terminal: when it ends all stages stand there with a tick, then the line of where everything is."""
+    leader, follower = pty.openpty()
+    command = [sys.executable, "-m", "evolvent", "run", "demos/he2022.toml", "--level", "quick", "--out", str(tmp_path)]
+    command += ["--set", "sweep.positions=2", "--set", "output.pictures=false", "--set", "output.animation=false"]
+    wanted = {**os.environ, "TERM": "xterm", "OMP_NUM_THREADS": "1", "COLUMNS": "100"}
+    process = subprocess.Popen(command, cwd=ROOT, stdout=follower, stderr=follower, env=wanted)
+    os.close(follower)
+    seen = b""
+    while True:
+        try:
+            part = os.read(leader, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not part:
+            break
+        seen += part
+    os.close(leader)
+    assert process.wait(timeout=60) == 0
+    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", seen.decode())
+    assert [line for line in text.splitlines() if line.strip()][-1].startswith("done: figures")
+    assert [name for name in STAGES if f"✓ {name}" in text] == list(STAGES)
+
+
+def test_whereabouts_name_what_is_there(tmp_path: Path) -> None:
+    """Of a run without pictures and fields neither is named; those of an earlier part of it are not, where the scene
+    asks for none now."""
+    asked, unasked = (spur_scene(f"output.pictures={on}", "output.animation=false", f"output.fields={on}")
+                      for on in ("true", "false"))  # fmt: skip
+    (tmp_path / "summary.json").write_text("{}")
+    (tmp_path / "teeth.csv").write_text("")
+    wanted = f"done: figures with error bars in {tmp_path}/summary.json; tables in {tmp_path}/teeth.csv"
+    assert whereabouts(tmp_path, asked) == wanted
+    for name in ("pictures/01_loaded_pair.png", "fields/contact.pvd"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text("")
+    assert whereabouts(tmp_path, unasked) == wanted
+    assert "pictures in" in whereabouts(tmp_path, asked) and "fields for ParaView in" in whereabouts(tmp_path, asked)

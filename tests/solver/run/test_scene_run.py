@@ -1,0 +1,201 @@
+"""A whole run: the same on any number of ranks, failing on all ranks alike, and what ranks share."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from evolvent.fem.parallel import ranks
+from evolvent.results.archive.archive import read_arrays
+from evolvent.run.output import BALANCE_LIMIT
+from tests.conftest import Run
+from tests.support.gear_cases import HELICAL
+
+SPUR = "demos/he2022.toml"
+QUIET = (
+    "--quiet", "--set", "output.pictures=false", "--set", "output.animation=false", "--set", "output.fields=false",
+)  # fmt: skip
+SHORT = (
+    "--level", "quick", "--set", "contact.friction=[0.1, 0.2, 0.3]", "--set", "sweep.positions=4",
+)  # fmt: skip
+SHARE = """
+import numpy as np
+from mpi4py import MPI
+from evolvent.fem.parallel import ranks
+
+class Nodes:
+    '''The world, with two ranks a node.'''
+    def __getattr__(self, name):
+        return getattr(MPI.COMM_WORLD, name)
+    def Split_type(self, kind, key):
+        return MPI.COMM_WORLD.Split(MPI.COMM_WORLD.rank // 2, key)
+
+parallel.CHUNK = 1_000_003
+rank, size = MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
+for comm in (MPI.COMM_WORLD, Nodes()):
+    for root in range(size):
+        a = np.random.default_rng(root).standard_normal((700, 901))
+        value = {"a": a, "fortran": np.asfortranarray(a[:300]), "view": a[::2, ::3]}
+        value |= {"flags": a > 0, "no": a[:0], "s": "x"}
+        got = parallel.shared(comm, value if rank == root else None, root)
+        assert got["s"] == "x" and got["fortran"].flags.f_contiguous
+        for name in ("a", "fortran", "view", "flags", "no"):
+            assert np.array_equal(got[name], value[name]) and got[name].dtype == value[name].dtype, name
+        maps = open("/proc/self/maps").read()
+        assert ("evolvent-" in maps) == (size > 1) and not (size > 1 and got["a"].flags.writeable)
+        del got
+        assert "evolvent-" not in open("/proc/self/maps").read()
+print("fine")
+"""
+FAIL_ALIKE = r"""
+import sys
+from mpi4py import MPI
+from evolvent.fem.parallel import ranks
+
+class Stubborn(Exception):
+    def __init__(self, a, b):
+        super().__init__(f"{a}{b}")
+
+comm = MPI.COMM_WORLD
+def work():
+    if comm.rank == 1:
+        raise ValueError("one") if sys.argv[1] == "plain" else Stubborn("o", "ne")
+try:
+    parallel.together(comm, work)
+except (ValueError, RuntimeError) as error:
+    sys.stdout.write(f"rank {comm.rank}: {type(error).__name__} {error}; {error.__notes__[0].splitlines()[0]}\n")
+"""
+
+
+def positions(out: Path) -> list[dict[str, object]]:
+    return json.loads((out / "summary.json").read_text(encoding="utf-8"))["positions"]
+
+
+def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]]) -> None:
+    """All numbers agree within 1e-8, but for the clock and residuals that are rounding."""
+    assert len(found) == len(wanted)
+    for one, other in zip(found, wanted):
+        assert one.keys() == other.keys()
+        for name in other.keys() - {"seconds", "newton_iterations", "balance_error", "teeth"}:
+            assert one[name] == pytest.approx(other[name], rel=1e-8, abs=1e-8), name
+        for one_tooth, other_tooth in zip(one["teeth"], other["teeth"], strict=True):  # type: ignore[call-overload]
+            assert one_tooth == pytest.approx(other_tooth, rel=1e-8, abs=1e-8, nan_ok=True)
+
+
+@pytest.fixture(scope="module")
+def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, object]]:
+    out = tmp_path_factory.mktemp("one") / "out"
+    done = run_script("tests/support/broken_run.py", "ok", SPUR, "--out", str(out), *QUIET, *SHORT)
+    assert done.returncode == 0, done.stderr
+    return positions(out)
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path) -> None:
+    """He's pair with three friction coefficients on 1, 2 and 4 ranks: the same within 1e-8. Each gear is condensed
+    once, its coarse companion too; every position of both is searched once, the odd ones of four by rank 0, the others
+    by rank 1, and two more, a rank each, where the first of them closes the pitch."""
+    out = tmp_path / "out"
+    done = run_script("tests/support/broken_run.py", "count", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 0, done.stderr
+    assert_same(positions(out), on_one_rank)
+    for rank in range(ranks):
+        condensed, searched = 2 * int(rank < 2), 2 * 3 * int(rank < 2)
+        assert f"rank {rank}: condensed {condensed}, searched {searched}" in done.stdout
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
+
+
+def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> None:
+    """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
+    one or two a rank: as on one rank within 1e-8. Two ranks have the last position at hand when one of two coefficients
+    closes at the one before."""
+    scene = tmp_path / "helical.toml"
+    scene.write_text(HELICAL, encoding="utf-8")
+    found = []
+    for count in (1, 2):
+        out = tmp_path / str(count)
+        mixed = "--set", "contact.friction=[0.0, 0.2, 0.5]", "--set", "sweep.positions=10"
+        where = str(scene), "--out", str(out)
+        done = run_script("tests/support/broken_run.py", "ok", *where, *QUIET, *mixed, ranks=count)
+        assert done.returncode == 0, done.stderr
+        found.append(positions(out))
+        solved = [int(read_arrays(path)["count"]) for path in sorted((out / "results").glob("position_*.npz"))]
+        assert solved == [3] * 10 + [2, 2, 2, 1]
+    assert_same(*found)
+
+
+@pytest.mark.parametrize(("rank", "number", "complete"), [(0, 1, 0), (1, 3, 4)])
+def test_failing_rank_ends_the_run(rank: int, number: int, complete: int, run_script: Run, tmp_path: Path) -> None:
+    """An unexpected error on one of three ranks: its message and where it was raised, status 1, no hang; the positions
+    of the turns before are kept, two of each."""
+    out = tmp_path / "out"
+    how = f"raise-{rank}-{number}"
+    done = run_script("tests/support/broken_run.py", how, SPUR, "--out", str(out), *QUIET, *SHORT, ranks=3, timeout=60)
+    assert done.returncode == 1
+    assert f"ArithmeticError: rank {rank} broke" in done.stderr
+    assert f"on rank {rank} of 3" in done.stderr
+    assert "broken_run.py" in done.stderr
+    assert len(list((out / "results").glob("position_*.npz"))) == complete
+    assert not (out / "summary.json").exists()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+    """A position that fails its balance certificate: status 3, the numbers, and it is not written."""
+    out = tmp_path / "out"
+    done = run_script("tests/support/broken_run.py", "unbalanced", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 3
+    assert "wanted a balance error of at most 1e-09, found" in done.stderr
+    assert not list((out / "results").glob("position_*.npz"))
+    assert not (out / "summary.json").exists()
+    assert "failed: pinion at" in (out / "run.log").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
+    """A pitch that fails its balance certificate: status 3, the numbers, and no result."""
+    out = tmp_path / "out"
+    done = run_script("tests/support/broken_run.py", "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    assert done.returncode == 3
+    assert "wanted an energy balance within 1e-09 of the input, found" in done.stderr
+    assert "solved again, on deflected flanks" in (out / "run.log").read_text(encoding="utf-8")
+    assert not (out / "summary.json").exists()
+
+
+def test_positions_are_balanced(on_one_rank: list[dict[str, object]]) -> None:
+    """Every position is well within the limit."""
+    assert max(float(str(row["balance_error"])) for row in on_one_rank) < BALANCE_LIMIT
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3, 4])
+def test_shared(ranks: int, run_script: Run) -> None:
+    """Every kind of array arrives bit by bit from every root, on one node and on nodes of two ranks, in pieces; it is
+    read-only, in shared memory, and the memory is given back with the last array."""
+    done = run_script("-c", SHARE, ranks=ranks)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("fine") == ranks
+
+
+@pytest.mark.parametrize(("kind", "found"), [("plain", "ValueError one"), ("stubborn", "RuntimeError Stubborn: one")])
+def test_ranks_fail_together(kind: str, found: str, run_script: Run) -> None:
+    """One rank's exception is raised on all, with a note of where; also one that cannot be pickled."""
+    done = run_script("-c", FAIL_ALIKE, kind, ranks=3)
+    assert sorted(done.stdout.splitlines()) == [f"rank {rank}: {found}; on rank 1 of 3:" for rank in range(3)]
+
+
+def test_no_room_for_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A node without room is an error that says what to do, not a bus error later."""
+    monkeypatch.setattr(ranks, "MEMORY_FOLDERS", ("/nowhere", "/proc/self"))
+    with pytest.raises(OSError, match=r"wanted 5 MB for what the ranks of a node share.*--shm-size"):
+        ranks._memory_file(5_000_000)
+
+
+def test_one_rank_shares_nothing() -> None:
+    """On one rank `shared` and `together` cost nothing and copy nothing."""
+    value = np.arange(10)
+    assert ranks.shared(MPI.COMM_SELF, value, 0) is value
+    assert ranks.on_first(MPI.COMM_SELF, lambda: value) is value

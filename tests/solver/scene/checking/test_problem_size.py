@@ -1,0 +1,270 @@
+"""Sizes that are told before a mesh is made, against the mesh; memory against what runs took; what does not fit."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evolvent.cli import main
+from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.scene.checking import problem_size
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_size, sector_sizes
+from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.scene import Scene, load_scene
+from evolvent_meshes.sector.section import section_mesh
+from tests.conftest import Run
+from tests.support.gear_cases import ROOT, helical_scene, model_of, spur_scene, swept
+
+MEBIBYTE = 1.048576
+
+
+def yang(*settings: str) -> Scene:
+    return load_scene(ROOT / "demos/yang2022.toml", settings)
+
+
+@pytest.mark.parametrize(
+    ("shape", "order", "long_way"),
+    [("hexahedron", 1, False), ("hexahedron", 2, False), ("hexahedron", 2, True), ("tetrahedron", 1, False)],
+)
+@pytest.mark.parametrize("make", [spur_scene, helical_scene])
+def test_sizes_of_meshes(make: Callable[..., Scene], shape: str, order: int, long_way: bool) -> None:
+    """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
+    space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
+    off = ['skip.off=["coarse-body"]'] if long_way else []
+    scene = make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off)
+    for index, found in enumerate(sector_sizes(scene)):
+        mesh = gear_mesh(scene, index)
+        flank, low, high = (len(np.unique(mesh.facets[name])) for name in ("flank", "cut_low", "cut_high"))
+        exact = np.array([len(mesh.points), flank, low + high]) * mesh.dimension
+        assert [found.dofs, found.flank, found.cuts] == exact.tolist()
+
+
+@pytest.mark.parametrize("level", ["quick", "standard", "fine"])
+@pytest.mark.parametrize("name", ["yang2022", "he2022", "zhang2023"])
+def test_sizes_of_sections(name: str, level: str) -> None:
+    """Exact for the papers' pairs at every level, counted on the second-order section."""
+    scene = load_scene(ROOT / f"demos/{name}.toml", [f"mesh.level={level}"])
+    for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(scene), strict=True):
+        section, found = section_mesh(gear, resolution), sector_size(resolution, 2, plane=True)
+        nodes = len(section.points), *(len(np.unique(section.edges[edge])) for edge in ("flank", "cut_low"))
+        assert [found.dofs, found.flank, found.cuts] == [2 * nodes[0], 2 * nodes[1], 4 * nodes[2]]
+
+
+MEASURED = [
+    (yang("mesh.level=quick"), 3300), (yang("mesh.level=standard"), 11000),
+    *((yang("mesh.level=quick", "contact.friction=0.11", f"mesh.elements_per_contact_width={elements}"), megabytes)
+      for elements, megabytes in ((1, 1127), (1.4, 2255), (2, 3844), (2.6, 8420), (3.2, 17063), (3.5, 22401))),
+    (yang("mesh.level=quick", "skip.off=coarse-body"), 6481),
+    (spur_scene("mesh.level=quick", "skip.off=plane"), 1917),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("scene", "mebibytes"), MEASURED)
+def test_memory_of_runs(scene: Scene, mebibytes: float) -> None:
+    """Within 20 % of what runs on one rank took (docs/benchmark.md), from 1 GB on."""
+    assert memory_megabytes(scene) == pytest.approx(MEBIBYTE * mebibytes, rel=0.2)
+
+
+def test_memory_of_small_runs() -> None:
+    """A plane run took 157 MB, with whole gears 630: told within a factor of two, so that small machines are let."""
+    quick = spur_scene("mesh.level=quick")
+    assert 150 < memory_megabytes(quick) < 330
+    assert 600 < memory_megabytes(spur_scene("mesh.level=quick", "skip.off=one-sector")) < 1300
+
+
+def test_ranks_add_up() -> None:
+    """Two ranks eliminate both gears at once; a third one only runs."""
+    one, two, three = (memory_megabytes(yang("mesh.level=standard"), ranks) for ranks in (1, 2, 3))
+    assert 1.6 * one < two < 2.0 * one
+    assert three - two == pytest.approx(problem_size.MEGABYTES_BASE[3])
+
+
+def test_demos_fit() -> None:
+    """The papers' pairs at quick and standard want less than 24 GB, also on two ranks; Yang's at fine does not."""
+    for name in ("yang2022", "he2022", "zhang2023"):
+        for level in ("quick", "standard"):
+            assert memory_megabytes(load_scene(ROOT / f"demos/{name}.toml", [f"mesh.level={level}"]), 2) < 24e3
+    assert memory_megabytes(yang("mesh.level=fine")) > 60e3
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
+    """machine(megabytes): gives the machine so much memory."""
+    return lambda megabytes: monkeypatch.setattr(problem_size, "machine_megabytes", lambda: megabytes)
+
+
+@pytest.mark.parametrize(
+    ("settings", "megabytes", "key", "remedy"),
+    [
+        (["mesh.level=fine"], 25e3, "mesh.level", "take --level standard (12 GB)"),
+        (["mesh.level=fine"], 8e3, "mesh.level", "take --level quick (3.08 GB)"),
+        (["mesh.level=standard"], 2e3, "mesh.level", "take --level quick --set mesh.elements_per_contact_width=1.3"),
+        (["mesh.elements_per_contact_width=12"], 25e3, "mesh.elements_per_contact_width", "per_contact_width=3."),
+        (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
+        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 104.9 N·m on --level quick does"),
+    ],
+)  # fmt: skip
+def test_what_fits_is_named(
+    settings: list[str], megabytes: float, key: str, remedy: str, machine: Callable[[float], None]
+) -> None:
+    """The finest level that fits, else a number of elements; where that is a setting, it does fit."""
+    machine(megabytes)
+    problem = room_problem(yang(*settings), memory_megabytes)
+    assert problem is not None and problem.key == key
+    assert remedy in problem.remedy and "--force" in problem.remedy
+    assert f"{megabytes / 1e3:.3g} GB" in problem.allowed
+
+
+def test_fewer_elements_fit(machine: Callable[[float], None]) -> None:
+    """The number of elements that is named fits, a tenth more does not."""
+    machine(2e3)
+    problem = room_problem(yang("mesh.level=quick"), memory_megabytes)
+    assert problem is not None
+    count = float(problem.remedy.split("elements_per_contact_width=")[1].split()[0])
+    needed = [memory_megabytes(yang("mesh.level=quick", f"mesh.elements_per_contact_width={n}")) for n in
+              (count, count + 0.1)]  # fmt: skip
+    assert needed[0] <= 2e3 < needed[1]
+
+
+def test_results_count(machine: Callable[[float], None]) -> None:
+    """1000 positions of three pitches at 50 coefficients are 150,000 results, too many for any machine of this size;
+    what is told of a plane one is no less than its arrays, and no more than 2.5 times."""
+    machine(24e3)
+    coefficients = [k / 100 for k in range(50)]
+    many = yang("sweep.positions=1000", f"contact.friction={coefficients}", "skip.off=one-pitch")
+    problem = room_problem(many, memory_megabytes)
+    assert problem is not None and problem.key == "sweep.positions" and "200,000 results" in problem.found
+    scene = spur_scene("mesh.level=quick", "contact.friction=0.3", "sweep.positions=2")
+    result = swept(model_of(scene), np.array([1.0]), [0.3])[0].results[0]
+    told = problem_size.results_megabytes(scene) / 2
+    assert 1e-6 * len(pickle.dumps(result)) < told < 2.5e-6 * len(pickle.dumps(result))
+
+
+def test_one_rank_where_two_do_not_fit(machine: Callable[[float], None]) -> None:
+    machine(15e3)
+    problem = room_problem(yang("mesh.level=standard"), memory_megabytes, 2)
+    assert problem is not None and problem.remedy.startswith("run on one rank")
+
+
+@pytest.mark.parametrize("command", ["run", "mesh"])
+def test_commands_refuse_what_does_not_fit(
+    command: str, machine: Callable[[float], None], tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Status 2 before a mesh is made, nothing written; --force goes on."""
+    monkeypatch.setattr("evolvent.scene.meshing.sector_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
+    machine(200.0)
+    out = str(tmp_path / ("out" if command == "run" else "pair.msh"))
+    arguments = [command, str(ROOT / "demos/yang2022.toml"), "--out", out]
+    assert main(arguments) == 2
+    said = capsys.readouterr().err
+    assert 'mesh.level: found "standard", 581,682 degrees of freedom' in said and "; remedy: " in said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["run", "mesh"])
+def test_force_goes_on(
+    command: str, machine: Callable[[float], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With --force the command begins what does not fit."""
+
+    class Begun(BaseException):
+        pass
+
+    def begin(*_: object, **__: object) -> None:
+        raise Begun
+
+    machine(200.0)
+    monkeypatch.setattr("evolvent.run.scene_run.run_scene", begin)
+    monkeypatch.setattr("evolvent.scene.meshing.sector_meshes.standing_pair", begin)
+    with pytest.raises(Begun):
+        main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])
+
+
+def test_check_says_what_does_not_fit(machine: Callable[[float], None]) -> None:
+    machine(5e3)
+    text = overview(yang("mesh.level=standard"))
+    assert "Too large for this machine" in text and "--level quick" in text
+    machine(50e3)
+    assert "Too large" not in overview(yang("mesh.level=standard"))
+
+
+def test_control_groups(tmp_path: Path) -> None:
+    """The smallest limit of the process's groups and of those above, of both versions; "max" and no files: none."""
+    physical = machine_megabytes(tmp_path)
+    assert physical > 100.0
+    own, groups = tmp_path / "proc/self", tmp_path / "sys/fs/cgroup"
+    own.mkdir(parents=True)
+
+    def limit(name: str, text: str) -> None:
+        (groups / name).parent.mkdir(parents=True, exist_ok=True)
+        (groups / name).write_text(text)
+
+    (own / "cgroup").write_text("4:memory:/docker/a1\n1:cpu:/docker/a1\n0::/user/me\n")
+    limit("user/me/memory.max", "max\n")
+    limit("memory/memory.limit_in_bytes", "9223372036854771712\n")
+    assert machine_megabytes(tmp_path) == physical
+    limit("user/memory.max", "64000000\n")
+    assert machine_megabytes(tmp_path) == 64.0
+    limit("memory/docker/a1/memory.limit_in_bytes", "32000000\n")
+    assert machine_megabytes(tmp_path) == 32.0
+
+
+HUGE = [
+    ["load.torque_Nm=1e-4"],
+    ["load.torque_Nm=1e-12"],
+    ["load.torque_Nm=1e-300"],
+    ["load.torque_Nm=1e-6", "skip.off=one-sector", "skip.off=coarse-body"],
+    ["mesh.elements_per_contact_width=24", "load.torque_Nm=1e-5"],
+    ["pinion.teeth=1000000000"],
+    ["sweep.positions=1000000000000"],
+    ["wheel.face_width_mm=1000", "pinion.face_width_mm=1000", "load.torque_Nm=0.01"],
+]
+
+
+def test_check_stays_small() -> None:
+    """`evolvent check` of whatever numbers takes less than 200 MB, seen as the largest resident memory of one process
+    for all of them. The time limit is a guard against a hang only."""
+    code = """
+    import sys
+    from pathlib import Path
+    from evolvent.cli import main
+    for line in sys.stdin.read().splitlines():
+        print("status", main(["check", sys.argv[1], *(part for text in line.split("|") for part in ("--set", text))]))
+    print("megabytes", int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1e3)
+    """
+    command = [sys.executable, "-c", textwrap.dedent(code), str(ROOT / "demos/yang2022.toml")]
+    given = "\n".join("|".join(settings) for settings in HUGE)
+    done = subprocess.run(command, input=given, capture_output=True, text=True, timeout=60, cwd=ROOT, check=True)
+    statuses = [line for line in done.stdout.splitlines() if line.startswith("status")]
+    assert len(statuses) == len(HUGE) and set(statuses) <= {"status 0", "status 2"}
+    assert "Traceback" not in done.stderr
+    assert float(done.stdout.split("megabytes")[1]) < 200
+
+
+def test_too_much_relief(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A relief deeper than the fine layers below the flank would fold them: the key is named, not the folded cells."""
+    out = tmp_path / "pair.msh"
+    settings = ["--level", "quick", "--set", "wheel.tip_relief_um=400"]
+    assert main(["mesh", str(ROOT / "demos/he2022.toml"), "--out", str(out), *settings]) == 2
+    said = capsys.readouterr().err
+    assert "wheel.tip_relief_um: found 400" in said and "; remedy: lower it" in said
+    assert not out.exists()
+
+
+def test_two_ranks_refuse_once(run_script: Run) -> None:
+    """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"
+    done = run_script("-c", code, *arguments, ranks=2)
+    assert done.returncode == 2 and done.stderr.count("mesh.level: found") == 1
+    assert "on 2 ranks" in done.stderr and "Traceback" not in done.stderr

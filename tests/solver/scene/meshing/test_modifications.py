@@ -1,0 +1,119 @@
+"""What relief, crowning and misalignment do, as far as a scene tells.
+
+Problem: He's spur pair on springs of stiffness c along its contact lines. Let δ0 = F/(ncb) be the approach of flanks as
+designed where n pairs touch over the face width b. Exact, by integration of the overlap: under misalignment f over the
+face the share √(2 δ0/f) of the lines bears, with crowning C_b of one gear (3 δ0/2C_b)^(1/3).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evolvent.cli import Exit, main
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.checking.scene_warnings import scene_warnings
+from evolvent.scene.meshing.modifications import POINTS, POSITIONS, bearing
+from evolvent.scene.scene import load_scene
+from evolvent_meshes.gears.flank import contact_lines
+from evolvent_meshes.gears.pair import GearPair
+from tests.support.gear_cases import spur_scene
+
+FORCE, STIFFNESS = 2000.0, 14e3
+
+
+def said(*settings: str, name: str = "he2022") -> str:
+    return " ".join(scene_warnings(load_scene(f"demos/{name}.toml", settings)))
+
+
+def mean_share(pair: GearPair, single: float, power: float) -> float:
+    """Of a pitch, where a single pair bears on the share `single`, and n pairs on n^−power of that each."""
+    angles = np.arange(POSITIONS) * 2.0 * np.pi / pair.pinion.z / POSITIONS
+    pairs = np.array([len(contact_lines(pair, angle)) for angle in angles])
+    assert {*pairs} == {1, 2}
+    return single * float(np.sum(pairs ** (1.0 - power)) / np.sum(pairs))
+
+
+def test_flanks_as_designed() -> None:
+    """Without modifications all lines bear, alike; half of them each where two pairs touch."""
+    pair = spur_scene().gear_pair()
+    found = bearing(pair, FORCE, STIFFNESS)
+    assert found.share == 1.0
+    assert found.deflection == pytest.approx(FORCE / STIFFNESS / pair.face_width, rel=1e-12)
+
+
+@pytest.mark.parametrize("times", [20.0, 100.0])
+def test_misalignment(times: float) -> None:
+    """f = 20 δ0 and 100 δ0 of one pair: shares 0.316 and 0.141; the end of the face gives way by share times f."""
+    pair = spur_scene().gear_pair()
+    δ0 = FORCE / STIFFNESS / pair.face_width
+    found = bearing(replace(pair, misalignment_um=1e3 * times * δ0), FORCE, STIFFNESS)
+    share = math.sqrt(2.0 / times)
+    assert found.share == pytest.approx(mean_share(pair, share, 0.5), abs=1.0 / POINTS)
+    assert found.deflection == pytest.approx(share * times * δ0, abs=times * δ0 / POINTS)
+
+
+@pytest.mark.parametrize("times", [12.0, 100.0])
+def test_crowning(times: float) -> None:
+    """C_b = 12 δ0 and 100 δ0 of one pair: shares 0.5 and 0.247."""
+    pair = spur_scene().gear_pair()
+    δ0 = FORCE / STIFFNESS / pair.face_width
+    crowned = replace(pair.pinion, modifications=replace(pair.pinion.modifications, lead_crowning_um=1e3 * times * δ0))
+    found = bearing(replace(pair, pinion=crowned), FORCE, STIFFNESS)
+    wanted = mean_share(pair, (1.5 / times) ** (1.0 / 3.0), 1.0 / 3.0)
+    assert found.share == pytest.approx(wanted, abs=1.0 / POINTS)
+
+
+def test_light_load_leaves_what_is_not_relieved() -> None:
+    """Tip relief that no load closes: the share of the path of contact where neither flank is relieved."""
+    scene = spur_scene("pinion.tip_relief_um=50", "load.torque_Nm=1")
+    pair = scene.gear_pair()
+    (start, end), ρ = pair.path_of_contact, pair.pitch_point_roll_lengths[0]
+    relieved = pair.pinion.roll_length(pair.pinion.modifications.tip_relief_start_diameter) - ρ
+    found = bearing(pair, 1.0, STIFFNESS)
+    assert found.share == pytest.approx((relieved - start) / (end - start), abs=0.04)
+
+
+@pytest.mark.parametrize(("settings", "key", "share"), [
+    (("pair.misalignment_um=1000",), "pair.misalignment_um = 1000", 10),
+    (("pinion.lead_crowning_um=500",), "pinion.lead_crowning_um = 500", 23),
+    (("load.torque_Nm=5", "wheel.tip_relief_um=50"), "wheel.tip_relief_um = 50", 76),
+    (("load.torque_Nm=5", "pair.misalignment_um=3", "wheel.lead_crowning_um=2"),
+     "pair.misalignment_um = 3 and wheel.lead_crowning_um = 2", 48),
+])  # fmt: skip
+def test_said(settings: tuple[str, ...], key: str, share: int) -> None:
+    """The figure that does it, and what it does; several where only together they do."""
+    text = said(*settings)
+    assert f"{key} (µm): the flanks bear on about {share} %" in text
+
+
+def test_usual_figures_are_not_warned_of() -> None:
+    """What designers give at the nominal load: reliefs near the deflection, some micrometres over the face."""
+    for name in ("he2022", "yang2022", "zhang2023", "first_pair"):
+        assert "bear on" not in said("mesh.level=standard", name=name)
+    usual = ("pair.misalignment_um=5", "pinion.lead_crowning_um=5", "pinion.tip_relief_um=15", "wheel.tip_relief_um=15")
+    assert "bear on" not in said(*usual)
+
+
+def test_what_may_fold_is_said_by_check() -> None:
+    """A relief that `run` refuses because it folds the mesh is named before."""
+    text = overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=500"]))
+    assert "The mesh may fold, which `run` then refuses: pinion.tip_relief_um: found 500" in text
+    assert "fold" not in overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=20"]))
+
+
+def test_run_says_it_before_it_computes(
+    tmp_path: object, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The warning comes first: with 1 mm of misalignment three minutes of searching ended without a result."""
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("evolvent.run.scene_run.sweep_scene", stop)
+    command = ["run", "demos/he2022.toml", "--quiet", "--set", "pair.misalignment_um=1000", "--out", f"{tmp_path}/out"]
+    assert main(command) == Exit.FAILED
+    assert "warning: pair.misalignment_um = 1000 (µm): the flanks bear on about 10 %" in capsys.readouterr().err

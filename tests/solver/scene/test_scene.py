@@ -1,0 +1,253 @@
+"""The scene file: what is accepted, what is derived, and that every error says key, found, allowed and remedy.
+
+The derived gear data are compared with the figures of the three papers (external).
+"""
+
+from __future__ import annotations
+
+import pickle
+import re
+from pathlib import Path
+
+import pytest
+
+from evolvent.scene.checking.check_report import overview
+from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
+from evolvent.scene.schema.errors import keys_of
+from evolvent.scene.skips import is_plane, skipped
+from tests.support.abuses.malformed_scenes import DEMOS, HE, MALFORMED, ROOT, YANG, without
+
+
+@pytest.mark.parametrize("case", MALFORMED)
+def test_malformed(case: str) -> None:
+    """One message has the key, what was found, what is allowed and the remedy."""
+    text, overrides, key, found, remedy = MALFORMED[case]
+    with pytest.raises(SceneError) as caught:
+        scene_from_text(text, overrides)
+    lines = [line for line in str(caught.value).splitlines() if line.startswith(f"{key}: ")]
+    assert len(lines) == 1, f"no message for {key} in {caught.value}"
+    message = re.fullmatch(r"(.*): found (.*); allowed: (.+); remedy: (.+)", lines[0])
+    assert message is not None, lines[0]
+    assert found in message[2]
+    assert remedy in message[4]
+
+
+def test_enough_malformed() -> None:
+    """At least 45 different ones."""
+    assert len(MALFORMED) >= 45
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("pair.center_distance_mm", "pair.centre_distance_mm"), ("load.torque", "load.torque_Nm"),
+        ("contact.mu", "contact.friction"), ("pinion.z", "pinion.teeth"), ("pinion.module", "pair.normal_module_mm"),
+        ("wheel.width", "wheel.face_width_mm"), ("wheel.x", "wheel.profile_shift"), ("mesh.cells", "mesh.shape"),
+        ("pair.beta", "pair.helix_angle_deg"), ("material.youngs_modulus", "material.E_GPa"),
+        ("pinion.bore", "pinion.bore_diameter_mm"), ("material.e_gpa", "material.E_GPa"),
+        ("pinion.TEETH", "pinion.teeth"), ("wheel.Profile_Shift", "wheel.profile_shift"),
+        ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
+    ],
+)  # fmt: skip
+def test_the_key_that_was_meant(written: str, meant: str) -> None:
+    """Found by its spelling, by its symbol, or by what it means."""
+    with pytest.raises(SceneError, match=re.escape(f"did you mean {meant}?")):
+        scene_from_text(YANG, [f"{written}=1"])
+
+
+def test_all_errors_at_once() -> None:
+    """Independent errors are all named, each in its own line, with the file's name."""
+    with pytest.raises(SceneError) as caught:
+        scene_from_text(YANG, ["load.torque_Nm=0", "mesh.order=3", "pinion.teeth=2"], source="mine.toml")
+    keys = [problem.key for problem in caught.value.problems]
+    assert sorted(keys) == ["load.torque_Nm", "mesh.order", "pinion.teeth"]
+    assert all(line.startswith("mine.toml: ") for line in str(caught.value).splitlines())
+
+
+def test_errors_travel_between_ranks() -> None:
+    """SceneError is pickled whole: under mpirun rank 0 reads the scene and sends what it found."""
+    with pytest.raises(SceneError) as caught:
+        scene_from_text(YANG, ["load.torque_Nm=0"], source="mine.toml")
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert (str(copy), copy.problems, copy.exit_status) == (str(caught.value), caught.value.problems, 2)
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    """A file that cannot be read is named with its path."""
+    with pytest.raises(SceneError, match=r"scene\.toml: scene file: found .*; remedy: check the path"):
+        load_scene(tmp_path / "scene.toml")
+
+
+@pytest.mark.parametrize("name", ["yang2022", "he2022", "zhang2023"])
+def test_resolved_scene_is_the_same_scene(name: str) -> None:
+    """The resolved TOML has every key, and reading it gives an equal scene."""
+    scene = load_scene(DEMOS / f"{name}.toml")
+    resolved = scene.resolved_toml()
+    assert scene_from_text(resolved) == scene
+    for key in keys_of(Scene):
+        assert re.search(rf"^(# )?{key.rsplit('.', 1)[-1]}( = |: not given)", resolved, re.MULTILINE), key
+
+
+def test_resolved_scene_keeps_odd_titles() -> None:
+    """Quotes, backslashes, new lines and control characters survive."""
+    title = 'a "b" \\ c\n\td \x7f β'
+    scene = scene_from_text(HE).model_copy(update={"title": title})
+    assert scene_from_text(scene.resolved_toml()).title == title
+
+
+def test_overrides() -> None:
+    """Values are TOML; a bare word is a text, for the shell takes its quotes away; new sections are made."""
+    overrides = ["load.torque_Nm=300", "mesh.level=fine", "contact.friction=[0, 0.1]", "material.wheel.E_GPa=105"]
+    scene = scene_from_text(YANG, [*overrides, "output.fields = false", "load.on=gear", "title=my pair"])
+    assert (scene.load.torque_Nm, scene.mesh.level, scene.contact.friction) == (300, "fine", (0, 0.1))
+    assert [material.youngs_modulus for material in scene.materials()] == [210e3, 105e3]
+    assert (scene.output.fields, scene.load.on, scene.title) == (False, "wheel", "my pair")
+
+
+def test_a_scene_cannot_be_changed() -> None:
+    """Frozen."""
+    scene = scene_from_text(HE)
+    with pytest.raises(ValueError, match="frozen"):
+        scene.load.torque_Nm = 3.0  # type: ignore[misc]
+
+
+def test_default_centre_distance_has_no_backlash() -> None:
+    """Zhang: 91.5002 mm (91.5 printed); Yang: 93.0001 mm (93 printed); backlash 0."""
+    for name, printed in (("zhang2023", 91.5), ("yang2022", 93.0)):
+        text = without((DEMOS / f"{name}.toml").read_text(encoding="utf-8"), "centre_distance_mm")
+        pair = scene_from_text(text).gear_pair()
+        assert pair.centre_distance == pytest.approx(printed, abs=3e-4)
+        assert pair.circumferential_backlash == pytest.approx(0, abs=1e-12)
+
+
+def test_coefficients_give_the_diameters() -> None:
+    """Zhang: h_a* = 1.25/1.32, h_f* = 1.57/1.50 give the printed addenda 3.544/2.996 and height 6.465 mm."""
+    text = (DEMOS / "zhang2023.toml").read_text(encoding="utf-8")
+    for key, coefficients in (("tip_diameter_mm", (1.25, 1.32)), ("root_diameter_mm", (1.57, 1.50))):
+        name = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}[key]
+        for value in coefficients:
+            text = re.sub(rf"^{key}.*$", f"{name} = {value}", text, count=1, flags=re.MULTILINE)
+    pair = scene_from_text(text).gear_pair()
+    addenda = [(gear.tip_diameter - gear.reference_diameter) / 2 for gear in pair.gears]
+    heights = [(gear.tip_diameter - gear.root_diameter) / 2 for gear in pair.gears]
+    assert addenda == pytest.approx([3.544, 2.996], abs=6e-4)
+    assert heights == pytest.approx([6.465, 6.465], abs=6e-4)
+
+
+FIGURES = {
+    "yang2022": [
+        ("reference diameter", "40.818 144.063"),
+        ("base radius", "19.1994 67.7626"),
+        ("transverse pressure angle", "19.8241"),
+        ("without backlash, from x1 + x2", "20.7598"),
+        ("transverse base pitch", "7.0961"),
+        ("transverse contact ratio", "1.7740"),
+        ("overlap ratio", "1.2419"),
+        ("total contact ratio", "3.0159"),
+        ("normal tooth thickness at the tip", "0.6934 1.3455"),  # printed 0.693/1.346
+        ("diameter at start of active profile", "38.540 140.607"),
+        ("base helix angle", "27.5402"),
+        ("working pitch diameter", "41.065 144.935"),
+        ("dedendum of the rack", "1.60 1.60"),
+        ("addendum of the rack", "1.30 1.35"),
+        ("normal force on the flanks", "14685.3"),
+        ("contact line length, shortest", "31.18"),
+        ("contact line length, mean", "33.81"),
+        ("contact line length, longest", "34.65"),
+        ("p0 at the pitch point, mean length", "1579.3"),
+        ("p0 at the pitch point, shortest length", "1644.5"),
+        ("p0 at the start of engagement, mean length", "3008.1"),
+        ("Eq. 4 of Yang 2022 with K = 1", "1619.4"),
+        ("with K = 1.25·1.293·1.1·1.2257", "2390.6"),
+        ("pinion rotation of one engagement", "63.866"),  # printed 63.9
+    ],
+    "he2022": [
+        ("reference diameter", "150.000 150.000"),
+        ("base radius", "70.4769 70.4769"),
+        ("operating pressure angle", "20.0000"),
+        ("transverse base pitch", "8.8564"),
+        ("transverse contact ratio", "1.7547"),
+        ("normal tooth thickness at the tip", "2.3263 2.3263"),  # printed 2.326
+        ("diameter at start of active profile", "145.420 145.420"),
+        ("normal force on the flanks", "2412.1"),
+        ("p0 at the pitch point, shortest length", "587.7"),
+    ],
+    "zhang2023": [
+        ("reference diameter", "75.900 105.800"),
+        ("base radius", "36.0926 50.3109"),
+        ("transverse pressure angle", "18.0000"),
+        ("operating pressure angle", "19.2136"),
+        ("transverse base pitch", "6.8720"),
+        ("transverse contact ratio", "2.1413"),
+        ("normal tooth thickness at the tip", "1.0808 1.2904"),  # printed 1.081/1.290
+        ("diameter at start of active profile", "73.098 102.452"),
+        ("addendum of the rack", "1.25 1.32"),
+        ("dedendum of the rack", "1.57 1.50"),
+        ("tip shortening that keeps the clearance", "0.0093"),
+    ],
+}
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_check_prints_the_papers_figures(name: str) -> None:
+    """Every figure of the three gear pairs to its last printed digit (exact recomputations from the printed data)."""
+    text = re.sub(" +", " ", overview(load_scene(DEMOS / f"{name}.toml")))
+    for label, values in FIGURES[name]:
+        line = next((line for line in text.splitlines() if line.strip().startswith(label)), "")
+        assert line.endswith(" " + values), f"{label}: wanted {values}, found {line!r}"
+
+
+@pytest.mark.parametrize(("level", "elements"), [("quick", 1.7), ("standard", 3), ("fine", 6)])
+def test_resolution_follows_the_contact_width(level: str, elements: float) -> None:
+    """Yang: as many elements as ∫ds/h wants with h = 2b/elements; at twice the torque 1/√2 of them."""
+    scene = scene_from_text(YANG, [f"mesh.level={level}"])
+    assert elements_per_contact_width(scene) == elements
+    pinion, wheel = sector_resolutions(scene)
+    assert 13.5 * elements <= pinion.profile_elements <= wheel.profile_elements <= 16.5 * elements
+    double, _ = sector_resolutions(scene_from_text(YANG, [f"mesh.level={level}", "load.torque_Nm=500"]))
+    assert double.profile_elements == pytest.approx(pinion.profile_elements / 2**0.5, abs=3)
+
+
+def test_resolution_override() -> None:
+    """elements_per_contact_width replaces the level's."""
+    coarse, _ = sector_resolutions(scene_from_text(YANG, ["mesh.elements_per_contact_width=1"]))
+    assert coarse.profile_elements <= 18
+
+
+def test_spur_pairs_are_plane_unless_the_lead_varies() -> None:
+    """He: 2D; with crowning, misalignment, a helix or unequal widths: 3D."""
+    assert is_plane(scene_from_text(HE))
+    for override in ("wheel.lead_crowning_um=5", "pair.misalignment_um=-5", "wheel.face_width_mm=19"):
+        assert not is_plane(scene_from_text(HE, [override]))
+    assert not is_plane(scene_from_text(YANG))
+    assert any("2D plane strain" in skip.sentence for skip in skipped(scene_from_text(HE)))
+    assert not any(skip.name == "friction-terms" for skip in skipped(scene_from_text(YANG)))
+
+
+def test_torque_on_the_wheel() -> None:
+    """60/17 times the torque on the wheel is, without friction, the same load."""
+    on_wheel = scene_from_text(YANG, [f"load.torque_Nm={250 * 60 / 17}", "load.on=wheel"])
+    assert " 14685.3" in overview(on_wheel)
+
+
+def test_wear_is_foretold() -> None:
+    """He's pair: a million meshes under half the load take 7.25 µm off the start of the active profile; with the load
+    over the mean number of pairs, the contact ratio, 2/ε_α times as much."""
+    scene = scene_from_text(HE, ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1.3832e-10"])
+    row = re.search(r"depth at the ends of the path of contact +h +µm +(\S+) +(\S+)", overview(scene))
+    assert row is not None
+    wanted = 7.25 * 2.0 / scene.gear_pair().transverse_contact_ratio
+    assert float(row[1]) == pytest.approx(wanted, rel=2e-3) and float(row[2]) == 0.0
+
+
+def test_docs_list_every_key() -> None:
+    """docs/scene.md has one row a key, with its meaning and what is allowed."""
+    docs = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
+    for name, field in keys_of(Scene).items():
+        row = re.search(rf"^\| `{re.escape(name)}` \|(.*)\|$", docs, re.MULTILINE)
+        assert row is not None, f"docs/scene.md does not list {name}"
+        words = field.json_schema_extra
+        assert isinstance(words, dict)
+        allowed = "a list of the names below" if name == "skip.off" else words["allowed"]
+        assert f" {field.description} | {allowed} |" in row[1], f"docs/scene.md says something else of {name}"

@@ -1,0 +1,170 @@
+"""Blocks of cycles on equations with a known solution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.wear import block_stepping
+from evolvent.wear.block_stepping import STABLE, BlockSettings, Evaluated, WearStopped, next_block, unworn
+from evolvent.wear.mesh_motion import MeshInverted
+
+END = 20.0
+
+
+class Softening:
+    """dh/dN = 1/(1 + h): h = √(1 + 2N) − 1, at two nodes, the second with half the rate and depth scale."""
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def evaluate(self, depth, before=None):
+        """The rate."""
+        self.calls += 1
+        return Evaluated(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
+
+    def implicit(self, depth, now, length):
+        """The rate r at the end, r (1 + h + ΔN r) = 1."""
+        self.calls += 1
+        b = 1.0 + depth * (1.0, 2.0)
+        end = Evaluated((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
+        return length * end.rate, end
+
+    def accepted(self, depth, now):
+        """Nothing follows."""
+        return now
+
+
+class Failing(Softening):
+    """The same, but no block longer than `longest` cycles converges."""
+
+    def __init__(self, longest: float) -> None:
+        super().__init__()
+        self.longest = longest
+
+    def implicit(self, depth, now, length):
+        if length > self.longest:
+            raise NotConverged("too long")
+        return super().implicit(depth, now, length)
+
+
+class Inverting(Softening):
+    """The same, but no mesh follows by more than `deepest` at a time, or in all by more than `last`."""
+
+    def __init__(self, deepest: float, last: float) -> None:
+        super().__init__()
+        self.deepest, self.last, self.known = deepest, last, 0.0
+
+    def accepted(self, depth, now):
+        """The meshes follow every block."""
+        if depth[0] - self.known > self.deepest or depth[0] > self.last:
+            raise MeshInverted("cells turned over")
+        self.known = depth[0]
+        return now
+
+
+class Rippling:
+    """dh_k/dN = 1 − (h_k − mean): ripples decay to 1/e in a cycle."""
+
+    def evaluate(self, depth, before=None):
+        """The rate, which is nowhere negative."""
+        return Evaluated(np.maximum(1.0 - (depth - depth.mean()), 0.0), np.ones(2), np.inf, 1.0)
+
+    def accepted(self, depth, now):
+        """Nothing follows."""
+        return now
+
+
+def worn(wearable, settings: BlockSettings):
+    """Final depths and the lengths of all blocks."""
+    state, lengths = unworn(wearable, np.zeros(2), settings), []
+    while state.cycles < END * (1.0 - 1e-12):
+        block = next_block(wearable, state, END, settings)
+        state = block.state
+        lengths.append(block.length)
+    return state.depth, lengths
+
+
+@pytest.mark.parametrize("implicit", [False, True])
+def test_halving_the_tolerance_halves_the_error(implicit: bool) -> None:
+    """h(20) = √41 − 1: below the tolerance, and at half the tolerance nearly or less than half the error (as long
+    as the first block, which has none to choose, does not count); blocks add up to 20."""
+    exact, errors = np.sqrt(1.0 + 2.0 * END) - 1.0, []
+    for tolerance in (0.04, 0.02, 0.01):
+        depth, lengths = worn(Softening(), BlockSettings(0.01, tolerance, implicit))
+        assert sum(lengths) == pytest.approx(END, rel=1e-12)
+        assert depth[1] == pytest.approx(0.5 * depth[0], rel=1e-12)
+        errors.append(abs(depth[0] / exact - 1.0))
+    assert errors[0] < 0.04
+    assert errors[1] < 0.55 * errors[0] and errors[2] < 0.55 * errors[1]
+
+
+def test_one_cycle_a_block() -> None:
+    """A block that is not refused costs one cycle, and one more at the start."""
+    study = Softening()
+    _, lengths = worn(study, BlockSettings(0.1, 0.05, implicit=False))
+    state = unworn(again := Softening(), np.zeros(2), BlockSettings(0.1, 0.05, implicit=False))
+    refused = 0
+    while state.cycles < END * (1.0 - 1e-12):
+        block = next_block(again, state, END, BlockSettings(0.1, 0.05, implicit=False))
+        state, refused = block.state, refused + block.refused
+    assert study.calls == 1 + len(lengths) + refused
+
+
+def test_rolled_back() -> None:
+    """Blocks above 0.3 cycles fail: shorter ones are made from the same state, to nearly the same end."""
+    settings = BlockSettings(1.0, 0.5)
+    depth, lengths = worn(Failing(0.3), settings)
+    assert max(lengths) <= 0.3
+    assert depth[0] == pytest.approx(np.sqrt(1.0 + 2.0 * END) - 1.0, rel=0.05)
+
+
+def test_stopped() -> None:
+    """No block converges: WearStopped says where and why, and the state is as it was."""
+    settings, study = BlockSettings(1.0), Failing(0.0)
+    state = unworn(study, np.full(2, 0.3), settings)
+    with pytest.raises(WearStopped, match=r"after 0 cycles.*too long.*last good state is kept"):
+        next_block(study, state, END, settings)
+    assert (state.depth == 0.3).all()
+
+
+def test_a_mesh_that_cannot_follow_shortens_the_block() -> None:
+    """At most 0.5 mm at a time: shorter blocks, to nearly the same end. At most 3 mm in all: the study stops near
+    there, and says why; it does not creep towards it."""
+    settings = BlockSettings(5.0, 0.5)
+    depth, lengths = worn(Inverting(0.5, np.inf), settings)
+    assert len(lengths) > 10
+    assert depth[0] == pytest.approx(np.sqrt(1.0 + 2.0 * END) - 1.0, rel=0.1)
+    study = Inverting(0.5, 3.0)
+    with pytest.raises(WearStopped, match=r"cells turned over.*last good state is kept"):
+        worn(study, settings)
+    assert 2.9 < study.known <= 3.0
+    assert study.calls < 100
+
+
+@pytest.mark.parametrize(("share", "grows"), [(STABLE, False), (1.3 * STABLE, True)])
+def test_explicit_blocks_are_stable(share: float, grows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ripple of 1e-3 on a depth of some cycles, in blocks as long as they may be: it is worn off; in blocks a third
+    longer it grows."""
+    monkeypatch.setattr(block_stepping, "STABLE", share)
+    study, settings = Rippling(), BlockSettings(END, implicit=False)
+    state = unworn(study, np.array([0.0, 1e-3]), settings)
+    for _ in range(30):
+        state = next_block(study, state, np.inf, settings).state
+    ripple = np.ptp(state.depth)
+    assert ripple > 5e-3 if grows else ripple < 1e-6
+
+
+def test_deformation_limits_a_block() -> None:
+    """At most a tenth of the deformation, 1 mm, a block at the rate of its start, 1 mm a cycle."""
+    settings = BlockSettings(5.0, 1.0, implicit=False, deformation_share=0.1)
+    study = Softening()
+    assert next_block(study, unworn(study, np.zeros(2), settings), END, settings).length == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("wrong", [{"first": 0.0}, {"first": 1.0, "tolerance": -1.0}, {"first": float("nan")}])
+def test_bad_settings(wrong: dict[str, float]) -> None:
+    """Lengths and tolerances that are not above zero are refused by name."""
+    with pytest.raises(ValueError, match=r"wanted .* above zero, found"):
+        BlockSettings(**wrong)

@@ -1,0 +1,155 @@
+"""`evolvent run` with something going wrong: broken_run.py HOW SCENE.toml --out DIR [...]; run by tests, not a test.
+
+HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive replaced); kill-half-N (half of it
+written); full-N (no space for the N-th); raise-R-N (rank R fails in its N-th turn, the first of one
+position and then of two); killrank-R-N (rank
+R is killed there); nan-N (its compliance is no number at the N-th search); unbalanced (a position fails
+its balance); leaking, strict, strict-N (a pitch fails its balance; fails only before deflection, and the N-th file
+is not replaced); count (prints how many gears this rank condensed and how many positions it searched).
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.cli import main
+from evolvent.contact.newton.equilibrium import CondensedSystem
+from evolvent.gears import gear_model
+from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.sweep import parallel_sweep, pitch_sweep
+from evolvent.results.archive.archive import Archive
+from evolvent.run import output
+from evolvent_meshes import files
+
+
+def kill() -> None:
+    """As kill -9, the out-of-memory killer or a power cut."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def before_call(module: Any, name: str, action: Callable[[int], None]) -> None:
+    """Calls action(n) before the n-th call of a module's function, n = 1, 2, ..."""
+    original, numbers = getattr(module, name), count(1)
+
+    def patched(*arguments: Any, **options: Any) -> Any:
+        action(next(numbers))
+        return original(*arguments, **options)
+
+    setattr(module, name, patched)
+
+
+def kill_when(wanted: int) -> Callable[[int], None]:
+    return lambda number: kill() if number == wanted else None
+
+
+def at_archive_file(wanted: int, strike: Callable[[], None]) -> None:
+    """Calls `strike` when the archive begins to write its N-th file."""
+    before_call(Archive, "keep", lambda number: strike() if number == wanted else None)
+
+
+def kill_before_renaming() -> None:
+    before_call(files.os, "replace", lambda _: kill())
+
+
+def kill_half_written() -> None:
+    """Cuts the file to its half when it is to be made durable, the manifest before it being whole; then kills."""
+    fsync, numbers = os.fsync, count(1)
+
+    def patched(descriptor: int) -> None:
+        if next(numbers) == 2:
+            os.ftruncate(descriptor, os.fstat(descriptor).st_size // 2)
+            kill()
+        fsync(descriptor)
+
+    files.os.fsync = patched
+
+
+def disk_full() -> None:
+    """No room for the file, but for its line in the manifest."""
+    fsync, numbers = os.fsync, count(1)
+
+    def patched(descriptor: int) -> None:
+        if next(numbers) == 2:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fsync(descriptor)
+
+    files.os.fsync = patched
+
+
+def failing_rank(rank: int, wanted: int) -> Callable[[int], None]:
+    def action(number: int) -> None:
+        if MPI.COMM_WORLD.rank == rank and number == wanted:
+            raise ArithmeticError(f"rank {rank} broke")
+
+    return action
+
+
+def killed_rank(rank: int, wanted: int) -> Callable[[int], None]:
+    return lambda number: kill() if MPI.COMM_WORLD.rank == rank and number == wanted else None
+
+
+def no_number(wanted: int) -> None:
+    """From the N-th position on the flanks' compliance is NaN."""
+    system, numbers = GearContact.system, count(1)
+    at: list[int] = []
+    before_call(pitch_sweep, "shared_position", lambda _: at.append(next(numbers)))
+
+    def patched(self: GearContact, *arguments: Any, **options: Any) -> CondensedSystem:
+        found = system(self, *arguments, **options)
+        return replace(found, jump=found.jump * np.nan) if at[-1] >= wanted else found
+
+    setattr(GearContact, "system", patched)  # noqa: B010
+
+
+def break_it(how: str) -> None:
+    kind, *numbers = how.split("-")
+    if how == "kill-mesh":
+        before_call(gear_model, "gear_mesh", kill_when(2))
+    elif kind == "kill":
+        when, wanted = numbers[0], int(numbers[1])
+        if when == "before":
+            at_archive_file(wanted, kill_before_renaming)
+        elif when == "after":
+            at_archive_file(wanted + 1, kill)
+        else:
+            at_archive_file(wanted, kill_half_written)
+    elif kind == "full":
+        at_archive_file(int(numbers[0]), disk_full)
+    elif kind == "raise":
+        before_call(parallel_sweep._Crew, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "killrank":
+        before_call(parallel_sweep._Crew, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "nan":
+        no_number(int(numbers[0]))
+    elif how == "unbalanced":
+        output.STORED_LIMIT = 1e-9
+    elif how == "leaking":
+        output.BALANCE_LIMIT = 1e-9
+    elif kind == "strict":
+        output.BALANCE_LIMIT = 2e-3
+        if numbers:
+            at_archive_file(int(numbers[0]), kill_before_renaming)
+
+
+if __name__ == "__main__":
+    how = sys.argv[1]
+    condensed, searched = [], []
+    if how == "count":
+        before_call(gear_model, "condensed_gear", condensed.append)
+        for module in (pitch_sweep, parallel_sweep):
+            before_call(module, "shared_position", searched.append)
+    break_it(how)
+    status = main(["run", *sys.argv[2:]])
+    if how == "count":
+        print(f"rank {MPI.COMM_WORLD.rank}: condensed {len(condensed)}, searched {len(searched)}", flush=True)
+    sys.exit(status)

@@ -1,0 +1,186 @@
+"""A run that was never solved: Hertz pressure on the nominal contact lines of the Yang pair, load spread evenly.
+
+Line load q is the same on all contact lines and follows from the pinion's moment, friction included (before the pitch
+point it pushes against the pinion, after it with it):
+
+    T_1 = q ∫ (r_b1 cos β_b − μ ρ_1 sign(−ξ)) dl        T_2 = u (T_1 − friction power)
+
+so torques, energy and the friction trend are known in closed form, and every figure has something to show.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from evolvent.contact.hertz import line_half_width, line_peak_pressure, line_pressure
+from evolvent.fem.surface import Surface, surface_of
+from evolvent.gears.contact.contact_points import ContactPoints
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
+from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.archive.archive import GearShape, gear_shape
+from evolvent.results.run_data import RunData, SolvedPosition, run_data
+from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.scene import Scene, load_scene
+from evolvent.scene.skips import is_plane
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.flank import contact_lines
+from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.sector.sector import sector_mesh
+
+PEAK_TO_PEAK = 1.6e-3  # [mm] of the made-up transmission error
+STIFFNESS = 3e5  # [N/mm] along the line of action, over the whole face
+LAST_ROW = 0.3  # [mm of ξ] beside a tip edge that count as bearing on it
+WINDOW = 0.6  # [mm of arc] on either side of a contact line
+NO_STATE = SweepState((0.0, 0.0), ())
+
+
+def synthetic_scene(*overrides: str, file: str = "demos/yang2022.toml") -> Scene:
+    """A demo's scene at level quick, with few positions unless said otherwise."""
+    return load_scene(file, ["mesh.level=quick", "sweep.positions=6", *overrides])
+
+
+@lru_cache(maxsize=4)
+def synthetic_run(*overrides: str, file: str = "demos/yang2022.toml") -> RunData:
+    """The whole run; see the module's docstring."""
+    scene = synthetic_scene(*overrides, file=file)
+    shapes, flank = synthetic_shapes(scene)
+    return run_data(scene, shapes, synthetic_sweep(scene, flank))
+
+
+def steep_run(*overrides: str) -> RunData:
+    """He's spur pair whose load on the tip edges is three times the evenly spread one, so that the pressure rises
+    between the last position and the beginning of a tip-edge zone, above that of all positions."""
+    even = synthetic_run("sweep.positions=7", *overrides, file="demos/he2022.toml")
+    return replace(even, positions=[tuple(map(_with_loaded_edges, position)) for position in even.positions])
+
+
+def _with_loaded_edges(solved: SolvedPosition) -> SolvedPosition:
+    cut = solved.cut
+    return replace(solved, cut=replace(cut, hertz=np.where(cut.edge, 3.0, 1.0) * cut.hertz))
+
+
+def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface]:
+    """Both gears' surfaces, and the pinion's flank."""
+    shape = "quadrilateral" if is_plane(scene) else "hexahedron"
+    meshes: list[MeshData] = [
+        sector_mesh(gear, resolution, shape)
+        for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(scene))
+    ]
+    first, second = (surface_of(mesh, "flank") for mesh in meshes)
+    return (gear_shape(meshes[0], first.nodes), gear_shape(meshes[1], second.nodes)), first
+
+
+def synthetic_sweep(scene: Scene, flank: Surface) -> list[SweptPosition]:
+    """The pitch."""
+    step = 2.0 * np.pi / scene.pinion.teeth / scene.sweep.positions
+    return [
+        SweptPosition(
+            k * step,
+            tuple(synthetic_position(scene, flank, k * step, μ) for μ in scene.contact.friction),
+            NO_STATE,
+        )
+        for k in range(scene.sweep.positions)
+    ]
+
+
+def even_line_load(scene: Scene, angle: float, friction: float) -> float:
+    """q [N/mm of contact line]."""
+    pair, estimate = scene.gear_pair(), scene.hertz_estimate()
+    cos_b, arms = np.cos(pair.pinion.base_helix_angle), 0.0
+    for line in contact_lines(pair, angle):
+        ξ, z = line.points(2001)
+        ρ = pair.curvature_radii(ξ)[0]
+        arm = pair.pinion.base_radius * cos_b + friction * ρ * np.sign(ξ)
+        arms += float(np.mean(arm)) * (z[-1] - z[0]) / cos_b
+    return estimate.pinion_torque / arms
+
+
+def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: float) -> PositionResult:
+    """One position."""
+    pair, estimate, d = scene.gear_pair(), scene.hertz_estimate(), flank.points.shape[1]
+    line = Ridge(pair, even_line_load(scene, angle, friction), estimate.modulus)
+    error = 0.02 + 0.5 * PEAK_TO_PEAK * np.cos(angle * pair.pinion.z)
+    stand = Stand(pair, angle, (error / pair.pinion.base_radius, 0.0))
+    teeth = [each.tooth for each in contact_lines(pair, angle)]
+    parts = [contact_points(stand, flank, tooth, line, friction) for tooth in teeth]
+    points = ContactPoints.joined(parts)
+    tooth, node, traction = (np.concatenate(c) for c in zip(*(nodal(stand, flank, t, line, friction) for t in teeth)))
+    no_rows, no_forces = np.zeros((0, 2), dtype=np.int64), np.zeros((0, d))
+    torque = estimate.pinion_torque / (pair.face_width if d == 2 else 1.0)
+    loss = float(np.sum(points.weights[:, None] * points.traction[:, 1:] * points.rate[:, 1:]))
+    return PositionResult(
+        stand, friction, (torque, pair.ratio * (torque - loss)), points, tooth, node, flank.weights()[node], traction,
+        5, 1e-9, STIFFNESS / (1.0 if d == 3 else pair.face_width),
+        no_rows, no_rows, no_forces, no_forces, 0.1,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Ridge:
+    """Hertz pressure along contact lines under the line load q [N/mm], modulus E* [MPa]."""
+
+    pair: GearPair
+    q: float
+    modulus: float
+
+    def at(self, s: Floats, ξ: Floats) -> Floats:
+        """Pressure [MPa] at distance s from the line where its roll distance is ξ."""
+        start, end = self.pair.path_of_contact
+        radius = self.pair.relative_curvature_radius(np.clip(ξ, start, end))
+        b, p0 = line_half_width(self.q, radius, self.modulus), line_peak_pressure(self.q, radius, self.modulus)
+        return np.where((ξ >= start) & (ξ <= end), line_pressure(s / b, 1.0, 1.0) * p0, 0.0)
+
+    def half_width(self, ξ: Floats) -> Floats:
+        """b [mm]."""
+        return line_half_width(self.q, self.pair.relative_curvature_radius(ξ), self.modulus)
+
+
+def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> ContactPoints:
+    """Three heights a layer of cells, forty points across; exact quadrature of the ellipse's square root."""
+    pair, d = stand.pair, flank.points.shape[1]
+    heights, widths = layer_points(flank)
+    ξ = stand.roll_distance(tooth, heights)
+    keep = (ξ >= pair.path_of_contact[0]) & (ξ <= pair.path_of_contact[1])
+    z, ξ, widths = heights[keep], ξ[keep], widths[keep]
+    turn = (np.arange(40) + 0.5) * np.pi / 40
+    b = line.half_width(ξ)
+    s = (b[:, None] * -np.cos(turn)).ravel()
+    weights = (b[:, None] * np.sin(turn) * np.pi / 40 * widths[:, None]).ravel() / np.cos(pair.pinion.base_helix_angle)
+    z, ξ = np.repeat(z, 40), np.repeat(ξ, 40)
+    traction, rate = np.zeros((len(z), d)), np.zeros((len(z), d))
+    traction[:, 0] = line.at(s, ξ)
+    traction[:, 1] = friction * traction[:, 0] * np.sign(ξ)
+    rate[:, 1] = (1.0 + 1.0 / pair.ratio) * ξ
+    start, end = pair.path_of_contact
+    edge = (ξ < start + LAST_ROW) | (ξ > end - LAST_ROW)
+    slides = np.zeros(len(z), dtype=bool)
+    return ContactPoints(np.full(len(z), tooth), z, ξ, s, -s, weights, traction, rate, rate[:, 1], slides, edge)
+
+
+def layer_points(flank: Surface) -> tuple[Floats, Floats]:
+    """Three Gauss points in every layer of cells along z, and their weights [mm; a sum of 1 in 2D]."""
+    if flank.points.shape[1] == 2:
+        return np.zeros(1), np.ones(1)
+    edges = np.unique(np.round(flank.points[:, 2], 9))[:: flank.order]
+    x, w = np.polynomial.legendre.leggauss(3)
+    half, middle = 0.5 * np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+    return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
+
+
+def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Floats, Floats, Floats]:
+    """(tooth, node, traction) at the nodes near a tooth's contact line."""
+    pair, d = stand.pair, flank.points.shape[1]
+    z = flank.points[:, 2] if d == 3 else np.zeros(len(flank.points))
+    ρ = np.sqrt(np.maximum(np.sum(flank.points[:, :2] ** 2, axis=1) - pair.pinion.base_radius**2, 0.0))
+    ξ = stand.roll_distance(tooth, z)
+    s = (ρ**2 - (pair.pitch_point_roll_lengths[0] + ξ) ** 2) / (2.0 * pair.pinion.base_radius)
+    near = np.flatnonzero(np.abs(s) < WINDOW)
+    traction = np.zeros((len(near), d))
+    traction[:, 0] = line.at(s[near], ξ[near])
+    traction[:, 1] = friction * traction[:, 0] * np.sign(ξ[near])
+    return np.full(len(near), tooth), near, traction

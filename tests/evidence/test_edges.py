@@ -10,7 +10,7 @@ import pytest
 from evidence.mutations import Mutation, mutations, seen
 from tests.support.checkout import ROOT
 
-NAMED = re.findall(r"`(test_\w+)::(\w+)`", (ROOT / "docs/edges.md").read_text(encoding="utf-8"))
+NAMED = re.findall(r"`([\w/]*test_\w+)::(\w+)`", (ROOT / "docs/edges.md").read_text(encoding="utf-8"))
 
 
 def test_named_tests_exist() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import solver
+import evolvent
 from evolvent.cli import main
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
@@ -183,8 +183,8 @@ def test_bad_scene_under_mpirun(scene: Path) -> None:
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
-    """--version: status 0 and the version of pyproject.toml, which is `solver.__version__` too."""
+    """--version: status 0 and the version of pyproject.toml, which is `evolvent.__version__` too."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"evolvent {solver.__version__}\n"
-    assert solver.__version__ == pyproject["project"]["version"]
+    assert capsys.readouterr().out == f"evolvent {evolvent.__version__}\n"
+    assert evolvent.__version__ == pyproject["project"]["version"]

@@ -22,9 +22,9 @@ FORM = """
 import numpy as np, ufl
 from evolvent.fem.backend import dolfinx_compat
 points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-mesh = compat.create_mesh(points, np.array([[0, 1, 2]]), "triangle", 1)
-space = compat.vector_space(mesh, 1)
-volume = compat.assemble_number(1.0 * ufl.dx(domain=mesh))
+mesh = dolfinx_compat.create_mesh(points, np.array([[0, 1, 2]]), "triangle", 1)
+space = dolfinx_compat.vector_space(mesh, 1)
+volume = dolfinx_compat.assemble_number(1.0 * ufl.dx(domain=mesh))
 assert abs(volume - 0.5) < 1e-14
 """
 

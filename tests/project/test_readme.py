@@ -19,7 +19,7 @@ from evolvent import __version__
 def test_mpirun_as_it_is_typed(tmp_path: Path) -> None:
     """The block with the exports, each `evolvent run ...` in it replaced by `evolvent --version`."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    block = next(part for part in re.findall(r"(?:^ {4}.*\n)+", text, re.MULTILINE) if "    mpirun" in part)
+    block = next(part for part in re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE) if "mpirun" in part)
     lines = [re.sub(r"evolvent run .*", "evolvent --version", line.strip()) for line in block.splitlines()]
     assert sum(line.startswith("mpirun") for line in lines) == 2 and "evolvent run" not in " ".join(lines)
     paths = [str(Path(sys.executable).parent), "/usr/local/bin", "/usr/bin", "/bin"]

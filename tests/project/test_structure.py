@@ -48,15 +48,18 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "scene.meshing", "gears.ring",
     ),
     "gears.contact": (
-        "meshes", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton", "gears.ring", "gears",
+        "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
+        "gears.ring", "gears",
     ),
-    "gears.sweep": ("meshes", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact"),
+    "gears.sweep": (
+        "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
+    ),
     "results.archive": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
     ),
     "results": ("meshes", "meshes.gears", "fem", "scene", "scene.checking", "gears", "gears.sweep", "results.archive"),
     "results.error_bars": ("meshes", "results.archive", "results"),
-    "results.tables": ("scene", "scene.checking", "results.archive", "results", "results.error_bars"),
+    "results.tables": ("meshes.gears", "scene", "scene.checking", "results.archive", "results", "results.error_bars"),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "scene.schema", "gears.ring", "gears", "gears.sweep",
         "results.archive", "results",

@@ -1,10 +1,10 @@
-"""The mesh follows the worn surface: where its nodes go, and where the interior goes (ALE: the material stays).
+"""Mesh motion (ALE): the nodes of a worn surface move inwards, and the interior nodes follow.
 
-A worn node goes by −h d, d·n = 1, within the free faces that it also belongs to: a worn edge stays on its end face and
-on its tip cylinder. Inner nodes of second-order facets go by a little more or less, so that every facet loses the
-volume that its nodes' hats give it. The interior follows by a linear equation with these nodes prescribed and the held
-groups at rest, every cell as stiff as it is small, so that large ones take most of the motion. What goes on smoothly
-from a worn surface stays; faces beyond an edge slide in themselves.
+A worn node moves by −h d, d·n = 1, with d tangential to the adjacent free faces: a worn edge stays on its end face and
+on its tip cylinder. Inner nodes of second-order facets move slightly more or less, so that every facet loses the volume
+that its nodes' hat functions give it. The interior displacement solves a linear equation with these nodes prescribed
+and the held groups at rest. Cells are the stiffer the smaller they are, so that large cells take most of the motion.
+Facets that continue a worn surface smoothly stay at rest; faces beyond an edge slide tangentially.
 """
 
 from __future__ import annotations
@@ -29,53 +29,62 @@ from evolvent_meshes.mesh.quality import check_quality
 from evolvent_meshes.mesh.reference_cells import corner_count
 from evolvent_meshes.mesh.structured_grid import boundary_facets
 
-Follow = Literal["elastic", "harmonic"]
-SMOOTH = 0.87  # faces whose normals' cosine is above this (30°) are one smooth surface, and no edge
-WALL = 1e6  # stiffness against leaving a free face, over the largest of the equation
+InteriorMotion = Literal["elastic", "harmonic"]
+"""Equation for the displacement of the interior."""
+SMOOTH = 0.87  # cosine (30°) between the normals of neighbouring facets above which they are one smooth surface
+NORMAL_PENALTY = 1e6  # on displacements normal to a free face, over the largest diagonal entry of the equation
 POISSON = 0.3  # of the elastic equation
-MESH_VOLUME = 1e-2
-"""How far what a moved mesh has lost may be from Σ m h. On a curved surface the two differ by half the depth over the
-radius; 6e-4 was found on worn spheres and cylinders."""
+MESH_VOLUME_TOLERANCE = 1e-2
+"""Largest relative difference between the volume that a mesh has lost and Σ m h. On a curved surface the two differ by
+half the depth over the radius; on worn spheres and cylinders by 6e-4."""
 
 
 class MeshInverted(MeshError):
-    """The moved mesh has a cell that is turned over, or nearly so."""
+    """The moved mesh has an inverted cell, or one of a scaled Jacobian below the limit."""
 
 
 class MeshVolumeLost(MeshError):
-    """The moved mesh has not lost the volume that the contact took away."""
+    """The moved mesh has not lost the volume that the contact has worn off."""
 
 
 @dataclass(frozen=True)
 class WornSurface:
-    """A surface that loses depth (n,) [mm] at its nodes."""
+    """A surface and its worn depth.
+
+    surface: the surface, n nodes.
+    depth: (n,) at its nodes [mm].
+    """
 
     surface: Surface
     depth: Floats
 
 
 def worn_mesh(
-    mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], follow: Follow = "elastic",
+    mesh: MeshData, worn: Collection[WornSurface], held: Collection[str], interior: InteriorMotion = "elastic",
     least_quality: float = 0.05,
 ) -> MeshData:  # fmt: skip
-    """The mesh with its worn surfaces moved in and the interior following. held: facet groups that stay where they are.
+    """The mesh with its worn surfaces moved inwards by their depths, and the interior following.
 
-    Raises MeshInverted where a scaled Jacobian falls below `least_quality`, and InputError where nothing is held.
+    held: facet groups that stay at rest.
+    interior: equation for the interior.
+    least_quality: smallest scaled Jacobian allowed.
+
+    Raises MeshInverted where a scaled Jacobian is below `least_quality`, and InputError where nothing is held.
     """
     moved = np.concatenate([w.surface.nodes for w in worn])
     depths = [w.surface.with_volume_of_hats(w.depth) for w in worn]
-    goal = np.concatenate([-h[:, None] * directions(mesh, w.surface) for h, w in zip(depths, worn)])
+    prescribed = np.concatenate([-h[:, None] * motion_directions(mesh, w.surface) for h, w in zip(depths, worn)])
     if not len(held):
         raise InputError("mesh motion: wanted a facet group that stays at rest, found none; name a support")
-    resting = [mesh.facets[name].ravel() for name in held]
-    still = np.unique(np.concatenate([*resting, *(_continuation(mesh, w.surface) for w in worn)]))
-    shift = np.zeros((len(mesh.points), mesh.dimension))
-    if np.any(goal):
-        walls = _walls(mesh, moved)
-        shift = _followed(mesh, moved, goal, np.setdiff1d(still, moved), follow, walls)
-        shift -= (walls @ shift.ravel()).reshape(shift.shape)
+    groups = [mesh.facets[name].ravel() for name in held]
+    at_rest = np.unique(np.concatenate([*groups, *(_smooth_continuation(mesh, w.surface) for w in worn)]))
+    u = np.zeros((len(mesh.points), mesh.dimension))
+    if np.any(prescribed):
+        normal = _normal_projector(mesh, moved)
+        u = _interior_displacement(mesh, moved, prescribed, np.setdiff1d(at_rest, moved), interior, normal)
+        u -= (normal @ u.ravel()).reshape(u.shape)
     points = mesh.points.copy()
-    points[:, : mesh.dimension] += shift
+    points[:, : mesh.dimension] += u
     result = replace(mesh, points=points)
     try:
         check_quality(result, least_quality)
@@ -84,11 +93,11 @@ def worn_mesh(
     return result
 
 
-def directions(mesh: MeshData, surface: Surface) -> Floats:
-    """(n, d) where a worn node goes for a depth of one, outwards: d·n = 1, and within adjacent free faces."""
-    own = {tuple(row) for row in np.sort(surface.nodes[surface.facets], axis=1).tolist()}
+def motion_directions(mesh: MeshData, surface: Surface) -> Floats:
+    """Outward directions d (n, d) of the surface's nodes: d·n = 1, and tangential to the adjacent free faces."""
+    worn = {tuple(row) for row in np.sort(surface.nodes[surface.facets], axis=1).tolist()}
     outer = boundary_facets(mesh.shape, mesh.order, mesh.cells)
-    others = [row for row in outer.tolist() if tuple(sorted(row)) not in own]
+    others = [row for row in outer.tolist() if tuple(sorted(row)) not in worn]
     result = surface.normals.copy()
     for node, normals in _normals_at(mesh, np.asarray(others), surface.nodes).items():
         n = surface.normals[node]
@@ -97,8 +106,8 @@ def directions(mesh: MeshData, surface: Surface) -> Floats:
     return result
 
 
-def _continuation(mesh: MeshData, surface: Surface) -> Ints:
-    """Nodes of the outer facets that go on from a surface without an edge, its own not among them."""
+def _smooth_continuation(mesh: MeshData, surface: Surface) -> Ints:
+    """Nodes of the boundary facets that continue a surface without an edge, without the surface's own nodes."""
     outer = boundary_facets(mesh.shape, mesh.order, mesh.cells)
     corners = outer[:, : corner_count(FACET_SHAPE[mesh.shape])]
     rows = np.repeat(np.arange(len(outer)), corners.shape[1])
@@ -109,28 +118,28 @@ def _continuation(mesh: MeshData, surface: Surface) -> Ints:
     smooth = np.abs(np.einsum("fa,fa->f", unit[one], unit[other])) > SMOOTH
     links = sp.csr_matrix((np.ones(smooth.sum()), (one[smooth], other[smooth])), (len(outer), len(outer)))
     part = connected_components(links, directed=False)[1]
-    own = np.isin(corners, surface.nodes).all(axis=1)
-    found = np.isin(part, part[own]) & ~own
-    return np.setdiff1d(outer[found].ravel(), surface.nodes)
+    worn = np.isin(corners, surface.nodes).all(axis=1)
+    continuing = np.isin(part, part[worn]) & ~worn
+    return np.setdiff1d(outer[continuing].ravel(), surface.nodes)
 
 
 def _normals_at(mesh: MeshData, facets: Ints, nodes: Ints) -> dict[int, Floats]:
-    """Position in `nodes` -> unit normals (m, d) at the centres of the given facets that have this node."""
+    """Index in `nodes` -> unit normals (m, d) at the centres of the facets that have this node."""
     if not len(facets):
         return {}
     place = np.full(len(mesh.points), -1)
     place[nodes] = np.arange(len(nodes))
     near = facets[(place[facets] >= 0).any(axis=1)]
     unit = _unit_normals(mesh, near)
-    found: dict[int, list[Floats]] = {}
+    by_node: dict[int, list[Floats]] = {}
     for row, normal in zip(near, unit):
         for at in place[row][place[row] >= 0]:
-            found.setdefault(int(at), []).append(normal)
-    return {at: np.array(normals) for at, normals in found.items()}
+            by_node.setdefault(int(at), []).append(normal)
+    return {at: np.array(normals) for at, normals in by_node.items()}
 
 
 def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
-    """(f, d) at the facets' centres, to either side."""
+    """Unit normals (f, d) at the centres of the facets, of either sign."""
     shape = FACET_SHAPE[mesh.shape]
     ordered = facets[:, gmsh_permutation(shape, mesh.order)]
     points = mesh.points[:, : mesh.dimension]
@@ -140,24 +149,27 @@ def _unit_normals(mesh: MeshData, facets: Ints) -> Floats:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
-def _followed(
-    mesh: MeshData, moved: Ints, goal: Floats, still: Ints, follow: Follow, walls: sp.csr_matrix
+def _interior_displacement(
+    mesh: MeshData, moved: Ints, prescribed: Floats, at_rest: Ints, interior: InteriorMotion, normal: sp.csr_matrix
 ) -> Floats:
-    """(N, d) displacement of all nodes, prescribed at `moved`, zero at `still`, almost none against the walls."""
-    shift = np.zeros((len(mesh.points), mesh.dimension))
-    shift[moved] = goal
-    given = np.zeros(shift.shape, dtype=bool)
-    given[moved] = given[still] = True
+    """Displacement (N, d) of all nodes: prescribed at `moved`, zero at `at_rest`, tangential at other free faces.
+
+    normal: (N d, N d) projector onto the normals of free faces, see `_normal_projector`.
+    """
+    u = np.zeros((len(mesh.points), mesh.dimension))
+    u[moved] = prescribed
+    given = np.zeros(u.shape, dtype=bool)
+    given[moved] = given[at_rest] = True
     free = np.flatnonzero(~given.ravel())
-    K = _stiffness(mesh, follow)
-    K = (K + WALL * K.diagonal().max() * walls).tocsr()
-    right = -(K @ shift.ravel())[free]
-    shift.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
-    return shift
+    K = _stiffness(mesh, interior)
+    K = (K + NORMAL_PENALTY * K.diagonal().max() * normal).tocsr()
+    right = -(K @ u.ravel())[free]
+    u.ravel()[free] = Factor(K[free][:, free].tocsr()).solve(right)
+    return u
 
 
-def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
-    """The equation's matrix, by the mesh's nodes."""
+def _stiffness(mesh: MeshData, interior: InteriorMotion) -> sp.csr_matrix:
+    """Matrix (N d, N d) of the equation for the interior, in the order of the mesh's nodes."""
     domain = dolfinx_compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
     space = dolfinx_compat.vector_space(domain, mesh.order)
     blocks = dolfinx_compat.node_dofs(space, domain, len(mesh.points))
@@ -165,7 +177,7 @@ def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     stiff = 1.0 / abs(ufl.JacobianDeterminant(domain))
     dx = ufl.Measure("dx", domain=domain, metadata={"quadrature_degree": 2 * mesh.order})
-    if follow == "harmonic":
+    if interior == "harmonic":
         form = stiff * ufl.inner(ufl.grad(u), ufl.grad(v)) * dx
     else:
         ε, λ = ufl.sym(ufl.grad(u)), 2.0 * POISSON / (1.0 - 2.0 * POISSON)
@@ -174,8 +186,8 @@ def _stiffness(mesh: MeshData, follow: Follow) -> sp.csr_matrix:
     return dolfinx_compat.assemble_csr(form)[order][:, order].tocsr()
 
 
-def _walls(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
-    """(N d, N d) the part of a displacement that leaves the faces of the boundary nodes that are not moved."""
+def _normal_projector(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
+    """Projector (N d, N d) of displacements onto the normals of the boundary at its nodes that are not moved."""
     facets = boundary_facets(mesh.shape, mesh.order, mesh.cells)
     nodes = np.setdiff1d(np.unique(facets), moved)
     blocks = np.zeros((len(mesh.points), mesh.dimension, mesh.dimension))
@@ -185,18 +197,21 @@ def _walls(mesh: MeshData, moved: Ints) -> sp.csr_matrix:
     return sp.bsr_matrix((blocks, every, np.append(every, len(every)))).tocsr()
 
 
-def certify_loss(before: MeshData, after: MeshData, wanted: float) -> None:
-    """wanted: Σ m h [mm³; mm² in 2D] of what a moved mesh was to lose. Raises MeshVolumeLost."""
+def certify_mesh_volume(before: MeshData, after: MeshData, worn_off: float) -> None:
+    """Compares the volume that a mesh has lost with the worn volume Σ m h [mm³; mm² in 2D].
+
+    Raises MeshVolumeLost where they differ by more than MESH_VOLUME_TOLERANCE.
+    """
     lost = mesh_volume(before) - mesh_volume(after)
-    if not abs(lost - wanted) <= MESH_VOLUME * abs(wanted):
+    if not abs(lost - worn_off) <= MESH_VOLUME_TOLERANCE * abs(worn_off):
         raise MeshVolumeLost(
-            f"mesh motion: wanted meshes that lose {wanted:.6g}, found {lost:.6g}; put all facets that may touch "
+            f"mesh motion: wanted meshes that lose {worn_off:.6g}, found {lost:.6g}; put all facets that may touch "
             "into the worn surface, refine it, or let the mesh follow more often"
         )
 
 
 def smallest_edge(mesh: MeshData, nodes: Ints) -> float:
-    """Least distance [mm] between two corners of a cell that has one of these nodes."""
+    """Shortest distance [mm] between two corners of a cell that has one of these nodes."""
     near = mesh.cells[np.isin(mesh.cells, nodes).any(axis=1)][:, : corner_count(mesh.shape)]
     corners = mesh.points[near]
     lengths = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1)
@@ -204,7 +219,7 @@ def smallest_edge(mesh: MeshData, nodes: Ints) -> float:
 
 
 def mesh_volume(mesh: MeshData) -> float:
-    """Of all cells [mm³; mm² in 2D]."""
+    """Volume of all cells [mm³; mm² in 2D]."""
     domain = dolfinx_compat.create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
     dx = ufl.Measure("dx", domain=domain, metadata={"quadrature_degree": 2 * mesh.order + 2})
     return dolfinx_compat.assemble_number(dolfinx_compat.constant(domain, 1.0) * dx)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,14 +75,21 @@ class Position:
 
     where: where the surfaces of each contact are searched; by default as the bodies are placed, moved by what is
     prescribed if that is far.
+    as_placed: search as the bodies are placed even if the prescribed motions are far.
+
+    No solution is stored: one system can be solved any number of times.
 
     Raises InputError for a step of another problem, SearchError.
     """
 
-    def __init__(self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step, where: Where = None) -> None:
+    def __init__(
+        self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step, where: Where = None,
+        as_placed: bool = False,
+    ) -> None:  # fmt: skip
         self.problem, self.prepared, self.step = problem, prepared, step
         self.d = prepared[0].assembled.d
         check_step(problem, step)
+        self.as_placed = as_placed
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
         self.sides = [carrying(problem.bodies, contact) for contact in problem.contacts]
         self.reaches = [reach_of(contact, self._surface(contact.first)) for contact in problem.contacts]
@@ -111,7 +119,8 @@ class Position:
         """Where the prescribed motions take the surfaces, if that is further than MOVED."""
         first, second = (self._held(side) for side in sides)
         far = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
-        return (placed[0].points + first, placed[1].points + second) if max(far) > MOVED else None
+        moved = max(far) > MOVED and not self.as_placed
+        return (placed[0].points + first, placed[1].points + second) if moved else None
 
     def _held(self, side: Side) -> Floats:
         """Displacements (n, d) of a surface by the prescribed motions alone."""
@@ -141,17 +150,16 @@ class Position:
             [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
         )
 
-    def as_seen(self, contact: int) -> ContactOperator:
-        """A contact's operator as the contact law sees it."""
-        return self.operators[contact]
-
     def load_jump(self) -> Floats:
         """Local jumps (Σn·d,) that the external loads alone would make."""
         return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.prepared))
 
-    def system(self) -> CondensedSystem:
-        """Compliance, motions and loads of all bodies in local jumps."""
-        operator = stacked([self.as_seen(i) for i in range(len(self.operators))])
+    def system(self, operators: Sequence[ContactOperator] | None = None) -> CondensedSystem:
+        """Compliance, motions and loads of all bodies in local jumps.
+
+        operators: one a contact, instead of `self.operators`, with other gaps or stabilisers on the same pairs.
+        """
+        operator = stacked(self.operators if operators is None else list(operators))
         n = len(operator.nodes) * self.d
         A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
         for E, body, motions in zip(self.maps, self.prepared, self.motions):
@@ -165,9 +173,11 @@ class Position:
         lever = np.abs(motion).max(axis=0, initial=0.0)
         return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
 
-    def solve(self, before: History | None) -> tuple[Solution, History]:
-        """Equilibrium, with the slip since `before`."""
-        system = self.system()
+    def solve(
+        self, before: History | None, operators: Sequence[ContactOperator] | None = None
+    ) -> tuple[Solution, History]:
+        """Equilibrium, with the slip since `before`. operators: see `system`."""
+        system = self.system(operators)
         μ, slip = self.friction, self.slip(before)
         found = self._with_friction(system, μ, slip) if μ.any() else frictionless(normal_part(system))
         return self._solution(system, found, slip), self._history(found)

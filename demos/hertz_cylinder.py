@@ -25,12 +25,24 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 from mpi4py import MPI
 
-from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, solve, sweep
+from evolvent import (
+    Body,
+    Contact,
+    ContactResult,
+    Fixed,
+    Freedom,
+    Material,
+    Problem,
+    Rigid,
+    Solution,
+    Step,
+    cell_stress,
+    hertz,
+    solve,
+    sweep,
+    von_mises,
+)
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
-from evolvent.fem.stress import cell_stress, von_mises
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 
@@ -75,11 +87,7 @@ class Profile:
 
 
 def cylinder_on_block(
-    cells: float,
-    order: int = 2,
-    ratio: float = 1.0,
-    first: str = "block",
-    friction: float = 0.0,
+    cells: float, order: int = 2, ratio: float = 1.0, first: str = "block", friction: float = 0.0,
     shape: str = "quadrilateral",
 ) -> Problem:
     """The benchmark with cells of half-width/`cells` on the cylinder and `ratio` times finer ones on the block.

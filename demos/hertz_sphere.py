@@ -25,14 +25,25 @@ import typer
 from matplotlib.axes import Axes
 from mpi4py import MPI
 
-from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, ContactResult, Nitsche, Problem, Solution, solve
+from evolvent import (
+    STEEL,
+    Body,
+    Contact,
+    ContactResult,
+    Fixed,
+    Freedom,
+    MeshData,
+    Nitsche,
+    Problem,
+    Rigid,
+    Solution,
+    cell_stress,
+    hertz,
+    solve,
+    von_mises,
+)
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import STEEL
-from evolvent.fem.stress import cell_stress, von_mises
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import graded_box, sphere_quarter
 from evolvent_meshes.shapes.rings import ring_block, ring_sphere
 from evolvent_meshes.shapes.variants import with_part

@@ -24,17 +24,14 @@ from matplotlib.axes import Axes
 from matplotlib.tri import TriContourSet
 from mpi4py import MPI
 
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Step
+from evolvent import STEEL, Body, Contact, Fixed, Freedom, MeshData, Placement, Problem, Rigid, Step
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import STEEL
 from evolvent.gears.kinematics import turn
 from evolvent.results.drawing.style import PRESSURE_MAP, save, sheet, styled
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.body_study import CycleState, WearStudy
 from evolvent.wear.cycle import Cycle, Travel
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.rings import ring_block
 from evolvent_meshes.shapes.variants import doubled, with_part
 

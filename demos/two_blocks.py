@@ -19,12 +19,9 @@ import typer
 from matplotlib.axes import Axes
 from mpi4py import MPI
 
-from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent import Body, Contact, Fixed, Material, MeshData, Problem, Solution, Traction, solve
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.body import Body, Fixed, Traction
-from evolvent.fem.material import Material
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 
 PRESSURE, SHEAR, FRICTION = 100.0, 20.0, 0.3

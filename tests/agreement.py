@@ -25,7 +25,7 @@ import numpy as np
 from demos.hertz_cylinder import Slip, cylinder_on_block
 from demos.hertz_sphere import ball_on_block
 from demos.two_blocks import variants
-from evolvent.contact.solution.solver import Solution, solve
+from evolvent import Solution, solve
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
 from evolvent.run.scene_run import run_scene

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task, Turn
+from evolvent import Contact, ContactResult, Problem, Step
 from evolvent.contact.problem.condensed_body import prepare
-from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Step
 from evolvent.contact.step.step_system import Position
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid

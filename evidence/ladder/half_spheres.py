@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.axisymmetric import pressed_on_plane, sphere_section
+from evolvent import Contact, ContactResult, Placement, Position, Problem, Step, solve
 from evolvent.contact.problem.condensed_body import prepare
-from evolvent.contact.solution.solver import Contact, ContactResult, Placement, Position, Problem, Step, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, joint_modulus
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL

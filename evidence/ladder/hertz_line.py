@@ -10,8 +10,8 @@ from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.below import AxisStress, SubsurfaceHertz, axis_compression, axis_stress, subsurface_claims
 from evidence.ladder.figures import HertzFigure
+from evolvent import Contact, Problem, Solution, solve
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL
 from evolvent_meshes.mesh.mesh_data import MeshData

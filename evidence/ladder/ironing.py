@@ -11,7 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
+from evolvent import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, Material
 from evolvent.fem.stress import cell_stress, von_mises

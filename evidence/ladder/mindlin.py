@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
+from evolvent import Contact, ContactResult, Problem, Solution, Step, sweep
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, note

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import BLOCK, HALF_WIDTH, LOAD, PEAK, RADIUS, Profile, cylinder_on_block
 from evidence.claims import Claim, Reference, Rung
+from evolvent import solve
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import solve
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
 
 FRICTION = 0.1

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from evidence.claims import Claim, Reference, Rung
-from evolvent.contact.solution.solver import Contact, ContactResult, Problem, Solution, Step, sweep
+from evolvent import Contact, ContactResult, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Traction
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.material import STEEL

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from demos.two_blocks import FRICTION, NAMES, PRESSURE, SHEAR, Patch, variants
 from evidence.claims import Claim, Reference, Rung
-from evolvent.contact.solution.solver import solve
+from evolvent import solve
 from evolvent.results.drawing.style import PINION, TEETH, WHEEL
 
 BOUND = 1e-9  # of the pressure; the equilibrium's residual may be 1e-10 of the load

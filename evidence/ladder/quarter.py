@@ -11,7 +11,7 @@ from evidence.claims import Claim, Reference
 from evidence.ladder.below import AxisStress, SubsurfaceHertz, axis_compression, axis_stress, subsurface_claims
 from evidence.ladder.figures import HertzFigure
 from evidence.ladder.half_space import Ellipse
-from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent import Contact, Problem, Solution, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshData

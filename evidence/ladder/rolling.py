@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
+from evolvent import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL
 from evolvent.gears.kinematics import turn

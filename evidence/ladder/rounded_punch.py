@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Step, solve
+from evolvent import Contact, Placement, Problem, Step, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, Material, joint_modulus
 from evolvent.results.drawing.style import FAINT, WHEEL, dot_size

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from demos.hertz_cylinder import Profile, Slip
 from evidence.claims import Claim, Reference, Rung
+from evolvent import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.material import STEEL

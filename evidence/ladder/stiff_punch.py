@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
-from evolvent.contact.solution.solver import Contact, Problem, Solution, solve
+from evolvent import Contact, Problem, Solution, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.results.drawing.style import FAINT, TEETH, WHEEL

@@ -12,8 +12,8 @@ import numpy as np
 
 from evidence.benchmark.cases import ball_and_block
 from evidence.stress.sheets import Cell, Sheet, sheet_of
+from evolvent import Contact, Nitsche, Placement, Problem, Step, solve
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, Nitsche, Placement, Problem, Step, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 

@@ -18,8 +18,8 @@ from evidence.stress.ball import ball
 from evidence.stress.distortion import distorted
 from evidence.stress.gear_steps import spur_pair_at_steps
 from evidence.stress.sheets import Cell, Sheet, sheet_of
+from evolvent import Contact, Nitsche, Placement, Problem, Step, solve
 from evolvent.contact import hertz
-from evolvent.contact.solution.solver import Contact, Nitsche, Placement, Problem, Step, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent_meshes.mesh.mesh_data import MeshData

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evidence.stress.random_scenes import Draw, Table, random_scene
+from evolvent import Contact, Placement, Problem, Step
 from evolvent.contact.hertz import contact_modulus
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Step
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.scene.flank_deviations import DEEPEST

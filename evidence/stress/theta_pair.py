@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from evidence.stress.gear_steps import spur_scene
-from evolvent.contact.solution.solver import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
+from evolvent import Contact, ContactResult, Nitsche, Placement, Problem, Solution, Step, sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.gears.condensed_gear import matching_cuts
 from evolvent.gears.contact.tooth_contact import GAP

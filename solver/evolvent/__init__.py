@@ -1,6 +1,58 @@
-"""Evolvent's solver: frictional contact of elastic bodies, and of gear pairs, with dolfinx and PETSc."""
+"""Evolvent's solver: frictional contact of elastic bodies, and of gear pairs, with dolfinx and PETSc.
+
+The names below are the Python API of contact problems, described in docs/own_problem.md; `evolvent.gears` and
+`evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
+"""
 
 from importlib import metadata
+from typing import TYPE_CHECKING
+
+from evolvent_meshes.lazy_names import lazy_names
+
+if TYPE_CHECKING:
+    from evolvent.contact import hertz as hertz
+    from evolvent.contact.newton.snes import NotConverged as NotConverged
+    from evolvent.contact.problem.condensed_body import PreparedBody as PreparedBody
+    from evolvent.contact.problem.condensed_body import prepare as prepare
+    from evolvent.contact.problem.definition import Contact as Contact
+    from evolvent.contact.problem.definition import Nitsche as Nitsche
+    from evolvent.contact.problem.definition import Placement as Placement
+    from evolvent.contact.problem.definition import Problem as Problem
+    from evolvent.contact.problem.definition import Side as Side
+    from evolvent.contact.problem.definition import Step as Step
+    from evolvent.contact.problem.poisson_limit import NearlyIncompressibleWarning as NearlyIncompressibleWarning
+    from evolvent.contact.search.pairing import SearchError as SearchError
+    from evolvent.contact.solution.paraview import write_paraview as write_paraview
+    from evolvent.contact.solution.reactions import Reaction as Reaction
+    from evolvent.contact.solution.reactions import reactions as reactions
+    from evolvent.contact.solution.solver import Sweep as Sweep
+    from evolvent.contact.solution.solver import solve as solve
+    from evolvent.contact.solution.solver import sweep as sweep
+    from evolvent.contact.step.contact_result import ContactResult as ContactResult
+    from evolvent.contact.step.contact_width import CoarseContactWarning as CoarseContactWarning
+    from evolvent.contact.step.displaced_search import Unsettled as Unsettled
+    from evolvent.contact.step.peak_scatter import ScatteredPressureWarning as ScatteredPressureWarning
+    from evolvent.contact.step.small_strain import TooLarge as TooLarge
+    from evolvent.contact.step.step_system import Position as Position
+    from evolvent.contact.step.step_system import Solution as Solution
+    from evolvent.fem.body import Body as Body
+    from evolvent.fem.body import BodyForce as BodyForce
+    from evolvent.fem.body import Fixed as Fixed
+    from evolvent.fem.body import Freedom as Freedom
+    from evolvent.fem.body import Rigid as Rigid
+    from evolvent.fem.body import Traction as Traction
+    from evolvent.fem.material import STEEL as STEEL
+    from evolvent.fem.material import Material as Material
+    from evolvent.fem.stress import cell_stress as cell_stress
+    from evolvent.fem.stress import von_mises as von_mises
+    from evolvent_meshes.errors import EvolventError as EvolventError
+    from evolvent_meshes.errors import InputError as InputError
+    from evolvent_meshes.errors import ResultError as ResultError
+    from evolvent_meshes.mesh.gmsh_io import read_msh as read_msh
+    from evolvent_meshes.mesh.mesh_data import MeshData as MeshData
+    from evolvent_meshes.mesh.mesh_data import MeshError as MeshError
+else:
+    __all__, __getattr__, __dir__ = lazy_names(__name__)
 
 try:
     __version__ = metadata.version("evolvent")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from demos.two_blocks import Patch
-from evolvent.contact.solution.solver import Step, solve
+from evolvent import Step, solve
 from evolvent.results.archive.archive import arrays_bytes, read_arrays
 from evolvent_meshes.files import write_bytes
 from tests.agreement import TOLERANCE, differences, keep, main

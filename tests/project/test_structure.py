@@ -34,8 +34,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
     ),
     "contact.solution": (
-        "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
-        "contact.step",
+        "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
     ),
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "contact", "scene.schema"),

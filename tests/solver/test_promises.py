@@ -15,11 +15,11 @@ import pytest
 from demos.two_blocks import Patch
 from evidence.stress.matrix import Cylinder, patch_cell
 from evidence.stress.sheets import Cell, attempt
+from evolvent import Problem, TooLarge, solve
 from evolvent.contact.newton import equilibrium, snes
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.coulomb import Law, coulomb
 from evolvent.contact.problem import step_pairing
-from evolvent.contact.solution.solver import Problem, TooLarge, solve
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import pitch_sweep, position
 from evolvent.gears.sweep.position import PositionResult, shared_position

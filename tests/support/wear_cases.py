@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from evolvent.contact.solution.solver import Contact, Problem
+from evolvent import Contact, Problem
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, trapezoid
 
-from evolvent.contact import hertz
+from evolvent import hertz
 
 STEEL = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
 

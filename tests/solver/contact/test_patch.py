@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 from demos.two_blocks import FRICTION, PRESSURE, SHEAR, Patch
-from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Step, solve
-from evolvent.fem.body import Body, Fixed, Traction
+from evolvent import Body, Contact, Fixed, NotConverged, Placement, Problem, Step, Traction, solve
 
 SHAPES = ("quadrilateral", "triangle", "hexahedron", "tetrahedron")
 

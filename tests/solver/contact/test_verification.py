@@ -18,9 +18,7 @@ import pytest
 
 from demos import hertz_cylinder as line
 from demos import hertz_sphere as point
-from evolvent.contact import hertz
-from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.solution.solver import Nitsche, solve
+from evolvent import Nitsche, NotConverged, hertz, solve
 
 
 @pytest.mark.parametrize("ratio", [1.0, 0.73, 1.37])

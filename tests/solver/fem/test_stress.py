@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from demos.hertz_cylinder import STEEL, Slip
+from evolvent import Contact, Problem, solve
 from evolvent.contact.hertz import line_largest_mises
-from evolvent.contact.solution.solver import Contact, Problem, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.fem.stress import cell_stress, von_mises

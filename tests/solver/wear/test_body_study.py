@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Step
+from evolvent import Contact, Placement, Problem, Step
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.wear.archard import Archard

@@ -10,7 +10,7 @@ from typing import Any
 import gmsh
 import numpy as np
 
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     Contact,
     EvolventError,

@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.solution.solver import (
-    Body,
-    BodyForce,
-    Fixed,
-    Freedom,
-    Material,
-    MeshError,
-    Rigid,
-    Traction,
-    solve,
-)
+from evolvent import Body, BodyForce, Fixed, Freedom, Material, MeshError, Rigid, Traction, solve
 from tests.support.abuses.blocks import CUBE, INF, NAN, TALL, UPPER, Abuse, group, lower, problem, upper
 
 MATERIALS = (

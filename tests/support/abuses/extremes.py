@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     BodyForce,
     Fixed,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.solution.solver import Body, MeshError, read_msh, solve
+from evolvent import Body, MeshError, read_msh, solve
 from tests.support.abuses.blocks import (
     CUBE,
     CURVED,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     BodyForce,
     Fixed,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     Fixed,
     Freedom,

@@ -15,7 +15,9 @@ from evolvent.contact.newton import snes
 from evolvent.contact.newton.equilibrium import ITERATIONS
 from evolvent.contact.nitsche.contact_operator import LawOf
 from evolvent.contact.nitsche.coulomb import Law, coulomb, starting_guess
-from evolvent.contact.solution.solver import Position, Problem, Step, prepare
+from evolvent.contact.problem.condensed_body import prepare
+from evolvent.contact.problem.definition import Problem, Step
+from evolvent.contact.step.step_system import Position
 from evolvent_meshes.arrays import Floats
 
 

@@ -13,69 +13,15 @@ import logging
 from collections.abc import Iterable, Iterator
 from functools import cached_property, partial
 
-from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.problem.condensed_body import PreparedBody, prepare
-from evolvent.contact.problem.definition import Contact, Nitsche, Placement, Problem, Side, Step, check_step
-from evolvent.contact.problem.poisson_limit import NearlyIncompressibleWarning, warn_if_incompressible
-from evolvent.contact.search.pairing import SearchError
-from evolvent.contact.solution.paraview import write_paraview
-from evolvent.contact.solution.reactions import Reaction, reactions
-from evolvent.contact.step.contact_result import ContactResult
-from evolvent.contact.step.contact_width import CoarseContactWarning, warn_if_coarse
-from evolvent.contact.step.displaced_search import Unsettled, settled
-from evolvent.contact.step.peak_scatter import ScatteredPressureWarning, warn_if_scattered
-from evolvent.contact.step.small_strain import TooLarge
+from evolvent.contact.problem.definition import Problem, Side, Step, check_step
+from evolvent.contact.problem.poisson_limit import warn_if_incompressible
+from evolvent.contact.step.contact_width import warn_if_coarse
+from evolvent.contact.step.displaced_search import settled
+from evolvent.contact.step.peak_scatter import warn_if_scattered
 from evolvent.contact.step.step_system import History, Position, Solution, Where
-from evolvent.fem.body import Body, BodyForce, Fixed, Freedom, Rigid, Traction
-from evolvent.fem.material import STEEL, Material
-from evolvent.fem.stress import cell_stress, von_mises
-from evolvent_meshes.errors import EvolventError, InputError, ResultError
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.input_checks import refuse
-from evolvent_meshes.mesh.gmsh_io import read_msh
-from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
-
-__all__ = [
-    "STEEL",
-    "Body",
-    "BodyForce",
-    "CoarseContactWarning",
-    "Contact",
-    "ContactResult",
-    "EvolventError",
-    "Fixed",
-    "Freedom",
-    "InputError",
-    "Material",
-    "MeshData",
-    "MeshError",
-    "NearlyIncompressibleWarning",
-    "Nitsche",
-    "NotConverged",
-    "Placement",
-    "Position",
-    "PreparedBody",
-    "Problem",
-    "Reaction",
-    "ResultError",
-    "Rigid",
-    "ScatteredPressureWarning",
-    "SearchError",
-    "Side",
-    "Solution",
-    "Step",
-    "Sweep",
-    "TooLarge",
-    "Traction",
-    "Unsettled",
-    "cell_stress",
-    "prepare",
-    "reactions",
-    "read_msh",
-    "solve",
-    "sweep",
-    "von_mises",
-    "write_paraview",
-]
 
 LOG = logging.getLogger("evolvent")
 

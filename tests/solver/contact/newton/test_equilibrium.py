@@ -5,6 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent import (
+    Body,
+    Contact,
+    Fixed,
+    Freedom,
+    Material,
+    NotConverged,
+    Position,
+    Problem,
+    Rigid,
+    Step,
+    prepare,
+    solve,
+)
 from evolvent.contact.newton.equilibrium import (
     TOLERANCE,
     Start,
@@ -16,11 +30,7 @@ from evolvent.contact.newton.equilibrium import (
     normal_part,
     stuck,
 )
-from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
-from evolvent.contact.solution.solver import Contact, Position, Problem, Step, prepare, solve
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_box, graded_rectangle, sphere_quarter
 
 FRICTION = 0.2

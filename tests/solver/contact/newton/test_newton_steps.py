@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from evolvent import NotConverged
 from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.newton_steps import NewtonSteps
 from evolvent.contact.newton.reduced_tangent import KeptColumns
-from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
 
 N, K = 60, 3

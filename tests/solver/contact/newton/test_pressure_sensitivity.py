@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evolvent import NotConverged
 from evolvent.contact.newton.equilibrium import frictionless
 from evolvent.contact.newton.pressure_sensitivity import PressureResponse
-from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.sweep.position import shared_position
 from tests.support.gear_cases import model_of, spur_scene
 

@@ -14,16 +14,13 @@ import scipy.sparse as sp
 import ufl
 from dolfinx import fem
 
+from evolvent import Body, Contact, Fixed, Freedom, Material, MeshData, Nitsche, Position, Problem, Rigid, Step, prepare
 from evolvent.contact.nitsche.contact_operator import sandwiched
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction
 from evolvent.contact.solution.full_system import FullContact
-from evolvent.contact.solution.solver import Contact, Nitsche, Position, Problem, Step, prepare
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
 from evolvent.fem.surface import surface_of
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.merged_mesh import Merged
 

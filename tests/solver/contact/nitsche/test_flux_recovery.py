@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent import Body, Fixed, Material, MeshData
 from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_traction
-from evolvent.fem.body import Body, Fixed, assemble
+from evolvent.fem.body import assemble
 from evolvent.fem.condensation.schur_complement import Factor, NotPositiveDefinite
-from evolvent.fem.material import Material
 from evolvent.fem.surface import surface_of
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 
 CASES = [(s, o) for s in ("triangle", "quadrilateral", "tetrahedron", "hexahedron") for o in (1, 2)]

@@ -8,8 +8,8 @@ import warnings
 
 import pytest
 
-from evolvent.contact.problem.poisson_limit import SMALL, NearlyIncompressibleWarning
-from evolvent.contact.solution.solver import Nitsche, Sweep, solve
+from evolvent import NearlyIncompressibleWarning, Nitsche, Sweep, solve
+from evolvent.contact.problem.poisson_limit import SMALL
 from evolvent.contact.step.peak_scatter import LARGE
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import rubber

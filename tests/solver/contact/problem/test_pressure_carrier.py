@@ -6,11 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent import Body, Contact, Fixed, Freedom, Material, MeshData, Problem, Rigid, Solution, Step, solve, sweep
 from evolvent.contact.problem.pressure_carrier import STIFFER
-from evolvent.contact.solution.solver import Contact, Problem, Solution, Step, solve, sweep
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
 
 RATIOS = (1e-8, 1e-4, 1e-2, 1.0, 1e2, 2e4, 5e4, 1e8)  # from 5e4 on Newton's method stalled with the stiff body first

@@ -7,14 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from evolvent.contact.solution.solver import (
-    CoarseContactWarning,
-    NearlyIncompressibleWarning,
-    Step,
-    Sweep,
-    solve,
-    sweep,
-)
+from evolvent import CoarseContactWarning, NearlyIncompressibleWarning, Step, Sweep, solve, sweep
 from tests.support.contact_cases import rubber
 
 COARSE = rubber(4.0, 5.0)

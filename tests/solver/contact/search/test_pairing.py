@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent import SearchError
 from evolvent.contact.search.clipping import clip, fan
-from evolvent.contact.search.pairing import Pairing, SearchError, pair_surfaces
+from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import reference_cell

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from evolvent.contact.solution.solver import EvolventError, InputError
+from evolvent import EvolventError, InputError
 from tests.support.abuses import bodies as api_body_abuses
 from tests.support.abuses import extremes as api_large_abuses
 from tests.support.abuses import meshes as api_mesh_abuses

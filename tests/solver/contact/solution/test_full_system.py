@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evolvent import Freedom, Nitsche, Placement, Position, Step, prepare
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
-from evolvent.contact.solution.solver import Nitsche, Placement, Position, Step, prepare
-from evolvent.fem.body import Freedom
 from tests.solver.contact.newton.test_equilibrium import ball, cylinder
 
 CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) for μ in (0.0, 0.1)]

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from evolvent.contact.solution.paraview import vtu_bytes
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     Contact,
     Fixed,
@@ -22,6 +21,7 @@ from evolvent.contact.solution.solver import (
     von_mises,
     write_paraview,
 )
+from evolvent.contact.solution.paraview import vtu_bytes
 from evolvent_meshes.files import PART, WriteError, write_bytes
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.solver.contact.newton.test_equilibrium import cylinder

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     BodyForce,
     Contact,

@@ -7,13 +7,27 @@ import re
 import numpy as np
 import pytest
 
-from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.search.pairing import SearchError
+from evolvent import (
+    Body,
+    Contact,
+    Fixed,
+    Freedom,
+    Material,
+    NotConverged,
+    Placement,
+    Problem,
+    Rigid,
+    SearchError,
+    Solution,
+    Step,
+    Sweep,
+    Traction,
+    reactions,
+    solve,
+    sweep,
+)
 from evolvent.contact.solution import solver as problem_api
 from evolvent.contact.solution.full_system import full_solution
-from evolvent.contact.solution.solver import Contact, Placement, Problem, Solution, Step, Sweep, reactions, solve, sweep
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid, Traction
-from evolvent.fem.material import Material
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.solver.contact.newton.test_equilibrium import FRICTION, cylinder
 from tests.support.checkout import ROOT

@@ -8,10 +8,9 @@ import warnings
 import numpy as np
 import pytest
 
+from evolvent import Body, CoarseContactWarning, Contact, Fixed, Freedom, Position, Problem, Rigid, Step, prepare, solve
 from evolvent.contact.problem.step_pairing import Meeting
-from evolvent.contact.solution.solver import Contact, Position, Problem, Step, prepare, solve
-from evolvent.contact.step.contact_width import CoarseContactWarning, Width, warn_if_coarse, width_of
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
+from evolvent.contact.step.contact_width import Width, warn_if_coarse, width_of
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import rubber

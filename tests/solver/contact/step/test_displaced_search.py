@@ -8,12 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent.contact.search.pairing import SearchError
-from evolvent.contact.solution.solver import (
+from evolvent import (
+    Body,
     Contact,
     ContactResult,
+    Fixed,
+    Freedom,
+    Material,
+    MeshData,
     Placement,
     Problem,
+    Rigid,
+    SearchError,
     Solution,
     Step,
     TooLarge,
@@ -22,9 +28,6 @@ from evolvent.contact.solution.solver import (
     sweep,
 )
 from evolvent.contact.step import displaced_search
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.structured_grid import boundary_facets, facets_where
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle, rectangle
 

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from demos.hertz_cylinder import PEAK, cylinder_on_block
-from evolvent.contact.problem.step_pairing import Meeting
-from evolvent.contact.solution.solver import (
+from evolvent import (
     Body,
     Contact,
     ContactResult,
@@ -23,6 +22,7 @@ from evolvent.contact.solution.solver import (
     prepare,
     solve,
 )
+from evolvent.contact.problem.step_pairing import Meeting
 from evolvent.contact.step.peak_scatter import LARGE, parabola, peak_scatter
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.checkout import ROOT

@@ -34,6 +34,7 @@ from evolvent.scene.schema.errors import SceneError
 from evolvent.wear.results.mesh_passage import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
 from evolvent.wear.results.passage_figures import UM, pictures
 from evolvent.wear.results.report import WornRun, read_worn
+from evolvent_meshes.gears.member import Member
 
 SCENE = Path(__file__).resolve().with_name("he2022.toml")
 COEFFICIENT = 1.3832e-10  # mm²/N: 2.446 µm per km at 17.684 MPa
@@ -81,16 +82,17 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
     pair, last, wear = study.pairs[0], study.pairs[-1], study.scene.wear
     assert wear is not None
     K, r = wear.pinion_mm2_per_N, point.radius
-    depths, contacts = Depths.of(pair, 0, K), Contacts.of(pair.run, 0)
+    depths, contacts = Depths.of(pair, Member.PINION, K), Contacts.of(pair.run, Member.PINION)
     own, line = (UM * float(np.interp(r, depths.radius, values)) for values in (depths.own, depths.line))
     pitch = pair.run.pair.working_pitch_diameters[0] / 2.0
-    lowest, ridge = UM * float(np.interp(pitch, depths.radius, depths.own)), UM * pitch_point_depth(pair.run, 0, K)
+    lowest = UM * float(np.interp(pitch, depths.radius, depths.own))
+    ridge = UM * pitch_point_depth(pair.run, Member.PINION, K)
     away = np.abs(depths.radius - pitch) > 0.1 * study.scene.pair.normal_module_mm
     product = float(np.median(depths.peak_times_sliding[away] / depths.own[away]))
     at = {name: float(np.interp(r, contacts.radius, getattr(contacts, name)))
           for name in ("peak", "hertz", "sliding", "single_point")}  # fmt: skip
     hertz_lasts = float(np.ptp(point.rotation[point.hertz > 0.0]))
-    volume = pair.run.width * float(chart_grid(last, 0).areas @ last.worn[0].depth.T.ravel())
+    volume = pair.run.width * float(chart_grid(last, Member.PINION).areas @ last.worn[0].depth.T.ravel())
     local = 0.15 if coarse else 0.02  # what a contact's own width and peak are worth
     million, here = "µm a million meshes", f"r = {r:.4g} mm"
     return [
@@ -117,7 +119,8 @@ def check_as_printed(study: WornRun, point: PointPassage) -> None:
     print(f"deepest after each report: {places}")
     first, *later = np.diff(deepest, prepend=0.0)
     print(f"growth of the deepest: {first:.2f} µm, then {', '.join(f'{d:.2f}' for d in later)} µm; printed: it slows")
-    depths, pitch = Depths.of(study.pairs[0], 0, 1.0), study.pairs[0].run.pair.working_pitch_diameters[0] / 2.0
+    depths = Depths.of(study.pairs[0], Member.PINION, 1.0)
+    pitch = study.pairs[0].run.pair.working_pitch_diameters[0] / 2.0
     radius = float(depths.radius[np.argmax(depths.own)])
     share = float(np.interp(pitch, depths.radius, depths.own)) / float(depths.own.max())
     print(f"depth at the pitch point: {share:.3f} of the largest, which is at r = {radius:.2f} mm; printed: the root")
@@ -131,10 +134,10 @@ def write_table(study: WornRun, out: Path) -> None:
     """OUT/table.csv: over the pinion's radius, a million meshes by the solution and by formulas, and each report."""
     wear = study.scene.wear
     assert wear is not None
-    depths, reports = Depths.of(study.pairs[0], 0, wear.pinion_mm2_per_N), study.pairs[1:]
+    depths, reports = Depths.of(study.pairs[0], Member.PINION, wear.pinion_mm2_per_N), study.pairs[1:]
     head = ["radius_mm", "million_um", "million_line_contact_um", "million_eq_24_um"]
     formulas = [UM * values for values in (depths.own, depths.line, depths.peak_times_sliding)]
-    columns = [depths.radius, *formulas, *(pair.profile(0)[1] for pair in reports)]
+    columns = [depths.radius, *formulas, *(pair.profile(Member.PINION)[1] for pair in reports)]
     text = io.StringIO()
     table = csv.writer(text)
     table.writerow([*head, *(f"after_{pair.cycles:.15g}_um" for pair in reports)])
@@ -161,7 +164,7 @@ def main(
     study = read_worn(out)
     run, wear = study.pairs[0].run, study.scene.wear
     if run.plane and wear is not None and wear.pinion_mm2_per_N > 0.0:
-        middle = float(radius_at(run.pair, 0, np.asarray(0.5 * run.pair.path_of_contact[1])))
+        middle = float(radius_at(run.pair, Member.PINION, np.asarray(0.5 * run.pair.path_of_contact[1])))
         point = PointPassage.of(run, POINT if scene == SCENE else middle)
         for failure in draw(pictures(study, point), RunFolder(out)).failures:
             print(failure)

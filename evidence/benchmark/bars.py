@@ -21,6 +21,7 @@ from evolvent.run.coarse_run import companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -159,8 +160,8 @@ def _solved(scene: Scene, coarse: bool = False) -> RunData:
 def _reference(problem: BarProblem, halvings: int) -> RunData:
     scene = problem.with_mesh(problem.reference)
 
-    def mesh(scene: Scene, index: int) -> MeshData:
-        fine = gear_mesh(scene, index, adapted=_finer_body) if problem.fine_body else gear_mesh(scene, index)
+    def mesh(scene: Scene, member: Member) -> MeshData:
+        fine = gear_mesh(scene, member, adapted=_finer_body) if problem.fine_body else gear_mesh(scene, member)
         for _ in range(halvings):
             fine = halved(fine)
         return fine

@@ -17,6 +17,7 @@ from evolvent.scene.meshing.sector_meshes import linear
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.flank import nominal_angles
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.structured_grid import weld
 from evolvent_meshes.sector.sector import sector_mesh
@@ -38,12 +39,12 @@ def three_teeth(elements: float, rotation: float = 0.0, order: int = 1, shape: s
     """Three teeth of each gear at a pinion rotation φ [rad], standing in space as they mesh; order 1 or 2."""
     own = scene(elements)
     pair, bodies = own.gear_pair(), []
-    for i, (gear, resolution) in enumerate(zip(pair.gears, sector_resolutions(own))):
+    for member, gear, resolution in zip(Member, pair.gears, sector_resolutions(own)):
         mesh = sector_mesh(gear, resolution, shape)
         mesh = mesh if order == 2 else linear(mesh)
-        angle = float(nominal_angles(pair, rotation)[i])
-        teeth = [angle + (1 - 2 * i) * tooth * 2 * np.pi / gear.z for tooth in TEETH]
-        bodies.append(joined(mesh, teeth, i * pair.centre_distance))
+        angle = float(nominal_angles(pair, rotation)[member])
+        teeth = [angle + member.sign * tooth * 2 * np.pi / gear.z for tooth in TEETH]
+        bodies.append(joined(mesh, teeth, member * pair.centre_distance))
     first, second = own.materials()
     return Task(
         (bodies[0], bodies[1]),

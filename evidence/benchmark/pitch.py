@@ -30,6 +30,7 @@ from evolvent.run.output import peak_memory_MB
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def measured(own: Scene) -> PitchFacts:
 def factored(own: Scene) -> PitchFacts:
     """Both sectors assembled and factored once."""
     start, began = time.process_time(), time.perf_counter()
-    meshes = [gear_mesh(own, index) for index in (0, 1)]
+    meshes = [gear_mesh(own, member) for member in Member]
     meshed = time.perf_counter()
     assembling = factoring = 0.0
     for mesh, material in zip(meshes, own.materials()):

@@ -26,6 +26,7 @@ from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform
 from evolvent.scene.meshing.element_sizes import sector_resolutions
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.skips import contact_teeth
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.sector import sector_mesh
 
 SCENE = DEMOS / "he2022.toml"
@@ -140,10 +141,10 @@ def _model(mesh: SpurMesh) -> GearModel:
     scene = mesh.scene()
     pair, teeth = scene.gear_pair(), contact_teeth(scene)
     bodies = []
-    for index, resolution in enumerate(sector_resolutions(scene)):
+    for member, resolution in zip(Member, sector_resolutions(scene)):
         own = replace(resolution, face_elements=max(mesh.layers, 1))
-        cells = sector_mesh(pair.gears[index], own, "hexahedron" if mesh.layers else "quadrilateral")
-        material, sign = scene.materials()[index], 1 - 2 * index
-        bodies.append(condensed_gear(pair.gears[index], cells, material, teeth, sign, carries_pressure=index == 0))
+        cells = sector_mesh(pair.gears[member], own, "hexahedron" if mesh.layers else "quadrilateral")
+        material, carries = scene.materials()[member], member == Member.PINION
+        bodies.append(condensed_gear(pair.gears[member], cells, material, teeth, member, carries_pressure=carries))
     torque = 1e3 * scene.load.torque_Nm / (1.0 if mesh.layers else pair.face_width)
     return GearModel(pair, (bodies[0], bodies[1]), tuple(teeth), GearLoad(torque), window_half_width(scene))

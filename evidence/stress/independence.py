@@ -24,6 +24,7 @@ from evolvent.gears.condensed_gear import condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.results.contact_slices import slices
+from evolvent_meshes.gears.member import Member
 
 SAFETIES = (1.1, 1.25, 2.0, 5.0, 20.0, 50.0)
 THETAS = (1.0, 0.0, -1.0)
@@ -72,7 +73,8 @@ def _model(safety: float, level: str) -> GearModel:
     scene = spur_scene(f"mesh.level={level}")
     model = prepare_model(scene, MPI.COMM_SELF).model
     pinion, wheel = model.bodies
-    other = condensed_gear(pinion.gear, pinion.mesh, scene.materials()[0], list(model.teeth), 1, True, safety)
+    material, teeth = scene.materials()[Member.PINION], list(model.teeth)
+    other = condensed_gear(pinion.gear, pinion.mesh, material, teeth, Member.PINION, True, safety)
     return replace(model, bodies=(other, wheel))
 
 

@@ -23,6 +23,7 @@ from evolvent.results.contact_slices import fitted_peak
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 TEETH = (-1, 0, 1)
@@ -56,7 +57,7 @@ class ThetaPair:
     def problem(self) -> Problem:
         """The pinion turns at its bore under the torque of the scene, the wheel is held."""
         scene = self._scene
-        (pinion, wheel), (driver, driven) = (_whole_gear(scene, gear) for gear in (0, 1)), scene.materials()
+        (pinion, wheel), (driver, driven) = (_whole_gear(scene, gear) for gear in Member), scene.materials()
         torque = 1e3 * scene.load.torque_Nm / scene.gear_pair().face_width
         bodies = (
             Body(pinion, driver, rigid=Rigid("bore", (Freedom("rz", load=torque),)), name="pinion"),
@@ -70,23 +71,22 @@ class ThetaPair:
         return spur_scene(f"mesh.level={self.level}")
 
 
-def _whole_gear(scene: Scene, gear: int) -> MeshData:
+def _whole_gear(scene: Scene, gear: Member) -> MeshData:
     """All teeth; "flank" holds those of `TEETH` only: what cannot touch costs nothing."""
     sector, count = gear_mesh(scene, gear), scene.gear_pair().gears[gear].z
     mesh = whole_mesh(sector, matching_cuts(sector, 2.0 * np.pi / count), count)
     flanks = mesh.facets["flank"].reshape(count, -1, mesh.facets["flank"].shape[1])
-    sign = 1 - 2 * gear
-    chosen = np.concatenate([flanks[(sign * tooth) % count] for tooth in TEETH])
+    chosen = np.concatenate([flanks[(gear.sign * tooth) % count] for tooth in TEETH])
     return replace(mesh, facets={**mesh.facets, "flank": chosen})
 
 
 def _placements(stand: Stand) -> tuple[Placement, ...]:
-    return tuple(Placement(stand.rotation(gear, 2), stand.centre(gear, 2)) for gear in (0, 1))
+    return tuple(Placement(stand.rotation(gear, 2), stand.centre(gear, 2)) for gear in Member)
 
 
 def _figures(stand: Stand, solution: Solution) -> PairFigures:
     contact = solution.contacts[0]
-    arm = contact.points - stand.centre(1, 2)
+    arm = contact.points - stand.centre(Member.WHEEL, 2)
     force = contact.weights[:, None] * contact.traction
     moment = float(np.sum(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]))
     pitch = stand.pair.pinion.transverse_base_pitch

@@ -48,9 +48,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "scene.meshing", "gears.ring",
     ),
     "gears.contact": (
-        "meshes", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton", "gears.ring", "gears",
+        "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
+        "gears.ring", "gears",
     ),
-    "gears.sweep": ("meshes", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact"),
+    "gears.sweep": (
+        "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
+    ),
     "results.archive": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
     ),

@@ -25,6 +25,7 @@ from evolvent.gears.sweep import pitch_sweep, position
 from evolvent.gears.sweep.position import PositionResult, shared_position
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import QUIET, Curves, model_of, swept
 
 ROTATIONS = np.array([1.0, 1.5, 2.0])
@@ -70,7 +71,7 @@ def forces_cancel(model: GearModel) -> None:
     contact, force = shared.contact, shared.smooth.force
     ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
     total = np.zeros((2, contact.d))
-    for gear in (0, 1):
+    for gear in Member:
         turned = contact.stand.rotation(gear, contact.d)
         for own, nodal in zip(contact.jump_maps(gear, 1), np.split(force, ends), strict=True):
             total[gear] += own.forces(nodal).sum(axis=0) @ turned.T

@@ -12,6 +12,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position import PositionResult, shared_position
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from tests.support.checkout import ROOT
 
 QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
@@ -108,6 +109,6 @@ def touches(model: GearModel, degrees: float, tooth: int) -> bool:
     return bool(np.any(pressed & (shared.contact.point_tooth == tooth)))
 
 
-def with_load(model: GearModel, torque: float, on: int) -> GearModel:
+def with_load(model: GearModel, torque: float, on: Member) -> GearModel:
     """The same gears under another load."""
     return replace(model, load=replace(model.load, torque=torque, on=on))

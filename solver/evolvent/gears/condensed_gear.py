@@ -22,6 +22,7 @@ from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 COUPLING_TOLERANCE = 1e-10  # of the coupling between teeth, which is smooth; relative
@@ -33,7 +34,7 @@ class GearBody:
 
     flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
     pressure, else None. chain: compliance of all modelled teeth, tooth
-    s of it turned by +2πs/z. sign: +1 where tooth pair i has tooth +i (pinion), −1 where it has tooth −i (wheel).
+    s of it turned by +2πs/z. member: pinion or wheel; tooth pair i has tooth member.sign·i.
     assemble_seconds, condense_seconds: what it took. worn: (n,) depth [mm] that the flank has lost, of which mesh and
     chain know nothing.
     """
@@ -44,7 +45,7 @@ class GearBody:
     flank: Surface
     traction: NitscheTraction | None
     chain: Compliance
-    sign: int
+    member: Member
     assemble_seconds: float
     condense_seconds: float
     worn: Floats | None = None
@@ -77,7 +78,7 @@ class GearBody:
 
     def rows(self, tooth: int, nodes: Ints) -> Ints:
         """(len, 2) rows of the chain for flank nodes of tooth pair i."""
-        return np.column_stack([np.full(len(nodes), self.sign * tooth), nodes])
+        return np.column_stack([np.full(len(nodes), self.member.sign * tooth), nodes])
 
 
 def condensed_gear(
@@ -85,7 +86,7 @@ def condensed_gear(
     mesh: MeshData,
     material: Material,
     teeth: list[int],
-    sign: int,
+    member: Member,
     carries_pressure: bool,
     safety: float = SAFETY,
     whole: bool = False,
@@ -99,13 +100,13 @@ def condensed_gear(
     begin = time.perf_counter()
     flank = surface_of(mesh, "flank")
     traction = nitsche_traction(mesh, material, flank, safety) if carries_pressure else None
-    pitch, numbers = 2.0 * np.pi / gear.z, sorted(sign * tooth for tooth in teeth)
+    pitch, numbers = 2.0 * np.pi / gear.z, sorted(member.sign * tooth for tooth in teeth)
     if whole:
         ring = whole_mesh(mesh, matching_cuts(mesh, pitch), gear.z)
         named, own_safety = range(numbers[0], numbers[-1] + 1), safety if carries_pressure else None
         system: WholeSystem | SectorSystem = whole_system(ring, material, gear.z, named, own_safety)
     else:
-        system = _sector_system(sector_body(mesh, material, sign), flank, traction, pitch)
+        system = _sector_system(sector_body(mesh, material, member), flank, traction, pitch)
     assembled = time.perf_counter()
     condensed: SectorCondensation | Compliance = system.condensed(threads)
     del system  # gigabytes at the fine end
@@ -113,12 +114,12 @@ def condensed_gear(
         settings = ChainSettings(pitch, len(numbers), numbers[0], mesh.dimension, COUPLING_TOLERANCE)
         condensed = ChainedCompliance(condensed, settings)
     end = time.perf_counter()
-    return GearBody(gear, mesh, material, flank, traction, condensed, sign, assembled - begin, end - assembled)
+    return GearBody(gear, mesh, material, flank, traction, condensed, member, assembled - begin, end - assembled)
 
 
-def sector_body(mesh: MeshData, material: Material, sign: int) -> Body:
-    """A sector held at its bore; sign: see GearBody."""
-    return Body(mesh, material, supports=(Fixed("bore"),), name="pinion" if sign > 0 else "wheel")
+def sector_body(mesh: MeshData, material: Material, member: Member) -> Body:
+    """A sector of the pinion or the wheel, held at its bore."""
+    return Body(mesh, material, supports=(Fixed("bore"),), name=member.label)
 
 
 def _sector_system(

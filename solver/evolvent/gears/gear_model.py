@@ -19,6 +19,7 @@ from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.skips import contact_teeth, is_plane, skips, switched_off
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -27,10 +28,10 @@ WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, p
 
 @dataclass(frozen=True)
 class GearLoad:
-    """The load: torque [N·mm; per mm of width in 2D] held on gear `on` (0 pinion, 1 wheel); the other one is driven."""
+    """The load: torque [N·mm; per mm of width in 2D] held on gear `on`; the other one is driven."""
 
     torque: float
-    on: int = 0
+    on: Member = Member.PINION
 
 
 @dataclass(frozen=True)
@@ -75,32 +76,32 @@ class Preparation:
 def prepare_model(
     scene: Scene,
     comm: MPI.Comm,
-    mesh: Callable[[Scene, int], MeshData] | None = None,
+    mesh: Callable[[Scene, Member], MeshData] | None = None,
     meshed: Callable[[], None] = lambda: None,
 ) -> Preparation:
-    """Meshes and condenses both gears of a scene. mesh: makes gear 0's and 1's, by default `gear_mesh`. meshed: called
+    """Meshes and condenses both gears of a scene. mesh: makes a gear's sector, by default `gear_mesh`. meshed: called
     when both are meshed.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
-    own = [index for index in (0, 1) if index % comm.size == comm.rank]
-    meshes = together(comm, lambda: {index: (mesh or gear_mesh)(scene, index) for index in own})
+    own = [member for member in Member if member % comm.size == comm.rank]
+    meshes = together(comm, lambda: {member: (mesh or gear_mesh)(scene, member) for member in own})
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
     teeth, pair = contact_teeth(scene), scene.gear_pair()
 
-    def condensed(index: int) -> GearBody:
-        gear, material, whole = pair.gears[index], scene.materials()[index], not skips(scene, "one-sector")
+    def condensed(member: Member) -> GearBody:
+        gear, material, whole = pair.gears[member], scene.materials()[member], not skips(scene, "one-sector")
         return condensed_gear(
-            gear, meshes[index], material, teeth, 1 - 2 * index, index == 0, whole=whole, threads=cores.used
+            gear, meshes[member], material, teeth, member, member == Member.PINION, whole=whole, threads=cores.used
         )
 
-    built = together(comm, lambda: {index: condensed(index) for index in own}, cores.lent)
-    bodies = [shared(comm, built.pop(index, None), index % comm.size) for index in (0, 1)]
+    built = together(comm, lambda: {member: condensed(member) for member in own}, cores.lent)
+    bodies = [shared(comm, built.pop(member, None), member % comm.size) for member in Member]
     pinion, wheel = (_charted(body, scene.flank_chart(name)) for body, name in zip(bodies, GEARS))
-    load = GearLoad(_torque(scene), 0 if scene.load.on == "pinion" else 1)
+    load = GearLoad(_torque(scene), Member.named(scene.load.on))
     model = GearModel(
         pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
         friction_terms="friction-terms" in switched_off(scene), deflected="deflected-flanks" in switched_off(scene),

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import misalignment_rotation
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 E_Z = np.array([0.0, 0.0, 1.0])
@@ -42,27 +43,26 @@ class Stand:
             np.pi - wheel.half_angle(d2) - self.angle / self.pair.ratio + self.extra[1],
         )
 
-    def turned(self, gear: int, δ: float) -> Stand:
+    def turned(self, gear: Member, δ: float) -> Stand:
         """With δ [rad] added to the extra rotation of a gear."""
         extra = list(self.extra)
         extra[gear] += δ
         return replace(self, extra=(extra[0], extra[1]))
 
-    def centre(self, gear: int, d: int) -> Floats:
-        """Centre (d,) of gear 0 (pinion) or 1 (wheel)."""
-        return np.array([self.pair.centre_distance * gear, 0.0, 0.0])[:d]
+    def centre(self, gear: Member, d: int) -> Floats:
+        """Centre (d,) of a gear [mm]."""
+        return np.array([self.pair.centre_distance if gear == Member.WHEEL else 0.0, 0.0, 0.0])[:d]
 
-    def rotation(self, gear: int, d: int, tooth: int = 0) -> Floats:
+    def rotation(self, gear: Member, d: int, tooth: int = 0) -> Floats:
         """(d, d) from the own frame of a gear's tooth i to the common one: pinion +2πi/z_1, wheel −2πi/z_2."""
-        sign = 1.0 if gear == 0 else -1.0
-        own = turn(self.turns[gear] + sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
+        own = turn(self.turns[gear] + gear.sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
         return own if d == 2 else self.tilt(gear) @ own
 
-    def tilt(self, gear: int) -> Floats:
+    def tilt(self, gear: Member) -> Floats:
         """(3, 3) from a gear's aligned frame to where misalignment puts it; the pinion stays."""
-        return Rotation.from_rotvec(gear * misalignment_rotation(self.pair)).as_matrix()
+        return Rotation.from_rotvec(misalignment_rotation(self.pair)).as_matrix() if gear == Member.WHEEL else np.eye(3)
 
-    def axis(self, gear: int) -> Floats:
+    def axis(self, gear: Member) -> Floats:
         """(3,) unit vector of a gear's axis."""
         return self.tilt(gear)[:, 2]
 

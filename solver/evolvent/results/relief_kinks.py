@@ -24,6 +24,7 @@ from evolvent.fem.material import joint_modulus
 from evolvent.results.engagement import TurnPeak
 from evolvent.results.run_data import RunData
 from evolvent_meshes.gears.flank import MICROMETRE
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 
@@ -76,7 +77,7 @@ def peak_over_kink(run: RunData, index: int, peak: TurnPeak) -> ReliefKink | Non
 
 def _kinks(pair: GearPair) -> Iterator[tuple[float, float, float]]:
     """Roll distance ξ [mm], angle 2α [rad] and dξ over the arc of the flank, of each linear tip relief."""
-    for gear, pitch_point, sign in zip(pair.gears, pair.pitch_point_roll_lengths, (1.0, -1.0)):
+    for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
         relief = gear.modifications
         start = relief.tip_relief_start_diameter
         if start is None or relief.tip_relief_um == 0.0 or relief.tip_relief_parabolic:
@@ -84,4 +85,4 @@ def _kinks(pair: GearPair) -> Iterator[tuple[float, float, float]]:
         ρ = float(gear.roll_length(start))
         roll = gear.base_radius / ρ  # an involute's arc is ρ²/2r_b
         slope = MICROMETRE * relief.tip_relief_um / (float(gear.roll_length(gear.tip_diameter)) - ρ)
-        yield sign * (ρ - pitch_point), slope * roll, roll
+        yield member.sign * (ρ - pitch_point), slope * roll, roll

@@ -14,6 +14,7 @@ from evolvent.gears.kinematics import turn
 from evolvent.gears.sweep.position import PositionResult
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -46,16 +47,16 @@ class ShaftForces:
     """Of that moment."""
 
 
-def shaft_forces(run: RunData, gear: int, index: int) -> ShaftForces:
-    """On the pinion (gear 0) or the wheel (1), at friction coefficient number `index`."""
-    shape, apart = run.shapes[gear], -1.0 if gear == 0 else 1.0
+def shaft_forces(run: RunData, gear: Member, index: int) -> ShaftForces:
+    """On the pinion or the wheel, at friction coefficient number `index`."""
+    shape, apart = run.shapes[gear], -gear.sign
     nodes = shape.points[shape.flank_nodes]
     loads = run.width * np.array([_load(each[index].result, gear, nodes) for each in run.positions])
     signed = loads[:, [1, 0, 2, 3, 4]] * [apart, apart, 1.0, 1e-3, 1e-3]
     return ShaftForces(*np.column_stack([signed.mean(axis=0), np.ptp(signed, axis=0)]).ravel().tolist())
 
 
-def _load(result: PositionResult, gear: int, nodes: Floats) -> Floats:
+def _load(result: PositionResult, gear: Member, nodes: Floats) -> Floats:
     """Force (x, y, z) [N] on a gear and its moments about x and y [N·mm], per mm of width in 2D, in the common frame;
     nodes: (n, d) of its flank in its own frame [mm]."""
     rows, forces = (result.pinion_rows, result.wheel_rows)[gear], (result.pinion_forces, result.wheel_forces)[gear]

@@ -14,6 +14,7 @@ import numpy as np
 from evolvent.gears.sweep.position import PositionResult
 from evolvent.results.contact_slices import Slices
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 AT_THE_END = 0.01
@@ -30,17 +31,20 @@ def path_between_zones(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, f
     the last row of facets before the tip begins, pinion and wheel."""
     start, end = pair.path_of_contact
     if pair.pinion.base_helix_angle == 0.0:
-        return max(start, -_beginning(pair, cuts, rows, 1)), min(end, _beginning(pair, cuts, rows, 0))
+        first, last = (_beginning(pair, cuts, rows, gear) for gear in (Member.WHEEL, Member.PINION))
+        return max(start, -first), min(end, last)
     edges = np.concatenate([cut.ξ[cut.edge] for _, cut in cuts])
     return float(edges[edges < 0.0].max(initial=start)), float(edges[edges > 0.0].min(initial=end))
 
 
-def _beginning(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], gear: int) -> float:
+def _beginning(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], gear: Member) -> float:
     """Of the zone of a spur pair in which this gear's tip bears: the distance from the pitch point [mm] towards it,
     infinite where it never does. At most the one of the nearest slice that bears, and more than those of all nearer
     ones."""
-    sign = 1.0 - 2.0 * gear
-    slices = [(sign * float(ξ), result, cut, k) for result, cut in cuts for k, ξ in enumerate(cut.ξ) if sign * ξ > 0.0]
+    slices = [
+        (gear.sign * float(ξ), result, cut, k)
+        for result, cut in cuts for k, ξ in enumerate(cut.ξ) if gear.sign * ξ > 0.0
+    ]  # fmt: skip
     edge = min((distance for distance, _, cut, k in slices if cut.edge[k]), default=np.inf)
     outside = [each for each in slices if each[0] < edge]
     if edge == np.inf or not outside:
@@ -50,7 +54,7 @@ def _beginning(pair: GearPair, cuts: Sequence[Cut], rows: tuple[float, float], g
     return float(np.clip(reached, last + min(2.0 * AT_THE_END, 0.5 * (edge - last)), edge))
 
 
-def _reached(pair: GearPair, result: PositionResult, cut: Slices, k: int, gear: int, row: float) -> float:
+def _reached(pair: GearPair, result: PositionResult, cut: Slices, k: int, gear: Member, row: float) -> float:
     """The distance from the pitch point [mm] at which the contact of a slice would reach the row that begins at the
     curvature radius `row`: arcs of an involute go with the square of these radii."""
     c = result.contact

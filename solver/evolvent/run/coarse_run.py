@@ -24,10 +24,11 @@ from evolvent.results.archive.error_bar_data import kept_errors
 from evolvent.results.run_data import Companion, RunData, run_data
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
-Mesher = Callable[[Scene, int], MeshData]
+Mesher = Callable[[Scene, Member], MeshData]
 """Makes the sector of a scene's pinion (0) or wheel (1)."""
 COARSENING = 2.0
 LEAST_LAYERS = 2  # of a gear's face width: the ends of the face need their own
@@ -78,9 +79,9 @@ def coarser(fine: SectorResolution) -> SectorResolution:
     )
 
 
-def companion_mesh(scene: Scene, index: int) -> MeshData:
-    """The coarse sector of the pinion (index 0) or the wheel (1). Raises MeshError."""
-    return gear_mesh(scene, index, adapted=coarser)
+def companion_mesh(scene: Scene, member: Member) -> MeshData:
+    """The coarse sector of the pinion or the wheel. Raises MeshError."""
+    return gear_mesh(scene, member, adapted=coarser)
 
 
 def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:

@@ -35,6 +35,7 @@ from evolvent.wear.gears.gear_study import Kept, Stage, kept_of, stages
 from evolvent.wear.gears.gear_wear import Following, GearWear, PitchState
 from evolvent.wear.results.archive import read_study, worn_folder, write_pitch, write_study, write_worn
 from evolvent.wear.results.report import read_worn, write_report
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 FIRST = 1e-2  # of all cycles: the first block where the scene does not say
@@ -115,7 +116,7 @@ def following_of(scene: Scene, comm: MPI.Comm) -> Following:
     assert scene.wear is not None
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 
-    def condensed(mesh: Callable[[int], MeshData]) -> GearModel:
+    def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
         model = prepare_model(scene, comm, lambda _, index: mesh(index)).model
         logging.getLogger("evolvent").info("the meshes have followed the wear; both gears are condensed anew")
         return model

@@ -17,6 +17,7 @@ from evolvent.gears.sweep.friction_history import Footprint
 from evolvent.gears.sweep.position import shared_position
 from evolvent.results.contact_slices import balance_error, pitch_imbalance, slices
 from evolvent.run.pitch_run import pitch_of
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import (
     Curves,
     force,
@@ -231,7 +232,7 @@ def test_torque_on_the_wheel(friction: float, spur: GearModel) -> None:
     degrees = 2.0 + STEP * np.arange(3)
     driven = swept(spur, degrees, [friction])[0]
     torque = driven.results[-1].torques[1]
-    held = swept(with_load(spur, torque, on=1), degrees, [friction])[0].results[-1]
+    held = swept(with_load(spur, torque, on=Member.WHEEL), degrees, [friction])[0].results[-1]
     assert held.torques[1] == pytest.approx(torque, rel=1e-9)
     assert held.torques[0] == pytest.approx(driven.results[-1].torques[0], rel=1e-5)
     assert held.transmission_error == pytest.approx(driven.results[-1].transmission_error, rel=1e-4)
@@ -242,7 +243,7 @@ def test_torque_on_the_wheel(friction: float, spur: GearModel) -> None:
 def test_deflection_grows_like_the_load(spur: GearModel) -> None:
     """Small strain: nine tenths of the deflection is bending, linear in the load, and contact grows a little less:
     ten times the torque gives between 7 and 10 times the transmission error."""
-    light = swept(with_load(spur, 0.1 * spur.load.torque, on=0), np.array([3.6]), [0.0])[0].results[0]
+    light = swept(with_load(spur, 0.1 * spur.load.torque, on=Member.PINION), np.array([3.6]), [0.0])[0].results[0]
     full = swept(spur, np.array([3.6]), [0.0])[0].results[0]
     assert 7.0 < full.transmission_error / light.transmission_error < 10.0
 

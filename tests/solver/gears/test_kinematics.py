@@ -7,6 +7,7 @@ import pytest
 
 from evolvent.gears.kinematics import Stand, nominal_slip, spin, turn
 from evolvent_meshes.gears.flank import Flank, contact_normal, contact_points, separation
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.paper_pairs import he, yang
 
@@ -28,7 +29,7 @@ def test_flanks_of_a_tooth_pair_meet_on_the_line_of_action(pair: GearPair, angle
     z = np.array([-3.0, 0.0, 2.0])
     ξ = stand.roll_distance(tooth, z)
     wanted = contact_points(pair, ξ, z)
-    for gear, ρ in enumerate(pair.curvature_radii(ξ)):
+    for gear, ρ in zip(Member, pair.curvature_radii(ξ)):
         own = Flank(pair.gears[gear]).point(ρ, z)
         placed = own @ stand.rotation(gear, 3, tooth).T + stand.centre(gear, 3)
         np.testing.assert_allclose(placed, wanted, atol=1e-9)
@@ -42,20 +43,21 @@ def test_misalignment_opens_the_gap_that_the_geometry_says(misalignment: float) 
     stand, z = Stand(pair, 0.03), np.array([-8.0, -2.0, 5.0])
     ξ = stand.roll_distance(0, z)
     points = []
-    for gear, ρ in enumerate(pair.curvature_radii(ξ)):
+    for gear, ρ in zip(Member, pair.curvature_radii(ξ)):
         points.append(Flank(pair.gears[gear]).point(ρ, z) @ stand.rotation(gear, 3).T + stand.centre(gear, 3))
     gap = (points[1] - points[0]) @ contact_normal(pair)
     np.testing.assert_allclose(gap, separation(pair, ξ, z), atol=2e-4)
     assert np.abs(gap).max() > 5e-3
-    turned = Stand(pair, 0.03, (0.0, 1e-6)).rotation(1, 3) @ stand.rotation(1, 3).T - np.eye(3)
-    arm = points[1] - stand.centre(1, 3)
-    np.testing.assert_allclose(spin(points[1], stand.centre(1, 3), stand.axis(1)), 1e6 * arm @ turned.T, atol=1e-3)
+    turned = Stand(pair, 0.03, (0.0, 1e-6)).rotation(Member.WHEEL, 3) @ stand.rotation(Member.WHEEL, 3).T - np.eye(3)
+    arm = points[1] - stand.centre(Member.WHEEL, 3)
+    rate = spin(points[1], stand.centre(Member.WHEEL, 3), stand.axis(Member.WHEEL))
+    np.testing.assert_allclose(rate, 1e6 * arm @ turned.T, atol=1e-3)
 
 
 def test_extra_rotations_turn_about_the_own_axis() -> None:
     """Exact: `extra` adds to a gear's turn, and 2D is 3D without z."""
     stand = Stand(yang(), 0.1, (0.02, -0.03))
-    for gear, extra in enumerate((0.02, -0.03)):
+    for gear, extra in zip(Member, (0.02, -0.03)):
         nominal = Stand(yang(), 0.1).rotation(gear, 3, 2)
         np.testing.assert_allclose(stand.rotation(gear, 3, 2), turn(extra, 3) @ nominal, atol=1e-15)
         np.testing.assert_array_equal(stand.rotation(gear, 2, 2), stand.rotation(gear, 3, 2)[:2, :2])

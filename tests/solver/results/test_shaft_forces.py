@@ -17,6 +17,7 @@ from evolvent.results.archive.archive import gear_shape
 from evolvent.results.run_data import RunData, run_data
 from evolvent.results.shaft_forces import ShaftForces, shaft_forces
 from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 FRICTION = 0.1
@@ -45,7 +46,7 @@ def run(request: pytest.FixtureRequest) -> RunData:
     return found
 
 
-def textbook(run: RunData, gear: int) -> tuple[float, float, float, float]:
+def textbook(run: RunData, gear: Member) -> tuple[float, float, float, float]:
     """Tangential, radial, axial force [N] and tilting moment [N·m] for the torque that was found."""
     pair, radius = run.pair, run.pair.working_pitch_diameters[gear] / 2.0
     torque = run.width * np.mean([each[0].result.torques[gear] for each in run.positions])
@@ -55,8 +56,8 @@ def textbook(run: RunData, gear: int) -> tuple[float, float, float, float]:
     return tangential, tangential * float(np.tan(pair.operating_pressure_angle)), axial, 1e-3 * axial * radius
 
 
-@pytest.mark.parametrize("gear", [0, 1])
-def test_without_friction(gear: int, run: RunData) -> None:
+@pytest.mark.parametrize("gear", Member)
+def test_without_friction(gear: Member, run: RunData) -> None:
     """Within 0.2 %, all signs included: a right-hand pinion is pushed along +z, which tilts it about −y."""
     found, (tangential, radial, axial, moment) = shaft_forces(run, gear, 0), textbook(run, gear)
     sign = 1.0 if gear == 0 else -1.0
@@ -71,7 +72,7 @@ def test_without_friction(gear: int, run: RunData) -> None:
 @pytest.mark.parametrize("index", [0, 1])
 def test_action_and_reaction(index: int, run: RunData) -> None:
     """Positive apart and with T_2, against T_1: the same figures on both gears; the axial ones opposite."""
-    pinion, wheel = (shaft_forces(run, gear, index) for gear in (0, 1))
+    pinion, wheel = (shaft_forces(run, gear, index) for gear in Member)
     for name in ("tangential_N", "radial_N", "tangential_peak_to_peak_N", "radial_peak_to_peak_N"):
         assert getattr(pinion, name) == pytest.approx(getattr(wheel, name), rel=1e-4, abs=1e-3 * pinion.tangential_N)
     assert pinion.axial_N == pytest.approx(-wheel.axial_N, rel=1e-4, abs=1e-9)
@@ -80,7 +81,7 @@ def test_action_and_reaction(index: int, run: RunData) -> None:
 def test_with_friction(spur: RunData) -> None:
     """Friction turns about at the pitch point, and with it the direction of the force: the radial force swings by about
     2 μ F, the tangential one by no more than it does by 2 μ F tan α_wt."""
-    smooth, rough = shaft_forces(spur, 0, 0), shaft_forces(spur, 0, 1)
+    smooth, rough = shaft_forces(spur, Member.PINION, 0), shaft_forces(spur, Member.PINION, 1)
     swing = 2.0 * FRICTION * smooth.tangential_N / np.cos(spur.pair.operating_pressure_angle)
     assert 0.3 * swing < rough.radial_peak_to_peak_N < swing
     assert rough.tangential_peak_to_peak_N < swing * np.tan(spur.pair.operating_pressure_angle)
@@ -92,7 +93,7 @@ def test_load_at_an_end_of_the_face() -> None:
     pinion, tilts it about −x by up to half the face width, the axial one a little more, and the wheel the other way."""
     scene = helical_scene("contact.friction=0.0", "pair.misalignment_um=60", "sweep.positions=2", "load.torque_Nm=20")
     run = solved(scene)
-    pinion, wheel = (shaft_forces(run, gear, 0) for gear in (0, 1))
+    pinion, wheel = (shaft_forces(run, gear, 0) for gear in Member)
     arm = -1e3 * pinion.moment_x_Nm / pinion.tangential_N
     farthest = max(np.abs(run.pair.path_of_contact)) * np.cos(run.pair.operating_pressure_angle)
     assert 0.5 < arm < run.pair.face_width / 2.0 + farthest * pinion.axial_N / pinion.tangential_N
@@ -101,7 +102,7 @@ def test_load_at_an_end_of_the_face() -> None:
 
 def test_all_figures_are_numbers(run: RunData) -> None:
     """For every gear and friction coefficient."""
-    for gear in (0, 1):
+    for gear in Member:
         for index in (0, 1):
             found: ShaftForces = shaft_forces(run, gear, index)
             assert np.isfinite(astuple(found)).all()

@@ -15,6 +15,7 @@ from evolvent.gears.contact.search_window import facets_in_window, placed_flanks
 from evolvent.gears.contact.tooth_contact import PENETRATION
 from evolvent.gears.kinematics import spin
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 NEARLY = 5e-3  # modules: flanks so far apart may overlap once the gears have turned on, see gear_position.STALE
 
@@ -53,7 +54,7 @@ def overlap_outside(
     the solution; rotation: of pinion and wheel [rad] since the search."""
     if not places:
         return 0.0
-    forces = contact.pushed(0, force), contact.pushed(1, force)
+    forces = contact.pushed(Member.PINION, force), contact.pushed(Member.WHEEL, force)
     return max(_overlap(contact, own, forces, rotation) for own in places)
 
 
@@ -64,13 +65,13 @@ def _overlap(
     sides = (own.first, found.facet1, found.xi1), (own.second, found.facet2, found.xi2)
     u1, u2 = (
         _moved(contact, forces[gear], gear, own.tooth, *side) + _turned(contact, rotation[gear], gear, *side)
-        for gear, side in enumerate(sides)
+        for gear, side in zip(Member, sides)
     )
     gap = found.gap + sum(body.lost(*side[1:]) for body, side in zip(contact.bodies, sides))
     return float(np.max(np.einsum("qa,qa->q", _normals(own.first, found), u1 - u2) - gap, initial=0.0))
 
 
-def _turned(contact: GearContact, angle: float, gear: int, surface: Surface, facets: Ints, xi: Floats) -> Floats:
+def _turned(contact: GearContact, angle: float, gear: Member, surface: Surface, facets: Ints, xi: Floats) -> Floats:
     """Displacements (q, d) at points of a gear's flank that turns by a small angle [rad]."""
     x = surface.evaluate(surface.points, facets, xi[:, None])[0][:, 0]
     return angle * spin(x, contact.stand.centre(gear, contact.d), contact.stand.axis(gear))
@@ -86,7 +87,7 @@ def _unsearched(contact: GearContact, tooth: int) -> Ints:
 
 
 def _moved(
-    contact: GearContact, forces: Floats, gear: int, tooth: int, surface: Surface, facets: Ints, xi: Floats
+    contact: GearContact, forces: Floats, gear: Member, tooth: int, surface: Surface, facets: Ints, xi: Floats
 ) -> Floats:  # fmt: skip
     """Displacements (q, d) at points of a gear's flank in the common frame [mm]; forces (m, d) on the contact's rows of
     it."""

@@ -26,6 +26,7 @@ from evolvent.gears.contact.tooth_contact import PENETRATION, Displaced, ToothCo
 from evolvent.gears.kinematics import Stand, spin
 from evolvent.gears.ring.ring_compliance import Part
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 GEOMETRIC = "as_made", "hats", "tooth", "node", "spins", "ξ", "at_edge", "point_tooth", "across", "opposite", "distance"
 """What of a contact does not depend on wear."""
@@ -120,19 +121,19 @@ class GearContact:
         """Positions (n, d) of the pinion's nodes and of the wheel's flank opposite in the common frame, undeflected."""
         first, second = [], []
         for t in self.teeth:
-            first.append(t.operator.jump1 @ self._placed_points(0, t.tooth))
-            second.append(t.operator.jump2 @ self._placed_points(1, t.tooth))
+            first.append(t.operator.jump1 @ self._placed_points(Member.PINION, t.tooth))
+            second.append(t.operator.jump2 @ self._placed_points(Member.WHEEL, t.tooth))
         return np.concatenate(first), np.concatenate(second)
 
     @cached_property
     def pressed_at(self) -> tuple[Floats, Floats]:
         """Where the forces act: the same, displaced as the flanks were when they were searched."""
         found = []
-        for gear, points in enumerate(self.points):
+        for gear, points in zip(Member, self.points):
             found.append(np.concatenate([t.displaced_from(gear, x) for t, x in zip(self.teeth, self._split(points))]))
         return found[0], found[1]
 
-    def _placed_points(self, gear: int, tooth: int) -> Floats:
+    def _placed_points(self, gear: Member, tooth: int) -> Floats:
         R = self.stand.rotation(gear, self.d, tooth)
         return self.bodies[gear].flank.points @ R.T + self.stand.centre(gear, self.d)
 
@@ -140,9 +141,9 @@ class GearContact:
     def spins(self) -> tuple[Floats, Floats]:
         """Local jumps (n, d) per radian of pinion rotation and of wheel rotation (about +z each)."""
         result = []
-        for gear, sign in ((0, 1.0), (1, -1.0)):
+        for gear in Member:
             moved = spin(self.pressed_at[gear], self.stand.centre(gear, self.d), self.stand.axis(gear))
-            result.append(sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
+            result.append(gear.sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
         return result[0], result[1]
 
     def _split(self, values: Floats) -> list[Floats]:
@@ -156,46 +157,46 @@ class GearContact:
         return self.stand.pair.roll_distance(self.stand.angle, self.tooth, z)
 
     def system(
-        self, loaded: int, torque: float, normal_only: bool = False, threads: Threads = nullcontext
+        self, loaded: Member, torque: float, normal_only: bool = False, threads: Threads = nullcontext
     ) -> CondensedSystem:
-        """Condensed system with one free rotation: of gear `loaded`, under `torque` [N·mm; per mm of width in 2D].
+        """Condensed system with one free rotation: of the `loaded` gear, under `torque` [N·mm; per mm of width in 2D].
 
         normal_only: without friction only the normal components are condensed, a ninth of the work. threads: in which
         each gear's compliance is put together.
         """
         k = 1 if normal_only else self.d
         n = len(self.node) * k
-        A = sum(self._compliance(gear, k, threads) for gear in (0, 1))
+        A = sum(self._compliance(gear, k, threads) for gear in Member)
         motion = self.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
         return CondensedSystem(self.operator, np.asarray(A), motion, np.zeros(n), np.array([torque]), lever)
 
-    def rows(self, gear: int) -> tuple[Ints, list[slice]]:
+    def rows(self, gear: Member) -> tuple[Ints, list[slice]]:
         """Rows (m, 2) of a gear's chain that the contact sees, and which of them belong to each tooth pair."""
         nodes = [t.touched(gear) for t in self.teeth]
         ends = np.cumsum([0] + [len(own) for own in nodes])
         rows = np.concatenate([self.bodies[gear].rows(t.tooth, own) for t, own in zip(self.teeth, nodes)])
         return rows, [slice(a, b) for a, b in pairwise(ends)]
 
-    def jump_maps(self, gear: int, k: int) -> list[JumpMap]:
+    def jump_maps(self, gear: Member, k: int) -> list[JumpMap]:
         """For each tooth pair, the map from a gear's displacements at the touched nodes to local jumps."""
         R = self.stand.rotation(gear, self.d)
         result = []
         for t in self.teeth:
-            axes = ((t.operator.frames @ R) * (1.0 - 2.0 * gear))[:, :k]
+            axes = ((t.operator.frames @ R) * gear.sign)[:, :k]
             # the pinion's flank has a node where the jump has one
-            result.append(JumpMap(None if gear == 0 else t.projection, axes))
+            result.append(JumpMap(None if gear == Member.PINION else t.projection, axes))
         return result
 
-    def pushed(self, gear: int, contact_forces: Floats) -> Floats:
+    def pushed(self, gear: Member, contact_forces: Floats) -> Floats:
         """What contact forces (n, k) do to a gear, (m, d) on its `rows` in its own frame [N]."""
         maps = self.jump_maps(gear, contact_forces.shape[1])
         return np.concatenate([-E.forces(f) for E, f in zip(maps, self._split(contact_forces))])
 
-    def _compliance(self, gear: int, k: int, threads: Threads) -> Floats:
+    def _compliance(self, gear: Member, k: int, threads: Threads) -> Floats:
         """A gear's part of the compliance of local jumps, (n·k, n·k)."""
         body, maps = self.bodies[gear], self.jump_maps(gear, k)
-        parts = [Part(body.sign * t.tooth, t.touched(gear), E.jumps) for t, E in zip(self.teeth, maps)]
+        parts = [Part(gear.sign * t.tooth, t.touched(gear), E.jumps) for t, E in zip(self.teeth, maps)]
         with threads():
             return body.chain.block(parts)
 
@@ -229,8 +230,8 @@ class GearContact:
         """(q,) the same on the wheel's flank, of what lies opposite the points; positive towards the wheel's tip."""
         pair, base = self.stand.pair, self.bodies[1].gear.base_radius
         ρ_line = pair.pitch_point_roll_lengths[1] - self.ξ
-        axis = self.stand.tilt(1)[: self.d, : self.d]
-        r = np.linalg.norm(((self.points[1] - self.stand.centre(1, self.d)) @ axis)[:, :2], axis=1)
+        axis = self.stand.tilt(Member.WHEEL)[: self.d, : self.d]
+        r = np.linalg.norm(((self.points[1] - self.stand.centre(Member.WHEEL, self.d)) @ axis)[:, :2], axis=1)
         return np.asarray(self.operator.shape @ ((r**2 - base**2 - ρ_line**2) / (2.0 * base)))
 
     @cached_property

@@ -8,6 +8,7 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.kinematics import Stand
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
 
@@ -27,7 +28,7 @@ def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tup
     """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
     d = bodies[0].d
     first, second = (
-        body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in enumerate(bodies)
+        body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in zip(Member, bodies)
     )
     return first, second
 

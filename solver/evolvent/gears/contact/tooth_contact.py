@@ -17,6 +17,7 @@ from evolvent.gears.contact.pressure_normals import pressing_normals
 from evolvent.gears.contact.search_window import facets_in_window, placed_flanks
 from evolvent.gears.kinematics import Stand
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 GAP = 0.2  # how far apart [module] flanks are looked at
 PENETRATION = 0.5  # how deep [module] undeformed flanks may overlap: far beyond any deflection of small strain
@@ -34,9 +35,9 @@ class ToothContact:
     pairing: Pairing
     displaced: Displaced | None = None
 
-    def touched(self, gear: int) -> Ints:
+    def touched(self, gear: Member) -> Ints:
         """Flank nodes of a gear that the jump sees, sorted."""
-        return self.operator.nodes if gear == 0 else self._wheel_nodes
+        return self.operator.nodes if gear == Member.PINION else self._wheel_nodes
 
     @cached_property
     def _wheel_nodes(self) -> Ints:
@@ -47,7 +48,7 @@ class ToothContact:
         """Π from the wheel's touched nodes, (n, m); dense in most of its entries."""
         return np.asarray(self.operator.jump2[:, self._wheel_nodes].toarray())
 
-    def displaced_from(self, gear: int, points: Floats) -> Floats:
+    def displaced_from(self, gear: Member, points: Floats) -> Floats:
         """Points (n, d) opposite the jump's nodes on a gear, displaced."""
         if self.displaced is None:
             return points

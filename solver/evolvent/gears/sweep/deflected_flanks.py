@@ -23,6 +23,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.friction_history import Footprint, Memory, recalled
 from evolvent.gears.sweep.position import free_rotation, free_shift, rubbing
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 SETTLED = 5e-4
 """Modules by which the free rotation moves the flanks after the last search: the next one would move them by a third of
@@ -69,7 +70,7 @@ def settled(
 
 def deflected_contact(model: GearModel, contact: GearContact, found: Equilibrium) -> GearContact:
     """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged."""
-    pushed = contact.pushed(0, found.force), contact.pushed(1, found.force)
+    pushed = contact.pushed(Member.PINION, found.force), contact.pushed(Member.WHEEL, found.force)
     displaced = {t.tooth: _displaced(contact, pushed, t.tooth) for t in contact.teeth}
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
     where = f"pinion at {np.degrees(stand.angle):.3f}°: wanted deflected flanks that face each other, found"
@@ -85,7 +86,7 @@ def deflected_contact(model: GearModel, contact: GearContact, found: Equilibrium
 def _displaced(contact: GearContact, pushed: tuple[Floats, Floats], tooth: int) -> Displaced:
     """The whole flanks of a tooth pair, the pinion's as contact sees it (the extended trace of contact_operator.py)."""
     found = []
-    for gear, body in enumerate(contact.bodies):
+    for gear, body in zip(Member, contact.bodies):
         every = body.rows(tooth, np.arange(len(body.flank.points)))
         u = body.chain.apply(contact.rows(gear)[0], pushed[gear], every)
         found.append(u @ contact.stand.rotation(gear, contact.d).T)

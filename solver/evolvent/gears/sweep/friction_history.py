@@ -13,6 +13,7 @@ from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand, nominal_slip, turn
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 foretell equally well
 NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken for granted
@@ -101,7 +102,7 @@ def slipped(
     """(n, d−1) slip since the past [mm] but for the present displacement: nominal slip, change of the free rotations,
     and the elastic part remembered at the material points that now face each other."""
     slip = nominal_slip(rate[:, 1:], contact.ξ, ξ_before, growing_slip(contact), model.pair.ratio, span)
-    for gear in (0, 1):
+    for gear in Member:
         slip = slip + contact.spins[gear][:, 1:] * (contact.stand.extra[gear] - before.stand.extra[gear])
     return slip - before.jump[:, 1:]
 
@@ -122,7 +123,7 @@ def recalled(contact: GearContact, memories: Sequence[Memory]) -> list[Past]:
         return []
     if not _same_rows(memories):  # deflected flanks are searched for each coefficient
         return [past for memory in memories for past in recalled(contact, [memory])]
-    u1, u2 = (_traces(contact, memories, gear) for gear in (0, 1))
+    u1, u2 = (_traces(contact, memories, gear) for gear in Member)
     return [Past(memory.stand, _past_jump(contact, memory.stand, *u)) for memory, *u in zip(memories, u1, u2)]
 
 
@@ -135,20 +136,20 @@ def _past_jump(contact: GearContact, before: Stand, u1: Floats, u2: Floats) -> F
     """(n, d) local: w = R_1 u_1 − R_2 Πu_2 of the past, turned with the wheel to the present. The velocity of points on
     deflected flanks tells that displacements turn with their gears: there each has been turned with its own."""
     d = contact.d
-    R1, R2 = (contact.stand.rotation(gear, d) for gear in (0, 1))
+    R1, R2 = (contact.stand.rotation(gear, d) for gear in Member)
     if not contact.is_deflected:
-        R1 = R2 @ before.rotation(1, d).T @ before.rotation(0, d)
-    parts = zip(contact.teeth, contact.rows(0)[1], contact.rows(1)[1])
+        R1 = R2 @ before.rotation(Member.WHEEL, d).T @ before.rotation(Member.PINION, d)
+    parts = zip(contact.teeth, contact.rows(Member.PINION)[1], contact.rows(Member.WHEEL)[1])
     w = [u1[own] @ R1.T - t.projection @ u2[other] @ R2.T for t, own, other in parts]
     return np.einsum("jia,ja->ji", contact.operator.frames, np.concatenate(w))
 
 
-def _traces(contact: GearContact, memories: Sequence[Memory], gear: int) -> Floats:
+def _traces(contact: GearContact, memories: Sequence[Memory], gear: Member) -> Floats:
     """Displacements (memories, m, d) that the rows of the contact had then."""
     before, rows = memories[0].rows, contact.rows(gear)[0]
     forces = np.stack([memory.forces[gear] for memory in memories])
     u = contact.bodies[gear].chain.apply(before[gear], forces, rows)
-    if gear == 0:
+    if gear == Member.PINION:
         both = _row_keys(before[0]), _row_keys(rows)
         _, then, now = np.intersect1d(*both, assume_unique=True, return_indices=True)
         u[:, now] += np.stack([memory.flux for memory in memories])[:, then]
@@ -163,10 +164,10 @@ def _row_keys(rows: Ints) -> Ints:
 def remembered(model: GearModel, contact: GearContact, found: Equilibrium) -> Memory:
     """The memory of a converged state."""
     d = contact.d
-    pushed = contact.pushed(0, found.force), contact.pushed(1, found.force)
-    flux = contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(0, d)
+    pushed = contact.pushed(Member.PINION, found.force), contact.pushed(Member.WHEEL, found.force)
+    flux = contact.operator.flux(_with_all_components(found.traction, d)) @ contact.stand.rotation(Member.PINION, d)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
-    return Memory(stand, (contact.rows(0)[0], contact.rows(1)[0]), pushed, flux)
+    return Memory(stand, (contact.rows(Member.PINION)[0], contact.rows(Member.WHEEL)[0]), pushed, flux)
 
 
 def _with_all_components(values: Floats, d: int) -> Floats:

@@ -29,6 +29,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.friction_history import Footprint, Past, known_heading, slipped
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 RELOCATE = 1.7e-4
 """A free rotation that moves the flanks further [modules] is made exact and searched again; the gap is linear in a
@@ -228,7 +229,7 @@ def _smooth(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equ
 def free_rotation(model: GearModel, found: Equilibrium) -> tuple[float, float]:
     """By how much the solution turns pinion and wheel [rad] from where they were searched."""
     free = float(found.motion[0])
-    return (free, 0.0) if model.load.on == 0 else (0.0, free)
+    return (free, 0.0) if model.load.on == Member.PINION else (0.0, free)
 
 
 def free_shift(model: GearModel, found: Equilibrium) -> float:
@@ -297,7 +298,7 @@ def position_result(
     torques = [float(np.sum(spin[:, :k] * found.force)) for spin in contact.spins]
     weights, traction = contact.operator.averaged(found.traction)
     stand = contact.stand.turned(model.load.on, float(found.motion[0]))
-    (pinion_rows, pinion_forces), (wheel_rows, wheel_forces) = (_carried(contact, gear, found) for gear in (0, 1))
+    (pinion_rows, pinion_forces), (wheel_rows, wheel_forces) = (_carried(contact, gear, found) for gear in Member)
     return PositionResult(
         stand=stand,
         friction=friction,
@@ -317,7 +318,7 @@ def position_result(
     )
 
 
-def _carried(contact: GearContact, gear: int, found: Equilibrium) -> tuple[Ints, Floats]:
+def _carried(contact: GearContact, gear: Member, found: Equilibrium) -> tuple[Ints, Floats]:
     """Rows (m, 2) of a gear's chain that carry load, and the forces (m, d) on them."""
     rows, forces = contact.rows(gear)[0], contact.pushed(gear, found.force)
     loaded = forces.any(axis=1)

@@ -24,15 +24,16 @@ from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import Skipping
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 @dataclass(frozen=True)
 class DeformedTooth:
-    """A sector of gear 0 or 1 in tooth pair `tooth`, in its own frame: displacement (N, d) [mm] of its nodes, stress
+    """A gear's sector in tooth pair `tooth`, in its own frame: displacement (N, d) [mm] of its nodes, stress
     (cells, 3, 3) [MPa] at the cells' centres."""
 
-    gear: int
+    gear: Member
     tooth: int
     mesh: MeshData
     displacement: Floats
@@ -52,7 +53,7 @@ class GearField:
         loads[position, place.ravel()] = np.concatenate(forces)
         assert isinstance(body.chain, ChainedCompliance)
         self._cuts = body.chain.cut_displacements(every, loads)
-        parts = sector_parts(sector_body(body.mesh, body.material, body.sign), body.flank, body.traction, self._pitch)
+        parts = sector_parts(sector_body(body.mesh, body.material, body.member), body.flank, body.traction, self._pitch)
         self._free, number = parts.free, np.full(parts.stiffness.shape[0], -1)
         number[self._free] = np.arange(len(self._free))
         K, P = parts.stiffness[self._free][:, self._free], parts.functionals[:, self._free]
@@ -87,11 +88,11 @@ class Deformation:
 
     def teeth(self, k: int) -> list[DeformedTooth]:
         """Those that carry load at position k."""
-        return [self._tooth(gear, k, number) for gear in (0, 1) for number in self.gears[gear].teeth(k)]
+        return [self._tooth(gear, k, number) for gear in Member for number in self.gears[gear].teeth(k)]
 
-    def _tooth(self, gear: int, k: int, number: int) -> DeformedTooth:
+    def _tooth(self, gear: Member, k: int, number: int) -> DeformedTooth:
         body, u = self.gears[gear].body, self.gears[gear].displacement(k, number)
-        return DeformedTooth(gear, body.sign * number, body.mesh, u, cell_stress(body.mesh, body.material, u))
+        return DeformedTooth(gear, body.member.sign * number, body.mesh, u, cell_stress(body.mesh, body.material, u))
 
 
 def deformation_of(scene: Scene, archive: Archive, comm: MPI.Comm) -> Deformation | None:

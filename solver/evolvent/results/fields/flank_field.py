@@ -15,6 +15,7 @@ from evolvent.results.fields.polygons import Polygons
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import Flank
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 
@@ -54,7 +55,7 @@ def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
     mine = np.flatnonzero(result.tooth == tooth)
     nodes = result.node[mine]
     z, p = np.round(run.flank.z, 9), result.pressure[mine]
-    s = line_distance(run.pair, result, tooth, 0, run.flank.roll_length[nodes], z[nodes])
+    s = line_distance(run.pair, result, tooth, Member.PINION, run.flank.roll_length[nodes], z[nodes])
     heights = np.unique(z)
     members = [np.flatnonzero(z[nodes] == height) for height in heights]
     rows = [row[np.argsort(s[row])] for row in members]
@@ -62,20 +63,20 @@ def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
 
 
 def line_distance(
-    pair: GearPair, result: PositionResult, tooth: int, gear: int, roll_length: Floats, z: Floats
+    pair: GearPair, result: PositionResult, tooth: int, gear: Member, roll_length: Floats, z: Floats
 ) -> Floats:
-    """Profile arc [mm] from the nominal contact line to points at roll lengths ρ and heights z of gear 0 or 1, positive
+    """Profile arc [mm] from the nominal contact line to points at roll lengths ρ and heights z of a gear, positive
     towards the pinion's tip and the wheel's root; s = (ρ² − ρ_line²)/2r_b on an involute."""
-    sign, base = 1 - 2 * gear, pair.gears[gear].base_radius
-    line = pair.pitch_point_roll_lengths[gear] + sign * result.stand.roll_distance(tooth, z)
-    return np.asarray(sign * (roll_length**2 - np.sign(line) * line**2) / (2.0 * base))
+    base = pair.gears[gear].base_radius
+    line = pair.pitch_point_roll_lengths[gear] + gear.sign * result.stand.roll_distance(tooth, z)
+    return np.asarray(gear.sign * (roll_length**2 - np.sign(line) * line**2) / (2.0 * base))
 
 
 @dataclass(frozen=True)
 class Patch:
     """A rectangle of the exact flank of one gear's tooth 0: roll lengths ρ (n,) and heights z (m,) [mm]."""
 
-    gear: int
+    gear: Member
     roll_length: Floats
     z: Floats
 
@@ -93,7 +94,7 @@ class Patch:
         return field.at(line_distance(run.pair, result, tooth, self.gear, ρ, z), self.z)
 
 
-def flank_patch(run: RunData, gear: int, count: tuple[int, int] = (420, 160)) -> Patch:
+def flank_patch(run: RunData, gear: Member, count: tuple[int, int] = (420, 160)) -> Patch:
     """The whole meshed flank of a gear as `count` (profile, width) points."""
     shape = run.shapes[gear]
     points = shape.points[shape.flank_nodes]

@@ -39,6 +39,7 @@ from evolvent.results.fields.polygons import (
 )
 from evolvent.results.run_data import RunData, SolvedPosition, flank_nodes
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.vtk_xml import xml_bytes
 
 Arrays = dict[str, Floats]
@@ -65,7 +66,7 @@ def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Poly
     """The loaded flanks of both gears' teeth in contact at a position, and their arrays; placed for the first μ."""
     first = solved[0].result
     parts, columns = [], []
-    for gear in (0, 1):
+    for gear in Member:
         surface = flank_surface(run.shapes[gear], run.pair.face_width)
         for tooth in sorted({tooth.tooth for each in solved for tooth in each.teeth}):
             parts.append(place(first, gear, tooth, surface))
@@ -73,18 +74,18 @@ def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Poly
     return joined(parts), {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
 
 
-def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: int, tooth: int) -> Arrays:
+def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member, tooth: int) -> Arrays:
     """The arrays of one tooth's flank."""
     shape, nodes = run.shapes[gear], flank_nodes(run.pair.gears[gear], run.shapes[gear])
-    ξ = (1 - 2 * gear) * (nodes.roll_length - run.pair.pitch_point_roll_lengths[gear])
+    ξ = gear.sign * (nodes.roll_length - run.pair.pitch_point_roll_lengths[gear])
     arrays = {
         "gear": np.full(len(nodes.points), float(gear)),
         "tooth": np.full(len(nodes.points), float(tooth)),
         "roll_distance_mm": ξ,
     }
     for each in solved:
-        values = _pinion_values(run, each.result, tooth) if gear == 0 else _wheel_values(run, each.result, tooth)
-        values = _without_edges(values, on_tip_edge(each.cut, tooth, nodes.z))
+        own = _pinion_values if gear == Member.PINION else _wheel_values
+        values = _without_edges(own(run, each.result, tooth), on_tip_edge(each.cut, tooth, nodes.z))
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
 
@@ -117,7 +118,7 @@ def _sticking(run: RunData, result: PositionResult, tooth: int) -> Floats:
     mine = points.tooth == tooth
     if not np.any(points.sticks[mine]):
         return np.zeros(len(nodes.points))
-    s = line_distance(run.pair, result, tooth, 0, nodes.roll_length, nodes.z)
+    s = line_distance(run.pair, result, tooth, Member.PINION, nodes.roll_length, nodes.z)
     _, nearest = cKDTree(np.column_stack([points.across, points.z])[mine]).query(np.column_stack([s, nodes.z]))
     return points.sticks[mine][nearest].astype(float)
 
@@ -128,7 +129,7 @@ def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
     n = len(nodes.points)
     pressure = np.zeros(n)
     if np.any(result.tooth == tooth):
-        s = line_distance(run.pair, result, tooth, 1, nodes.roll_length, nodes.z)
+        s = line_distance(run.pair, result, tooth, Member.WHEEL, nodes.roll_length, nodes.z)
         field = flank_field(run, result, tooth)
         for z in np.unique(nodes.z):
             row = nodes.z == z
@@ -141,7 +142,7 @@ def surrounding(run: RunData, result: PositionResult) -> Polygons:
     """The teeth in contact without their loaded flanks, and one more on each side, of both gears."""
     bare = {int(tooth) for tooth in np.unique(result.tooth)}
     teeth = list(range(min(bare) - 1, max(bare) + 2))
-    placed = [placed_teeth(run, result, gear, teeth, bare) for gear in (0, 1)]
+    placed = [placed_teeth(run, result, gear, teeth, bare) for gear in Member]
     return joined([surface for surface in placed if surface is not None])
 
 

@@ -16,6 +16,7 @@ from evolvent.results.archive.archive import GearShape
 from evolvent.results.run_data import RunData, is_plane
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank
+from evolvent_meshes.gears.member import Member
 
 CUTS = ("cut_low", "cut_high")
 FINE = {
@@ -123,12 +124,14 @@ def _loop(segments: Ints) -> Ints:
     return np.array(loop)
 
 
-def place(result: PositionResult, gear: int, tooth: int, surface: Polygons) -> Polygons:
-    """Tooth 0's surface of gear 0 or 1 where tooth pair `tooth` has it at a position."""
+def place(result: PositionResult, gear: Member, tooth: int, surface: Polygons) -> Polygons:
+    """Tooth 0's surface of a gear where tooth pair `tooth` has it at a position."""
     return surface.moved(result.stand.rotation(gear, 3, tooth), result.stand.centre(gear, 3))
 
 
-def placed_teeth(run: RunData, result: PositionResult, gear: int, teeth: list[int], bare: set[int]) -> Polygons | None:
+def placed_teeth(
+    run: RunData, result: PositionResult, gear: Member, teeth: list[int], bare: set[int]
+) -> Polygons | None:
     """Sectors of a gear at a position as one surface; those in `bare` without their loaded flanks. None: no teeth."""
     kinds = [
         (
@@ -141,7 +144,7 @@ def placed_teeth(run: RunData, result: PositionResult, gear: int, teeth: list[in
     return joined(placed) if placed else None
 
 
-def all_teeth(run: RunData, gear: int) -> list[int]:
+def all_teeth(run: RunData, gear: Member) -> list[int]:
     """Every tooth of a gear, by the tooth pairs' numbers around 0."""
     z = run.pair.gears[gear].z
     return list(range(-(z // 2), z - z // 2))
@@ -164,7 +167,7 @@ def space_vectors(run: RunData, result: PositionResult, local: Floats) -> Floats
     own, d, k = flank_normals(run), 2 if run.plane else 3, local.shape[1]
     for tooth in np.unique(result.tooth):
         here = result.tooth == tooth
-        normals = own[result.node[here]] @ result.stand.rotation(0, 3, int(tooth)).T
+        normals = own[result.node[here]] @ result.stand.rotation(Member.PINION, 3, int(tooth)).T
         vectors[here, :d] = np.einsum("jia,ji->ja", tangent_frames(normals[:, :d])[:, :k], local[here])
     return vectors
 
@@ -177,7 +180,7 @@ def flank_normals(run: RunData) -> Floats:
 def sliding(run: RunData, result: PositionResult, tooth: int) -> Floats:
     """Velocity (n, 3) of the pinion's flank nodes over the wheel, in space, per rad/s of pinion speed [mm/rad]: the
     tangential part of e_z × (x − c_1) + (z_1/z_2) e_z × (x − c_2)."""
-    R = result.stand.rotation(0, 3, tooth)
+    R = result.stand.rotation(Member.PINION, 3, tooth)
     x, normals = run.flank.points @ R.T, flank_normals(run) @ R.T
-    v = spin(x, np.zeros(3)) + spin(x, result.stand.centre(1, 3)) / run.pair.ratio
+    v = spin(x, np.zeros(3)) + spin(x, result.stand.centre(Member.WHEEL, 3)) / run.pair.ratio
     return v - np.einsum("ja,ja->j", v, normals)[:, None] * normals

@@ -20,6 +20,7 @@ from evolvent.results.tables.run_warnings import few_positions
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
+from evolvent_meshes.gears.member import Member
 
 FACE = "face width z [mm]"
 ROLL = "roll distance ξ from the pitch point [mm]"
@@ -143,7 +144,7 @@ def _label_places(lines: ContourSet, run: RunData) -> list[tuple[float, float]]:
 
 def _position_map(axes: Axes, run: RunData, solved: SolvedPosition, top: float) -> None:
     """The pressures of all teeth at a position on one flank."""
-    result, patch = solved.result, flank_patch(run, 0)
+    result, patch = solved.result, flank_patch(run, Member.PINION)
     fields = [flank_field(run, result, int(tooth)) for tooth in np.unique(result.tooth)]
     teeth = [patch.values(run, result, int(tooth), field) for tooth, field in zip(np.unique(result.tooth), fields)]
     ξ = patch.roll_length - run.pair.pitch_point_roll_lengths[0]

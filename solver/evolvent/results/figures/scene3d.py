@@ -17,6 +17,7 @@ from evolvent.results.fields.polygons import Polygons, all_teeth, place, placed_
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_points
+from evolvent_meshes.gears.member import Member
 
 Image = NDArray[np.uint8]
 """(height, width, 3)."""
@@ -48,15 +49,15 @@ def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[i
     """
     pinion, pitch = run.pair.pinion, 0.5 * run.pair.working_pitch_diameters[0]
     scene = _plotter(size)
-    _add_gear(scene, run, result, 0, all_teeth(run, 0), opacity=1.0)
-    _add_flanks(scene, run, result, 0, top)
-    _add_gear(scene, run, result, 1, all_teeth(run, 1), opacity=0.22)
+    _add_gear(scene, run, result, Member.PINION, all_teeth(run, Member.PINION), opacity=1.0)
+    _add_flanks(scene, run, result, Member.PINION, top)
+    _add_gear(scene, run, result, Member.WHEEL, all_teeth(run, Member.WHEEL), opacity=0.22)
     target = ((0.66 + 0.36 * close) * pitch, 0.0, 0.0)
     reach = (0.6 - 0.28 * close) * pinion.tip_diameter
     return _picture(scene, Camera(target, (0.35, 1.0, 0.6), reach))
 
 
-def gear_picture(run: RunData, result: PositionResult, gear: int, top: float, size: tuple[int, int]) -> Image:
+def gear_picture(run: RunData, result: PositionResult, gear: Member, top: float, size: tuple[int, int]) -> Image:
     """One gear's loaded flanks, the other gear taken away; seen from where that stood."""
     scene = _plotter(size)
     _add_gear(scene, run, result, gear, all_teeth(run, gear), opacity=1.0)
@@ -76,11 +77,11 @@ def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Fl
     return _picture(scene, _at_the_mesh(run, gear))
 
 
-def _at_the_mesh(run: RunData, gear: int) -> Camera:
+def _at_the_mesh(run: RunData, gear: Member) -> Camera:
     """On a gear's teeth at the pitch point, from where the other gear stood."""
     middle = contact_points(run.pair, 0.0, 0.0)
     width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
-    along = (0.75, 1.0, 0.3) if gear == 0 else (-0.75, -1.0, 0.3)
+    along = (0.75, 1.0, 0.3) if gear == Member.PINION else (-0.75, -1.0, 0.3)
     return Camera(tuple(middle.tolist()), along, 0.5 * width)
 
 
@@ -93,7 +94,7 @@ def _plotter(size: tuple[int, int]) -> Any:
 
 
 def _add_gear(
-    scene: Any, run: RunData, result: PositionResult, gear: int, teeth: list[int], opacity: float,
+    scene: Any, run: RunData, result: PositionResult, gear: Member, teeth: list[int], opacity: float,
     bare: set[int] | None = None,
 ) -> None:  # fmt: skip
     """bare: the teeth whose loaded flanks are left out; those in contact unless said otherwise."""
@@ -107,7 +108,7 @@ def _add_gear(
         scene.add_mesh(edges, color=BODY[gear], line_width=1.0, opacity=0.6)
 
 
-def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: int, top: float) -> None:
+def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: Member, top: float) -> None:
     """The loaded flanks of the teeth in contact, coloured by pressure."""
     patch = flank_patch(run, gear)
     surface = patch.polygons(run)

@@ -20,6 +20,7 @@ from evolvent.results.figures.scene3d import gear_picture, pair_picture
 from evolvent.results.figures.stress import OWN_ANGLE, STRESS
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import position_row
+from evolvent_meshes.gears.member import Member
 
 FRAME_MS = 110
 
@@ -41,10 +42,14 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
         "the pair, wheel drawn as glass, which tints colours",
     )
     _image(
-        figure.add_subplot(grid[0, 1]), gear_picture(run, result, 0, top, (960, 560)), "pinion flanks, wheel taken away"
+        figure.add_subplot(grid[0, 1]),
+        gear_picture(run, result, Member.PINION, top, (960, 560)),
+        "pinion flanks, wheel taken away",
     )
     _image(
-        figure.add_subplot(grid[1, 1]), gear_picture(run, result, 1, top, (960, 560)), "wheel flanks, pinion taken away"
+        figure.add_subplot(grid[1, 1]),
+        gear_picture(run, result, Member.WHEEL, top, (960, 560)),
+        "wheel flanks, pinion taken away",
     )
     bar = figure.colorbar(
         ScalarMappable(Normalize(0.0, top), PRESSURE_MAP),

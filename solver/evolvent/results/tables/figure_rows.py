@@ -16,6 +16,7 @@ from evolvent.results.relief_kinks import peak_over_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.shaft_forces import shaft_forces
 from evolvent.results.tables.summary_rows import FrictionRow, PositionRow, ToothRow
+from evolvent_meshes.gears.member import Member
 
 DEGREES = 6
 """Decimals of an angle: a hundredth of a micrometre on a flank; beyond them stands the round-off of its conversion."""
@@ -84,8 +85,8 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         loss_percent=100.0 * loss,
         crossing_deg=degrees(crossing(lowest, curve)) if crosses else math.nan,
         balance_error=pitch_imbalance(results),
-        forces_on_pinion=shaft_forces(run, 0, index),
-        forces_on_wheel=shaft_forces(run, 1, index),
+        forces_on_pinion=shaft_forces(run, Member.PINION, index),
+        forces_on_wheel=shaft_forces(run, Member.WHEEL, index),
         estimated_error=run.errors.figures[index] if run.errors.figures else None,
         spacing_error=spacing_errors(run, index),
     )

@@ -13,6 +13,7 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.skips import is_plane, skips
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.root_band import LONGEST
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -64,20 +65,20 @@ def has_stiff_pinion(scene: Scene) -> bool:
 def sector_resolutions(scene: Scene) -> tuple[SectorResolution, SectorResolution]:
     """(pinion's, wheel's) resolution; see `sector_resolution`."""
     estimate = scene.hertz_estimate()
-    pinion, wheel = (sector_resolution(scene, estimate, index) for index in (0, 1))
+    pinion, wheel = (sector_resolution(scene, estimate, member) for member in Member)
     return pinion, wheel
 
 
-def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> SectorResolution:
-    """The resolution of the pinion's (index 0) or the wheel's (1) sector.
+def sector_resolution(scene: Scene, estimate: HertzEstimate, member: Member) -> SectorResolution:
+    """The resolution of the pinion's or the wheel's sector.
 
     Along the profile the elements are h = 2b/n long with the local half-width b: ∫ds/h of them, with ds = ρ/r_b dρ the
     arc of the involute. A layer of length L shears the contact line by s = L tan β_b ρ/r_b along the profile; s/h is
     held at what the level allows, on average over the path of contact.
     """
-    gear, level = estimate.pair.gears[index], scene.mesh.level
+    gear, level = estimate.pair.gears[member], scene.mesh.level
     count = elements_per_contact_width(scene)
-    width = _ContactWidth(estimate, index)
+    width = _ContactWidth(estimate, member)
     start = _flank_start(gear, width)
     roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
     density = roll / gear.base_radius * count / width.at_roll_length(roll)
@@ -88,7 +89,7 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, index: int) -> Sect
     core, rim = CORE_AND_RIM[is_plane(scene)]
     resolution = SectorResolution(
         profile_elements=3 * max(LEAST_ROWS, math.ceil(along / 3)),
-        face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][index])),
+        face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][member])),
         layer_depths=(depths[0], depths[1], depths[2]),
         flank_start_diameter=start,
         size_at=width,
@@ -122,10 +123,9 @@ def _neck_elements(depth: float) -> int:
 class _ContactWidth:
     """2b [mm] along one gear's profile; outside the path of contact that of its nearest end."""
 
-    def __init__(self, estimate: HertzEstimate, index: int) -> None:
-        self.estimate, self.gear = estimate, estimate.pair.gears[index]
-        self.pitch_point = estimate.pair.pitch_point_roll_lengths[index]
-        self.sign = 1 - 2 * index
+    def __init__(self, estimate: HertzEstimate, member: Member) -> None:
+        self.estimate, self.member, self.gear = estimate, member, estimate.pair.gears[member]
+        self.pitch_point = estimate.pair.pitch_point_roll_lengths[member]
 
     def __call__(self, radius: Floats) -> Floats:
         """At radii [mm], any shape."""
@@ -133,14 +133,14 @@ class _ContactWidth:
 
     def at_roll_length(self, roll: Floats) -> Floats:
         """At transverse curvature radii ρ [mm], any shape."""
-        xi = np.clip(self.sign * (roll - self.pitch_point), *self.estimate.pair.path_of_contact)
+        xi = np.clip(self.member.sign * (roll - self.pitch_point), *self.estimate.pair.path_of_contact)
         return 2 * self.estimate.half_width(xi)
 
 
 def _flank_start(gear: GearParameters, width: _ContactWidth) -> float:
     """Diameter where the fine flank starts [mm]: below the active profile, not below the involute."""
     pair = width.estimate.pair
-    active = gear.roll_length(pair.active_start_diameters[0 if width.sign > 0 else 1])
+    active = gear.roll_length(pair.active_start_diameters[width.member])
     land = FORE_LAND * float(width.at_roll_length(np.array(active))) / 2
     square = active**2 - 2 * gear.base_radius * land  # arc s = ρ²/2r_b
     return max(gear.root_form_diameter, 2 * math.hypot(gear.base_radius, math.sqrt(max(0.0, square))))

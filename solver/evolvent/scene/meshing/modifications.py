@@ -17,6 +17,7 @@ from evolvent.scene.schema.errors import Problem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines, separation
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -94,14 +95,14 @@ def modification_warnings(scene: Scene) -> Iterator[str]:
 
 def folding_warnings(scene: Scene, resolutions: tuple[SectorResolution, SectorResolution]) -> Iterator[str]:
     """Sentences on what may fold the mesh."""
-    for index, resolution in enumerate(resolutions):
-        if problem := too_much_relief(scene, index, resolution):
+    for member, resolution in zip(Member, resolutions):
+        if problem := too_much_relief(scene, member, resolution):
             yield f"The mesh may fold, which `run` then refuses: {problem}."
 
 
-def too_much_relief(scene: Scene, index: int, resolution: SectorResolution) -> Problem | None:
+def too_much_relief(scene: Scene, member: Member, resolution: SectorResolution) -> Problem | None:
     """What is wrong where relief and crowning take most of the thin layers away that lie below the flank; else None."""
-    name, depth = GEARS[index], 1e3 * sum(resolution.layer_depths)
+    name, depth = member.label, 1e3 * sum(resolution.layer_depths)
     gear = getattr(scene, name)
     taken = gear.tip_relief_um + gear.lead_crowning_um
     if taken < FOLDING * depth:

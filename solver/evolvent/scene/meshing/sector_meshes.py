@@ -13,6 +13,7 @@ from evolvent.scene.schema.errors import SceneError
 from evolvent.scene.skips import is_plane
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import nominal_angles
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.reference_cells import corner_count
 from evolvent_meshes.sector.section import SectorResolution
@@ -34,21 +35,23 @@ def sector_meshes(scene: Scene, plane: bool | None = None) -> tuple[MeshData, Me
 
     plane: mesh the mid-face sections only; by default where `is_plane` says so. Raises MeshError.
     """
-    return gear_mesh(scene, 0, plane), gear_mesh(scene, 1, plane)
+    return gear_mesh(scene, Member.PINION, plane), gear_mesh(scene, Member.WHEEL, plane)
 
 
-def gear_mesh(scene: Scene, index: int, plane: bool | None = None, adapted: Adaption = lambda own: own) -> MeshData:
-    """One of the `sector_meshes`: the pinion's (index 0) or the wheel's (1); `adapted` may change its resolution.
+def gear_mesh(
+    scene: Scene, member: Member, plane: bool | None = None, adapted: Adaption = lambda own: own
+) -> MeshData:
+    """One of the `sector_meshes`: the pinion's or the wheel's; `adapted` may change its resolution.
 
     Raises MeshError, and SceneError where it is the flank's modification that folds the cells.
     """
     flat = is_plane(scene) if plane is None else plane
     shape = PLANE_SHAPE[scene.mesh.shape] if flat else scene.mesh.shape
-    resolution = adapted(sector_resolutions(scene)[index])
+    resolution = adapted(sector_resolutions(scene)[member])
     try:
-        mesh = sector_mesh(scene.gear_pair().gears[index], resolution, shape)
+        mesh = sector_mesh(scene.gear_pair().gears[member], resolution, shape)
     except MeshError as error:
-        if problem := too_much_relief(scene, index, resolution):
+        if problem := too_much_relief(scene, member, resolution):
             raise SceneError([problem]) from error
         raise
     return mesh if scene.mesh.order == 2 else linear(mesh)

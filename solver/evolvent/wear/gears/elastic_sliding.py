@@ -31,13 +31,13 @@ from evolvent.gears.kinematics import Stand, line_of_action
 from evolvent.wear.archard import between
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.structured_grid import Mask
 
 Grids = tuple[FlankGrid, FlankGrid]
 Both = tuple[Floats, Floats]
 REACH = 3  # spacings of arc about loaded nodes: a slope takes one to either side of a point between them
-SIGNS = 1.0, -1.0  # of pinion and wheel where the one moves over the other
 
 
 @dataclass(frozen=True)
@@ -62,12 +62,12 @@ class Deflection:
         sees the pinion, by the extended trace of contact_operator.py."""
         d, teeth = bodies[0].d, np.unique(rows[0][forces[0].any(axis=1), 0])
         fields, seen, axes = [], [], []
-        for gear, (body, own, pushed) in enumerate(zip(bodies, rows, forces)):
+        for gear, body, own, pushed in zip(Member, bodies, rows, forces):
             loaded = own[pushed.any(axis=1)]
             wanted = own[_about(grids[gear], own, loaded)]
             u = body.chain.apply(loaded, pushed[pushed.any(axis=1)], wanted) @ stand.rotation(gear, d).T
             frames = [stand.rotation(gear, d, tooth) for tooth in teeth]
-            nodes = [wanted[:, 0] == body.sign * tooth for tooth in teeth]
+            nodes = [wanted[:, 0] == gear.sign * tooth for tooth in teeth]
             spread = [grids[gear].spread(wanted[here, 1], u[here] @ R) for here, R in zip(nodes, frames)]
             fields.append(np.stack(spread))
             seen.append(np.stack([grids[gear].seen(wanted[here, 1]) for here in nodes]))
@@ -103,10 +103,10 @@ class PitchDeflection:
         k, tooth, ξ = np.repeat(numbers, counts), every.tooth, every.ξ
         teeth = self._stand(k - 1, tooth), self._stand(k, tooth), self._stand(k + 1, tooth)
         more = np.zeros(len(k))
-        for gear, s in enumerate((every.across, every.opposite)):
+        for gear, s in zip(Member, (every.across, every.opposite)):
             own = _OnFlank(self, gear, every.z, ξ, s, teeth)
             turning = self.pair.curvature_radii(ξ)[gear] * self._turning[gear, k]
-            more += own.shift() / (1.0, self.pair.ratio)[gear] + turning + SIGNS[gear] * own.tangential_rate()
+            more += own.shift() / (1.0, self.pair.ratio)[gear] + turning + gear.sign * own.tangential_rate()
         return np.split(more, np.cumsum(counts)[:-1])
 
     @cached_property
@@ -134,7 +134,7 @@ class PitchDeflection:
         parts = [own for _, own in sorted(self.known.items())]
 
         def both(name: str) -> tuple[np.ndarray, np.ndarray]:
-            first, second = (np.concatenate([getattr(own, name)[gear] for own in parts]) for gear in (0, 1))
+            first, second = (np.concatenate([getattr(own, name)[gear] for own in parts]) for gear in Member)
             return first, second
 
         teeth = np.concatenate([own.teeth for own in parts])
@@ -147,7 +147,7 @@ class _OnFlank:
     teeth at the position before, now and after."""
 
     pitch: PitchDeflection
-    gear: int
+    gear: Member
     z: Floats
     ξ: Floats
     s: Floats
@@ -157,7 +157,7 @@ class _OnFlank:
         """(q,) [mm] how far along the line of action deflection and wear have moved the points."""
         worn, β = self.pitch.worn[self.gear], self.pitch.pair.pinion.base_helix_angle
         lost = np.zeros(len(self.z)) if worn is None else self._hats(self._arc(self.ξ)) @ worn
-        return _dots(self._axis(0), self._here) - SIGNS[self.gear] * np.cos(β) * lost
+        return _dots(self._axis(0), self._here) - self.gear.sign * np.cos(β) * lost
 
     def tangential_rate(self) -> Floats:
         """t·R u' (q,) [mm/rad]."""
@@ -178,7 +178,7 @@ class _OnFlank:
     def _bearing(self, ξ: Floats) -> Floats:
         """Roll distances (q,) at which this flank is touched; beyond the path of contact by its tip, which stays."""
         start, end = self.pitch.pair.path_of_contact
-        return np.minimum(ξ, end) if self.gear == 0 else np.maximum(ξ, start)
+        return np.minimum(ξ, end) if self.gear == Member.PINION else np.maximum(ξ, start)
 
     def _arc(self, ξ: Floats) -> Floats:
         """(q,) of the points when the contact line is at ξ (q,)."""

@@ -17,6 +17,7 @@ from evolvent.gears.condensed_gear import GearBody
 from evolvent.wear.archard import between
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.structured_grid import Mask
 
@@ -25,13 +26,13 @@ EDGE = 0.1  # modules of arc: next to a tip edge that bears, its own or its mate
 UNEVEN = 1e-2  # of a module: how far the arcs of layers may differ, by modifications
 
 
-def line_arc(pair: GearPair, gear: int, ξ: Floats) -> Floats:
+def line_arc(pair: GearPair, gear: Member, ξ: Floats) -> Floats:
     """Arc u [mm] of the contact line on a gear's flank at roll distances ξ."""
-    ρ = pair.pitch_point_roll_lengths[gear] + (1.0 - 2.0 * gear) * ξ
+    ρ = pair.pitch_point_roll_lengths[gear] + gear.sign * ξ
     return np.asarray(ρ**2 / (2.0 * pair.gears[gear].base_radius))
 
 
-def inner_arcs(pair: GearPair, gear: int) -> tuple[float, float]:
+def inner_arcs(pair: GearPair, gear: Member) -> tuple[float, float]:
     """Arcs between which no tip edge bears: those of the path of contact, less EDGE at either end."""
     low, high = sorted(line_arc(pair, gear, np.array(pair.path_of_contact)))
     margin = EDGE * pair.pinion.normal_module
@@ -70,7 +71,7 @@ class FlankGrid:
         node = np.arange(len(heights) * len(arcs)).reshape(len(heights), -1)
         return FlankGrid(arcs, heights, node, np.outer(widths, _hat_lengths(arcs)).ravel())
 
-    def inner(self, pair: GearPair, gear: int) -> Ints:
+    def inner(self, pair: GearPair, gear: Member) -> Ints:
         """The nodes between the tip-edge zones."""
         low, high = inner_arcs(pair, gear)
         return self.node[:, (self.arcs >= low) & (self.arcs <= high)].ravel()

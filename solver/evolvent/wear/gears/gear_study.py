@@ -15,6 +15,7 @@ from evolvent.gears.sweep.position import SearchedAt
 from evolvent.wear.block_stepping import Block, BlockSettings, WearState, next_block, unworn
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 ROUNDING = 1e-12  # of the number of cycles
 
@@ -101,7 +102,7 @@ def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     state = block.state
     depths = gears.by_gear(state.depth - gears.begin)
     width = gears.model.pair.face_width if gears.model.bodies[0].d == 2 else 1.0
-    inner = [grid.inner(gears.model.pair, gear) for gear, grid in enumerate(gears.grids)]
+    inner = [grid.inner(gears.model.pair, gear) for gear, grid in zip(Member, gears.grids)]
     deepest = [1e3 * float(np.max(depth[own])) for depth, own in zip(depths, inner)]
     volumes = [width * float(areas @ depth) for areas, depth in zip(gears.by_gear(gears.areas), depths)]
     return BlockRow(

@@ -39,6 +39,7 @@ from evolvent.wear.gears.worn_sweep import RubbingSweep
 from evolvent.wear.mesh_motion import WornSurface, certify_loss, worn_mesh
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
@@ -66,10 +67,10 @@ class PitchState(Evaluated):
 @dataclass(frozen=True)
 class Following:
     """When the meshes follow the wear: where they lack more than `depth` [mm] of what they could follow. condensed:
-    makes the model from gear 0's and 1's meshes."""
+    makes the model from both gears' meshes."""
 
     depth: float
-    condensed: Callable[[Callable[[int], MeshData]], GearModel]
+    condensed: Callable[[Callable[[Member], MeshData]], GearModel]
 
 
 class GearWear:
@@ -129,7 +130,7 @@ class GearWear:
         known = self.gentle(depth)
         lost = self.by_gear(known)
 
-        def moved(gear: int) -> MeshData:
+        def moved(gear: Member) -> MeshData:
             made, flank = self._made[gear]
             mesh = worn_mesh(made, [WornSurface(flank, lost[gear])], HELD)
             certify_loss(made, mesh, float(flank.weights() @ lost[gear]))
@@ -234,7 +235,7 @@ class GearWear:
         mean = float(points.weights @ points.pressure**2) / float(points.weights @ points.pressure)
         ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
         modulus = joint_modulus(*(body.material for body in self.model.bodies))
-        inner = [grid.inner(self.model.pair, gear) for gear, grid in enumerate(self.grids)]
+        inner = [grid.inner(self.model.pair, gear) for gear, grid in zip(Member, self.grids)]
         fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
         return mean * ripple / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
 
@@ -261,6 +262,6 @@ class GearWear:
         if not positions:
             return sp.csr_matrix((0, len(self.areas)))
         points = ContactPoints.joined(positions)
-        places = enumerate((points.across, points.opposite))
+        places = zip(Member, (points.across, points.opposite))
         arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
         return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()

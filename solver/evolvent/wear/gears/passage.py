@@ -22,6 +22,7 @@ import scipy.sparse as sp
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 FINE = 0.5  # of the grid's finest spacing a parcel goes at a time
@@ -63,7 +64,7 @@ def passage(
     points = ContactPoints.joined(positions)
     works = _shares(pair, points.sliding / (1.0 + 1.0 / pair.ratio), η, step) * points.weights[:, None]
     depths = []
-    for gear, s in enumerate((points.across, points.opposite)):
+    for gear, s in zip(Member, (points.across, points.opposite)):
         u = line_arc(pair, gear, points.ξ[:, None] + η) + s[:, None]
         depths.append(grids[gear].gathered(u, points.z, works))
     return Passage((depths[0], depths[1]), works.sum(axis=1), points.pressure)

@@ -16,6 +16,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, i
 from evolvent.gears.sweep.position import PositionResult, SharedPosition
 from evolvent.wear.gears.elastic_sliding import Deflection, Grids, PitchDeflection
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,8 @@ class RubbingSweep:
         if memory is not None:
             return Deflection.of(model.bodies, stand, memory.rows, memory.forces, self.grids)
         contact, force = common.contact, common.smooth.force
-        rows, forces = (contact.rows(0)[0], contact.rows(1)[0]), (contact.pushed(0, force), contact.pushed(1, force))
+        pinion, wheel = ((contact.rows(gear)[0], contact.pushed(gear, force)) for gear in Member)
+        rows, forces = (pinion[0], wheel[0]), (pinion[1], wheel[1])
         return Deflection.of(model.bodies, stand, rows, forces, self.grids)
 
     def _exchanged(

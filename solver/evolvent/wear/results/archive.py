@@ -24,6 +24,7 @@ from evolvent.scene.scene import GEARS, Scene
 from evolvent.wear.gears.gear_study import BlockRow, Kept
 from evolvent.wear.gears.gear_wear import GearWear
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 FILE = "wear.npz"
 COUNTS = "refused", "searched", "refreshed"  # of a block's facts, the whole numbers
@@ -74,7 +75,7 @@ def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Sc
     Raises OSError."""
     files = RunFolder(folder)
     worn: dict[str, object] = {"wear": None}
-    for gear, (name, own) in enumerate(zip(GEARS, gears.by_gear(depth))):
+    for gear, name, own in zip(Member, GEARS, gears.by_gear(depth)):
         path = files.write_text(f"flank_{name}.csv", chart_of(gears, gear, own).text())
         worn[name] = getattr(scene, name).model_copy(update={"flank_csv": str(path)})
     changed = scene.model_copy(update=worn)
@@ -82,7 +83,7 @@ def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Sc
     return changed
 
 
-def chart_of(gears: GearWear, gear: int, depth: Floats) -> FlankChart:
+def chart_of(gears: GearWear, gear: Member, depth: Floats) -> FlankChart:
     """Depths (n,) [mm] of a gear's flank nodes over diameter and height."""
     grid, base = gears.grids[gear], gears.model.pair.gears[gear].base_radius
     return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)

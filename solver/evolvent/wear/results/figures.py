@@ -30,6 +30,7 @@ from evolvent.results.figures.scene3d import flank_picture
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.report import WornPair, WornRun
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 PATCH = (240, 60)  # points of a flank over profile and width: wear is smooth
 Draw = Callable[[WornRun], Figure]
@@ -56,11 +57,11 @@ def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
     yield "25_worn_teeth", worn_teeth
 
 
-def wearing(study: WornRun) -> dict[int, float]:
+def wearing(study: WornRun) -> dict[Member, float]:
     """The gears that wear, and their K/H [mm²/N]."""
     wear = study.scene.wear
     assert wear is not None
-    return {gear: K for gear, K in enumerate((wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
+    return {gear: K for gear, K in zip(Member, (wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
 
 
 def cycles_label(cycles: float) -> str:
@@ -128,7 +129,7 @@ def worn_teeth(study: WornRun) -> Figure:
         depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
         result = last.run.positions[0][0].result
         ax.imshow(flank_picture(last.run, result, patch, 1e3 * depth, top, (960, 720)))
-        ax.set_title(f"{GEARS[gear]}, {GEARS[1 - gear]} taken away", fontsize=10)
+        ax.set_title(f"{GEARS[gear]}, {gear.mate.label} taken away", fontsize=10)
         ax.axis("off")
         _depth_bar(figure, ax, ScalarMappable(Normalize(0.0, top), PRESSURE_MAP))
     return figure
@@ -150,7 +151,7 @@ def _three(value: float) -> str:
     return f"{value:#.3g}".removesuffix(".")
 
 
-def _deepest(pair: WornPair, gear: int) -> float:
+def _deepest(pair: WornPair, gear: Member) -> float:
     """Deepest wear [µm] of a gear between the tip-edge zones."""
     return 1e3 * float(pair.worn[gear].depth[pair.inner(gear)].max())
 

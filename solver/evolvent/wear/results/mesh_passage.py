@@ -26,6 +26,7 @@ from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.gears.passage import passage
 from evolvent.wear.results.report import WornPair
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 Ridge = Callable[[RunData, PositionResult, int, Floats], Floats]
@@ -52,7 +53,7 @@ class Contacts:
     single_point: Floats
 
     @staticmethod
-    def of(run: RunData, gear: int) -> Contacts:
+    def of(run: RunData, gear: Member) -> Contacts:
         """Of a plane pair's pitch without friction coefficients other than its first."""
         cuts = [each[0].cut for each in run.positions]
         ξ, load, peak, hertz, b = (
@@ -69,19 +70,19 @@ class Contacts:
         )  # fmt: skip
 
 
-def radius_at(pair: GearPair, gear: int, ξ: Floats) -> Floats:
+def radius_at(pair: GearPair, gear: Member, ξ: Floats) -> Floats:
     """Radius [mm] at which a gear's flank is touched at roll distances ξ."""
     base = pair.gears[gear].base_radius
     return np.sqrt(base**2 + 2.0 * base * line_arc(pair, gear, ξ))
 
 
-def roll_distance_at(pair: GearPair, gear: int, radius: float | Floats) -> Floats:
+def roll_distance_at(pair: GearPair, gear: Member, radius: float | Floats) -> Floats:
     """ξ [mm] at which a gear's flank is touched at radii [mm]."""
     ρ = np.sqrt(np.square(radius) - pair.gears[gear].base_radius ** 2)
-    return np.asarray((1.0 - 2.0 * gear) * (ρ - pair.pitch_point_roll_lengths[gear]))
+    return np.asarray(gear.sign * (ρ - pair.pitch_point_roll_lengths[gear]))
 
 
-def sliding(pair: GearPair, gear: int, ξ: Floats, half_width: Floats) -> Floats:
+def sliding(pair: GearPair, gear: Member, ξ: Floats, half_width: Floats) -> Floats:
     """∫|v_s|dt [mm] of the points at roll distances ξ while a contact of half-width b [mm] goes over them; with the
     sliding velocity (1 + 1/u)|ξ| per radian of the pinion, which is not constant and at the pitch point not zero."""
     base, pitch = pair.gears[gear].base_radius, pair.pitch_point_roll_lengths[gear]
@@ -110,7 +111,7 @@ class Depths:
     peak_times_sliding: Floats
 
     @staticmethod
-    def of(pair: WornPair, gear: int, coefficient: float) -> Depths:
+    def of(pair: WornPair, gear: Member, coefficient: float) -> Depths:
         """Of a plane pair, between the tip-edge zones; coefficient: K/H [mm²/N]."""
         run, inner = pair.run, pair.inner(gear)
         radius = pair.worn[gear].diameters[inner] / 2.0
@@ -125,20 +126,20 @@ class Depths:
 def gathered(pair: WornPair) -> tuple[Floats, Floats]:
     """Depths [mm at K/H = 1 mm²/N] that one mesh takes off pinion and wheel at their charts' diameters, plane pairs."""
     run = pair.run
-    grids = chart_grid(pair, 0), chart_grid(pair, 1)
+    grids = chart_grid(pair, Member.PINION), chart_grid(pair, Member.WHEEL)
     points = [each[0].result.contact for each in run.positions]
     found = passage(run.pair, points, grids, run.pitch / len(points))
     pinion, wheel = (np.asarray(depths @ found.pressure) for depths in found.depths)
     return pinion, wheel
 
 
-def chart_grid(pair: WornPair, gear: int) -> FlankGrid:
+def chart_grid(pair: WornPair, gear: Member) -> FlankGrid:
     """The nodes of a gear's chart."""
     own, chart = pair.run.pair.gears[gear], pair.worn[gear]
     return FlankGrid.regular(chart.arcs(own), chart.heights, own.base_helix_angle)
 
 
-def pitch_point_depth(run: RunData, gear: int, coefficient: float) -> float:
+def pitch_point_depth(run: RunData, gear: Member, coefficient: float) -> float:
     """Depth [mm] a mesh at the pitch point of a gear, where the line contact's formula has none: a Hertz ridge of the
     load there passes while the sliding goes through zero, (K/H)(1 + 1/u)(r_b²/r_b1 ρ²)·⅔ p0 b², K/H [mm²/N]."""
     pair, zero = run.pair, np.zeros(1)
@@ -167,12 +168,12 @@ class PointPassage:
         """At a radius [mm] of a plane pair's pinion: the ridges of the positions around are interpolated linearly in
         the rotation at equal distance from the contact line, as wear is gathered."""
         pair, base = run.pair, run.pair.pinion.base_radius
-        ξ = roll_distance_at(pair, 0, radius)
+        ξ = roll_distance_at(pair, Member.PINION, radius)
         load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
         b = float(line_half_width(load, R, modulus))
         lasts = b / (pair.pitch_point_roll_lengths[0] + float(ξ))  # half of it; the line moves by ρ over the flank
         rotation = float(ξ) / base + WIDER * lasts * np.linspace(-1.0, 1.0, count)
-        s = line_arc(pair, 0, ξ) - line_arc(pair, 0, base * rotation)
+        s = line_arc(pair, Member.PINION, ξ) - line_arc(pair, Member.PINION, base * rotation)
         bears = _between(run, rotation, s, _ridge) > 0.0
         speed = (1.0 + 1.0 / pair.ratio) * base * np.abs(rotation) * bears
         hertz = line_peak_pressure(load, R, modulus) * np.sqrt(np.maximum(0.0, 1.0 - (s / b) ** 2))

@@ -19,6 +19,7 @@ from evolvent.scene.scene import GEARS
 from evolvent.wear.results.figures import wearing
 from evolvent.wear.results.mesh_passage import Contacts, Depths, PointPassage, pitch_point_depth
 from evolvent.wear.results.report import WornRun
+from evolvent_meshes.gears.member import Member
 
 T = TypeVar("T")
 FORMULA = {"color": INK, "linestyle": "--", "linewidth": 1.2}
@@ -58,7 +59,7 @@ def point_in_contact(point: PointPassage) -> Figure:
 
 def stress_and_sliding(run: RunData) -> Figure:
     """Largest stress and sliding distance of the points over the pinion's profile (Figs 17b and 18)."""
-    both = Contacts.of(run, 0), Contacts.of(run, 1)
+    both = Contacts.of(run, Member.PINION), Contacts.of(run, Member.WHEEL)
     pinion = both[0]
     stress, width = (
         100.0 * float(np.median(np.abs(found / wanted - 1.0)))

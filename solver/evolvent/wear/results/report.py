@@ -20,6 +20,7 @@ from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.archive import read_study, worn_folder
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -86,13 +87,13 @@ class WornPair:
     worn: tuple[FlankChart, FlankChart]
     volumes: tuple[float, float]
 
-    def inner(self, gear: int) -> np.ndarray:
+    def inner(self, gear: Member) -> np.ndarray:
         """(k,) bool: the chart's diameters between the tip-edge zones, where pressure is singular and so is wear."""
         low, high = inner_arcs(self.run.pair, gear)
         arcs = self.worn[gear].arcs(self.run.pair.gears[gear])
         return np.asarray((arcs >= low) & (arcs <= high))
 
-    def profile(self, gear: int) -> tuple[Floats, Floats]:
+    def profile(self, gear: Member) -> tuple[Floats, Floats]:
         """Diameters [mm] between the tip-edge zones, and wear [µm] there, mean over the face."""
         inner, chart = self.inner(gear), self.worn[gear]
         return chart.diameters[inner], 1e3 * _mean(chart)[inner]
@@ -101,11 +102,11 @@ class WornPair:
         """The figures of it."""
         row = friction_rows(self.run)[0]
         return PairReport(
-            self.cycles, self._gear(0), self._gear(1), row.max_pressure_MPa, row.transmission_error_peak_to_peak_um,
-            row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
+            self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
+            row.transmission_error_peak_to_peak_um, row.mesh_stiffness_N_per_mm_um, row.loss_percent, row.balance_error,
         )  # fmt: skip
 
-    def _gear(self, gear: int) -> GearReport:
+    def _gear(self, gear: Member) -> GearReport:
         chart, inner = self.worn[gear], self.inner(gear)
         depth = np.where(inner[:, None], chart.depth, -np.inf)
         row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
@@ -137,7 +138,7 @@ def read_worn(folder: Path) -> WornRun:
     pairs = []
     for cycles in (0.0, *scene.wear.reports):
         own = worn_folder(folder, cycles)
-        charts = [_worn(scene, own if cycles else worn_folder(folder, scene.wear.reports[0]), k) for k in (0, 1)]
+        charts = [_worn(scene, own if cycles else worn_folder(folder, scene.wear.reports[0]), gear) for gear in Member]
         if cycles == 0.0:
             charts = [FlankChart(c.diameters, c.heights, np.zeros_like(c.depth)) for c in charts]
         volume = volumes[float(ends[np.argmin(np.abs(ends - cycles))])]
@@ -145,7 +146,7 @@ def read_worn(folder: Path) -> WornRun:
     return WornRun(scene, kept.rows, tuple(pairs))
 
 
-def _worn(scene: Scene, folder: Path, gear: int) -> FlankChart:
+def _worn(scene: Scene, folder: Path, gear: Member) -> FlankChart:
     """A worn flank less what was charted at the beginning."""
     chart = FlankChart.read(folder / f"flank_{GEARS[gear]}.csv")
     before = scene.flank_chart(GEARS[gear])

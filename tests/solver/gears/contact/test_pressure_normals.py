@@ -16,6 +16,7 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.position import PositionResult
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene, swept
 
 LIGHT = 1e-3  # of the torque, so that nothing but the corner itself gives way
@@ -31,19 +32,19 @@ def spur() -> GearModel:
     )
 
 
-def at_corner(model: GearModel, gear: int) -> PositionResult:
+def at_corner(model: GearModel, gear: Member) -> PositionResult:
     """Where the tip's corner of a gear bears: the pinion's after the path of contact, the wheel's before it."""
     pair = model.pair
     start, end = pair.path_of_contact
     beyond = OFF * pair.pinion.normal_module
-    ξ = end + beyond if gear == 0 else start - beyond
+    ξ = end + beyond if gear == Member.PINION else start - beyond
     return swept(model, np.degrees([ξ / pair.pinion.base_radius]), [0.0])[0].results[0]
 
 
-def arm(model: GearModel, result: PositionResult, gear: int) -> float:
+def arm(model: GearModel, result: PositionResult, gear: Member) -> float:
     """Of the force at a gear's corner about the gear's own axis [mm]: the force lies on the line through the corner
     that touches the base circle of the other gear."""
-    body, other = model.bodies[gear], 1 - gear
+    body, other = model.bodies[gear], gear.mate
     rotation, centre = result.stand.rotation(gear, 2), result.stand.centre(gear, 2)
     corner = body.flank.points[body.tip_zone][0] @ rotation.T + centre
     away = corner - result.stand.centre(other, 2)
@@ -62,17 +63,17 @@ def _cross(a: Floats, b: Floats) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-@pytest.mark.parametrize("gear", [0, 1])
-def test_corner_on_a_smooth_flank(spur: GearModel, gear: int) -> None:
+@pytest.mark.parametrize("gear", Member)
+def test_corner_on_a_smooth_flank(spur: GearModel, gear: Member) -> None:
     """Problem: a gear's tip corner bears on the other gear's flank off the path of contact, under hardly any load.
     Exact: without friction the force is normal to the involute on which the corner lies, so that it touches that base
     circle; T_1/T_2 are the arms of that line. The corner's own normal gives a ratio more than 1 % away."""
     result = at_corner(spur, gear)
     assert result.contact.edge.all()
-    own, other = abs(result.torques[gear]), abs(result.torques[1 - gear])
+    own, other = abs(result.torques[gear]), abs(result.torques[gear.mate])
     base = [each.base_radius for each in spur.pair.gears]
-    wanted = arm(spur, result, gear) / base[1 - gear]
-    assert abs(wanted / (base[gear] / base[1 - gear]) - 1.0) > 0.01
+    wanted = arm(spur, result, gear) / base[gear.mate]
+    assert abs(wanted / (base[gear] / base[gear.mate]) - 1.0) > 0.01
     assert own / other == pytest.approx(wanted, rel=1e-3)
 
 

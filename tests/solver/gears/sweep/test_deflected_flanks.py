@@ -26,6 +26,7 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position import shared_position
 from evolvent.results.contact_slices import pitch_imbalance
+from evolvent_meshes.gears.member import Member
 from tests.conftest import Run
 from tests.support.gear_cases import model_of, spur_scene
 
@@ -68,7 +69,7 @@ def test_flanks_displaced_as_if_turned() -> None:
     levers are those of the wheel turned; the gap along the normals is the one between the points as they were."""
     model = model_of(spur_scene("mesh.level=quick"))
     stand, teeth = Stand(model.pair, 0.02), list(model.teeth)
-    turned = stand.turned(1, 1e-4)
+    turned = stand.turned(Member.WHEEL, 1e-4)
     displaced = {}
     for tooth in teeth:
         (_, was), (first, now) = (placed_flanks(model.bodies, where, tooth) for where in (stand, turned))

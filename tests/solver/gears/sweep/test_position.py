@@ -8,6 +8,7 @@ import pytest
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import position
 from evolvent.gears.sweep.position import PositionResult, shared_position, solve_position
+from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
 ANGLE = np.radians(2.2)
@@ -16,7 +17,7 @@ STARTS = (0.0, 1e-5, -3.3e-4, 1.7e-4)  # rad of the loaded gear
 
 def solved(model: GearModel, start: float) -> PositionResult:
     """Frictionless, the search starting from a rotation of the loaded gear."""
-    extra = (start, 0.0) if model.load.on == 0 else (0.0, start)
+    extra = (start, 0.0) if model.load.on == Member.PINION else (0.0, start)
     return solve_position(model, shared_position(model, ANGLE, extra, [0.0], None), 0.0, None, 0.01)[0]
 
 

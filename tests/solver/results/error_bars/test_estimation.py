@@ -33,6 +33,7 @@ from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 from tests.conftest import Run
@@ -81,7 +82,7 @@ def test_bars_shrink_with_the_mesh() -> None:
     assert ratio["transmission_error_peak_to_peak_um"] < 0.25 and ratio["secant_stiffness_N_per_mm_um"] < 0.25, ratio
 
 
-def finer_mesh(scene: Scene, index: int) -> MeshData:
+def finer_mesh(scene: Scene, member: Member) -> MeshData:
     def twice(own: SectorResolution) -> SectorResolution:
         counts = (
             "profile_elements", "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements",
@@ -89,7 +90,7 @@ def finer_mesh(scene: Scene, index: int) -> MeshData:
         doubled: dict[str, Any] = {name: 2 * getattr(own, name) for name in counts}
         return replace(own, **doubled, layer_depths=tuple(0.5 * depth for depth in own.layer_depths))
 
-    return gear_mesh(scene, index, adapted=twice)
+    return gear_mesh(scene, member, adapted=twice)
 
 
 def solved(scene: Scene, mesh: coarse_run.Mesher) -> RunData:
@@ -162,7 +163,7 @@ def test_coarser_halves_all_directions() -> None:
 def test_halved_keeps_the_body() -> None:
     """Exact: four times the cells and twice the facets of each group; the old nodes are nodes still."""
     scene = spur_scene("mesh.level=quick")
-    own = gear_mesh(scene, 0)
+    own = gear_mesh(scene, Member.PINION)
     fine = halved(own)
     assert len(fine.cells) == 4 * len(own.cells)
     assert {n: len(f) for n, f in fine.facets.items()} == {n: 2 * len(f) for n, f in own.facets.items()}

@@ -41,7 +41,7 @@ def test_flanks_move_as_contact_saw_them(case: Case) -> None:
             (0, result.pinion_rows, result.pinion_forces), (1, result.wheel_rows, result.wheel_forces),
         ):  # fmt: skip
             body, pitch = model.bodies[gear], 2.0 * np.pi / model.bodies[gear].gear.z
-            parts = sector_parts(sector_body(body.mesh, body.material, body.sign), body.flank, body.traction, pitch)
+            parts = sector_parts(sector_body(body.mesh, body.material, body.member), body.flank, body.traction, pitch)
             assert len(deformation.gears[gear].teeth(k)) >= 1
             for number in deformation.gears[gear].teeth(k):
                 u = deformation.gears[gear].displacement(k, number)

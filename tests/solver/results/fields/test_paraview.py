@@ -16,6 +16,7 @@ from evolvent.results.fields.paraview import flank_fields, write_fields
 from evolvent.results.fields.polygons import Polygons, joined, sector_surface, sliding, space_vectors
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.gears.flank import contact_normal
+from evolvent_meshes.gears.member import Member
 from tests.support.synthetic_run import synthetic_run
 
 
@@ -96,7 +97,7 @@ def test_traction_balances_the_torque(run: RunData) -> None:
     unit = vectors[loaded] / np.linalg.norm(vectors[loaded], axis=1, keepdims=True)
     assert np.all(unit @ contact_normal(run.pair) > 0.97)
     points = np.concatenate([
-        run.flank.points[result.node[result.tooth == i]] @ result.stand.rotation(0, 3, i).T
+        run.flank.points[result.node[result.tooth == i]] @ result.stand.rotation(Member.PINION, 3, i).T
         for i in np.unique(result.tooth)
     ])  # fmt: skip
     moment = np.cross(points, -vectors * result.weights[:, None])[:, 2].sum()
@@ -108,10 +109,10 @@ def test_sliding_vanishes_at_the_pitch_line(run: RunData) -> None:
     it the pinion's flank moves inwards over the wheel's; nodes up to 0.05 mm beside the line differ by as much."""
     result = run.positions[0][0].result
     v = sliding(run, result, 0)
-    s = line_distance(run.pair, result, 0, 0, run.flank.roll_length, run.flank.z)
+    s = line_distance(run.pair, result, 0, Member.PINION, run.flank.roll_length, run.flank.z)
     ξ = run.pair.roll_distance(result.stand.angle, 0, run.flank.z)
     on_line = np.abs(s) < 0.05
-    outwards = np.einsum("ja,ja->j", v, run.flank.points @ result.stand.rotation(0, 3, 0).T)
+    outwards = np.einsum("ja,ja->j", v, run.flank.points @ result.stand.rotation(Member.PINION, 3, 0).T)
     assert on_line.sum() > 20
     exact = (1.0 + 1.0 / run.pair.ratio) * ξ[on_line]
     np.testing.assert_allclose(np.linalg.norm(v[on_line], axis=1), np.abs(exact), atol=0.08)
@@ -128,7 +129,7 @@ def test_field_reproduces_nodes_and_ridge(run: RunData) -> None:
     field, cut = flank_field(run, solved.result, 0), solved.cut
     here = (cut.tooth == 0) & np.isfinite(cut.hertz)
     order = np.argsort(cut.z[here])
-    for gear in (0, 1):
+    for gear in Member:
         patch = flank_patch(run, gear, (2400, 60))
         values = patch.values(run, solved.result, 0, field)
         inner = (patch.z > cut.z[here].min() + 1.0) & (patch.z < cut.z[here].max() - 1.0)

@@ -31,6 +31,7 @@ from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.redraw import plot_folder
 from evolvent.scene.plain_text import signed
+from evolvent_meshes.gears.member import Member
 from tests.solver.results.tables.test_tables import store
 from tests.support.synthetic_run import synthetic_run
 
@@ -129,7 +130,8 @@ def test_loaded_pair_shows_the_pressure(run: RunData) -> None:
 
     result = run.positions[0][0].result
     with off_screen():
-        loaded, faint = (gear_picture(run, result, 0, top, (320, 240)).astype(float) for top in (2500.0, 250000.0))
+        pictures = (gear_picture(run, result, Member.PINION, top, (320, 240)) for top in (2500.0, 250000.0))
+        loaded, faint = (picture.astype(float) for picture in pictures)
     assert _red(loaded) > 40
     assert _red(faint) == 0
     blue = (loaded[..., 2] > loaded[..., 0] + 20).mean()

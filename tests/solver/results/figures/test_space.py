@@ -9,13 +9,14 @@ from evolvent.results.drawing.offscreen import off_screen
 from evolvent.results.drawing.style import PRESSURE_MAP
 from evolvent.results.fields.flank_field import flank_patch
 from evolvent.results.figures.scene3d import flank_picture
+from evolvent_meshes.gears.member import Member
 from tests.support.synthetic_run import synthetic_run
 
 LEVELS = 3.0  # of 255 by which the graphics driver may round a colour
 
 
-@pytest.mark.parametrize("gear", [0, 1])
-def test_colours_are_those_of_the_bar(gear: int) -> None:
+@pytest.mark.parametrize("gear", Member)
+def test_colours_are_those_of_the_bar(gear: Member) -> None:
     """Problem: the same value all over the flanks of a gear. Exact: each pixel that shows a flank, and so differs
     between two values, has the colour that the bar has at the value; at the flanks' rims pixels are mixed."""
     run = synthetic_run(file="demos/he2022.toml")

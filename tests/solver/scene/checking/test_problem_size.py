@@ -20,6 +20,7 @@ from evolvent.scene.checking.problem_size import memory_megabytes, room_problem,
 from evolvent.scene.meshing.element_sizes import sector_resolutions
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
 from tests.conftest import Run
 from tests.support.gear_cases import ROOT, helical_scene, model_of, spur_scene, swept
@@ -41,8 +42,8 @@ def test_sizes_of_meshes(make: Callable[..., Scene], shape: str, order: int, lon
     space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
     off = ['skip.off=["coarse-body"]'] if long_way else []
     scene = make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off)
-    for index, found in enumerate(sector_sizes(scene)):
-        mesh = gear_mesh(scene, index)
+    for member, found in zip(Member, sector_sizes(scene)):
+        mesh = gear_mesh(scene, member)
         flank, low, high = (len(np.unique(mesh.facets[name])) for name in ("flank", "cut_low", "cut_high"))
         exact = np.array([len(mesh.points), flank, low + high]) * mesh.dimension
         assert [found.dofs, found.flank, found.cuts] == exact.tolist()

@@ -18,6 +18,7 @@ from evolvent.wear.gears.elastic_sliding import Deflection, Grids, PitchDeflecti
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.gears.gear_wear import GearWear
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import helical_scene, model_of, spur_scene, with_load
 
@@ -50,7 +51,7 @@ def stand_of(model: GearModel, found: SharedPosition) -> Stand:
 def apart(model: GearModel, here: GearContact, found: SharedPosition) -> Floats:
     """(q, d) from the wheel's to the pinion's material points that the contact `here` pairs, in another solution."""
     stand, d, places = stand_of(model, found), here.d, []
-    for gear, body in enumerate(model.bodies):
+    for gear, body in zip(Member, model.bodies):
         rows, teeth = here.rows(gear)
         then = found.contact.rows(gear)[0]
         u = body.chain.apply(then, found.contact.pushed(gear, found.smooth.force), rows) @ stand.rotation(gear, d).T
@@ -94,8 +95,8 @@ def test_material_points_followed(kind: str, tolerance: float) -> None:
     np.testing.assert_allclose(found, wanted, atol=tolerance * np.abs(wanted).max())
 
 
-@pytest.mark.parametrize("on", [0, 1])
-def test_worn_flanks_meet_elsewhere(on: int) -> None:
+@pytest.mark.parametrize("on", Member)
+def test_worn_flanks_meet_elsewhere(on: Member) -> None:
     """Flanks worn by 20 and 10 µm everywhere are parallel curves, involutes of the same base circles: the free gear
     turns after, and the contact moves along the line of action by what the other gear has lost, h. So the sliding
     changes by (1 + 1/u) h, towards the gear that is held, within 2 % in the mean of pressure and pitch."""
@@ -116,7 +117,7 @@ def mean_sliding(position: PositionResult) -> float:
     return float(np.average(c.sliding - growth * c.ξ, weights=c.weights * c.pressure))
 
 
-def given(pair: GearPair, gear: int, arc: Floats, z: Floats, φ: Floats) -> tuple[Floats, Floats]:
+def given(pair: GearPair, gear: Member, arc: Floats, z: Floats, φ: Floats) -> tuple[Floats, Floats]:
     """A made-up deflection u (q, 3) [mm] of tooth 0's flank at pinion rotations φ, and ∂u/∂φ of a material point."""
     waves = np.array([0.3 + 0.1 * gear, 0.2, 0.1])
     phase = arc[:, None] * waves + 0.05 * z[:, None] + 7.0 * φ[:, None] * np.array([1.0, -1.0, 2.0])
@@ -137,7 +138,7 @@ def made_up(pair: GearPair, grids: Grids, count: int) -> PitchDeflection:
         ε = extra(pair, np.array([k * step]))[0][:, 0]
         stands.append(Stand(pair, k * step, (float(ε[0]), float(ε[1]))))
         fields, axes, seen = [], [], []
-        for gear, grid in enumerate(grids):
+        for gear, grid in zip(Member, grids):
             z, arc = (a.ravel() for a in np.meshgrid(grid.heights, grid.arcs, indexing="ij"))
             angles = [np.full(len(z), k * step + 2.0 * np.pi * tooth / pair.pinion.z) for tooth in teeth]
             fields.append(np.stack([given(pair, gear, arc, z, φ)[0] for φ in angles]))
@@ -165,10 +166,10 @@ def test_given_deflections(k: int) -> None:
     points = ContactPoints(tooth, z, ξ, s, -s, none, none[:, None], none[:, None], none, none, none)
     φ, n, t = np.full(count, stand.angle + 2.0 * np.pi * number / pair.pinion.z), *line_of_action(pair, 3)
     ε_rate, wanted = extra(pair, φ)[1], none.copy()
-    for gear, (sign, share, ρ) in enumerate(zip((1.0, -1.0), (1.0, 1.0 / pair.ratio), pair.curvature_radii(ξ))):
-        u, u_rate = given(pair, gear, line_arc(pair, gear, ξ) + sign * s, z, φ)
+    for gear, share, ρ in zip(Member, (1.0, 1.0 / pair.ratio), pair.curvature_radii(ξ)):
+        u, u_rate = given(pair, gear, line_arc(pair, gear, ξ) + gear.sign * s, z, φ)
         R = stand.rotation(gear, 3, number)
-        lost = sign * (0.02, 0.01)[gear] * np.cos(pair.pinion.base_helix_angle)
-        wanted += share * (u @ R.T @ n - lost) + ρ * ε_rate[gear] + sign * (u_rate @ R.T @ t)
+        lost = gear.sign * (0.02, 0.01)[gear] * np.cos(pair.pinion.base_helix_angle)
+        wanted += share * (u @ R.T @ n - lost) + ρ * ε_rate[gear] + gear.sign * (u_rate @ R.T @ t)
     found = pitch.added([k], [points])[0]
     np.testing.assert_allclose(found, wanted, atol=3e-3 * np.abs(wanted).max())

@@ -17,6 +17,7 @@ from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import Stage, kept_of, stages
 from evolvent.wear.gears.gear_wear import SLOPE, Following, GearWear
 from evolvent.wear.mesh_motion import mesh_volume
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from tests.support.gear_cases import helical_scene, spur_scene
@@ -32,7 +33,7 @@ def scene_of(kind: str, *settings: str) -> Scene:
     return helical_scene("contact.friction=0", *settings)
 
 
-def condenser(scene: Scene) -> Callable[[Callable[[int], MeshData]], GearModel]:
+def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearModel]:
     """See GearWear.follow."""
     return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 

@@ -14,6 +14,7 @@ from evolvent.wear.archard import Archard
 from evolvent.wear.gears.flank_grid import FlankGrid
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent.wear.gears.passage import passage
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 
@@ -42,7 +43,7 @@ def ridges(pair: GearPair, positions: int) -> list[ContactPoints]:
     return found
 
 
-def grid(pair: GearPair, gear: int) -> FlankGrid:
+def grid(pair: GearPair, gear: Member) -> FlankGrid:
     """1000 nodes from the base circle to beyond the tip."""
     arcs = np.linspace(0.5, 12.0, 1000)
     areas = np.full(1000, arcs[1] - arcs[0])
@@ -50,23 +51,23 @@ def grid(pair: GearPair, gear: int) -> FlankGrid:
     return FlankGrid(arcs, np.zeros(1), np.arange(1000)[None], areas)
 
 
-def line_contact(pair: GearPair, gear: int, u: np.ndarray, load: float) -> tuple[np.ndarray, np.ndarray]:
+def line_contact(pair: GearPair, gear: Member, u: np.ndarray, load: float) -> tuple[np.ndarray, np.ndarray]:
     """ξ at arcs u of a gear, and h = (K/H)(F/L)|1 − v_2/v_1| per passage there, v the speeds of the contact."""
     ρ = np.sqrt(2.0 * pair.gears[gear].base_radius * u)
     ξ = (ρ - pair.pitch_point_roll_lengths[gear]) * (1.0 - 2.0 * gear)
     ρ_1, ρ_2 = pair.curvature_radii(ξ)
     speeds = ρ_1, ρ_2 / pair.ratio
-    return ξ, K * load * np.abs(1.0 - speeds[1 - gear] / speeds[gear])
+    return ξ, K * load * np.abs(1.0 - speeds[gear.mate] / speeds[gear])
 
 
-@pytest.mark.parametrize("gear", [0, 1])
+@pytest.mark.parametrize("gear", Member)
 @pytest.mark.parametrize("positions", [10, 20, 80])
-def test_ridge_of_constant_load(gear: int, positions: int) -> None:
+def test_ridge_of_constant_load(gear: Member, positions: int) -> None:
     """h = (K/H)(F/L)|1 − v_2/v_1| within 0.3 % of the largest one (a ridge has 40 points here), between the ends of the
     path less one step and a half-width, but for a half-width about the pitch point, which is up to 4 times as much in
     ξ; there below 2 % of the largest. Work: F' ∫|v_s| dφ."""
     pair = spur_scene().gear_pair()
-    grids = grid(pair, 0), grid(pair, 1)
+    grids = grid(pair, Member.PINION), grid(pair, Member.WHEEL)
     found = passage(pair, ridges(pair, positions), grids, 2.0 * np.pi / pair.pinion.z / positions)
     u, h = grids[gear].arcs, K * (found.depths[gear] @ found.pressure)
     ξ, exact = line_contact(pair, gear, u, LINE_LOAD)
@@ -85,7 +86,7 @@ def test_number_of_the_paper() -> None:
     pair = spur_scene().gear_pair()
     u = (77.0**2 - pair.pinion.base_radius**2) / (2.0 * pair.pinion.base_radius)
     half = 170e3 / pair.pinion.base_radius / 20.0 / 2.0
-    assert 1e9 * line_contact(pair, 0, np.array([u]), half)[1][0] == pytest.approx(2.885, abs=5e-4)
+    assert 1e9 * line_contact(pair, Member.PINION, np.array([u]), half)[1][0] == pytest.approx(2.885, abs=5e-4)
 
 
 @cache
@@ -109,7 +110,7 @@ def test_solved_pitch_against_line_contact() -> None:
     loads = np.concatenate([p.contact.weights * p.contact.pressure for p in state.positions])
     places, which = np.unique(np.round(path, 9), return_inverse=True)
     shares = np.bincount(which.reshape(-1), loads)
-    ξ, unit = line_contact(pair, 0, grid_.arcs, 1.0)
+    ξ, unit = line_contact(pair, Member.PINION, grid_.arcs, 1.0)
     exact = unit * np.interp(ξ, places, shares)
     start, end = pair.path_of_contact
     inner, pitch_point = (ξ > start + 1.0) & (ξ < end - 1.0), np.abs(ξ) < 4.0 * HALF_WIDTH

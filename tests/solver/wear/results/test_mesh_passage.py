@@ -29,6 +29,7 @@ from evolvent.wear.results.mesh_passage import (
 from evolvent.wear.results.passage_figures import point_in_contact
 from evolvent.wear.results.report import WornPair
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
 from tests.support.synthetic_run import synthetic_run
@@ -90,7 +91,7 @@ def test_a_point_sees_no_spikes() -> None:
 def test_contacts_over_the_profile() -> None:
     """Fitted stress and width are Hertz'; away from the pitch point the sliding is 2b|1 − v_2/v_1|, at point A 0.0625
     mm, and at the pitch point it is not zero."""
-    for gear in (0, 1):
+    for gear in Member:
         found = Contacts.of(he(), gear)
         np.testing.assert_allclose(found.peak, found.hertz, rtol=1e-3)
         np.testing.assert_allclose(found.half_width, found.hertz_half_width, rtol=1e-3)
@@ -98,7 +99,7 @@ def test_contacts_over_the_profile() -> None:
         np.testing.assert_allclose(found.sliding[away], found.single_point[away], rtol=3e-3)
         at = int(np.argmin(np.abs(found.ξ)))
         assert found.single_point[at] < 1e-3 < 3e-3 < found.sliding[at]
-    pinion = Contacts.of(he(), 0)
+    pinion = Contacts.of(he(), Member.PINION)
     assert np.interp(A, pinion.radius, pinion.single_point) == pytest.approx(0.0625, abs=1e-4)
 
 
@@ -106,7 +107,7 @@ def test_depths_of_a_million_meshes() -> None:
     """At point A 2.885 µm by the line contact and 3.674 by Eq. 24; what is gathered is the former within 1 %, and at
     the pitch point what a Hertz ridge leaves there within 5 %."""
     pair = unworn(he())
-    for gear in (0, 1):
+    for gear in Member:
         depths = Depths.of(pair, gear, K)
         own, line, product = (
             1e9 * float(np.interp(A, depths.radius, values))
@@ -122,7 +123,7 @@ def test_pitch_point_depth_is_the_integral() -> None:
     """(K/H)∫p|v_s|dφ of a Hertz ridge over the pitch point, by quadrature, for both gears of a pair of unequal ones."""
     run = synthetic_run("pinion.face_width_mm=25.0", file="demos/zhang2023.toml")
     pair, φ = run.pair, np.linspace(-0.02, 0.02, 400_001)
-    for gear in (0, 1):
+    for gear in Member:
         ridge = Contacts.of(run, gear)
         at = int(np.argmin(np.abs(ridge.ξ)))
         assert abs(ridge.ξ[at]) < 1e-9
@@ -137,20 +138,20 @@ def test_sliding_is_the_integral() -> None:
     """∫|v_s|dφ while a contact of half-width b is over the point, by quadrature, also over the pitch point."""
     pair, b, φ = he().pair, 0.13, np.linspace(-0.15, 0.15, 600_001)
     speed = (1.0 + 1.0 / pair.ratio) * pair.pinion.base_radius * np.abs(φ)
-    for gear in (0, 1):
+    for gear in Member:
         for ξ in (-6.0, -0.1, 0.0, 5.0):
             s = line_arc(pair, gear, np.array([ξ])) - line_arc(pair, gear, pair.pinion.base_radius * φ)
             whole = float(speed @ (np.abs(s) < b)) * (φ[1] - φ[0])
             assert sliding(pair, gear, np.array([ξ]), np.array([b]))[0] == pytest.approx(whole, rel=1e-3)
 
 
-def places(pair: GearPair, gear: int, ξ: Floats) -> Floats:
+def places(pair: GearPair, gear: Member, ξ: Floats) -> Floats:
     """ξ there and back."""
     return roll_distance_at(pair, gear, radius_at(pair, gear, ξ))
 
 
-@pytest.mark.parametrize("gear", [0, 1])
-def test_radii_and_roll_distances(gear: int) -> None:
+@pytest.mark.parametrize("gear", Member)
+def test_radii_and_roll_distances(gear: Member) -> None:
     """Each the other's inverse; on the pinion the tip is touched at the end of the path, on the wheel at its start."""
     pair, ξ = he().pair, np.linspace(*he().pair.path_of_contact, 7)
     np.testing.assert_allclose(places(pair, gear, ξ), ξ, atol=1e-12)

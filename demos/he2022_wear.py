@@ -1,15 +1,15 @@
-"""Wear of He et al.'s spur pair, quasi-static, beside what the paper and line contact say (their Figs 17 to 21).
+"""Quasi-static wear of He et al.'s spur pair, compared with the paper and with line-contact formulas (Figs 17 to 21).
 
     python demos/he2022_wear.py [--quick] [--out DIR] [--scene FILE.toml] [--set KEY=VALUE ...]
 
 170 N·m on the pinion, K/H = 1.3832e-10 mm²/N on both gears, no friction in the contact solution, 1.6 million meshes:
-the scene demos/he2022.toml with a [wear] section, as `evolvent run` computes it. Both gears have 50 teeth, so that both
-flanks wear alike. At the pitch point the flanks roll, but the contact is 0.26 mm wide and slides a little at its rims:
-4 % of the depth at the root. Without tip relief the very tip bears before and after the path of contact; an edge's
-pressure is singular and so is its wear, so that all figures are of the flank between.
+the scene demos/he2022.toml with a [wear] section, as `evolvent run` computes it. Both gears have 50 teeth, so both
+flanks wear alike. At the pitch point the flanks roll, but the contact is 0.26 mm wide and slides a little at its edges:
+4 % of the depth at the root. Without tip relief the tip edge bears before and after the path of contact. The pressure
+at an edge is singular and so is its wear; all figures are of the flank between the tip-edge zones.
 
-Another scene wears by the same law at its first friction coefficient, until about 10 µm are gone, unless it has a
-[wear] of its own; the figures of the passage are drawn for plane pairs, the checks are made for He's.
+Another scene wears by the same law at its first friction coefficient, until about 10 µm are worn off, unless it has a
+[wear] section of its own. The figures of the passage are drawn for plane pairs, the checks are made for He's pair.
 """
 
 from __future__ import annotations
@@ -31,7 +31,14 @@ from evolvent.results.engagement import engagement
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
-from evolvent.wear.results.mesh_passage import Contacts, Depths, PointPassage, chart_grid, pitch_point_depth, radius_at
+from evolvent.wear.results.mesh_passage import (
+    ContactProfile,
+    DepthProfile,
+    PointPassage,
+    chart_grid,
+    pitch_point_depth,
+    radius_at,
+)
 from evolvent.wear.results.passage_figures import UM, pictures
 from evolvent.wear.results.report import WornRun, read_worn
 from evolvent_meshes.gears.member import Member
@@ -49,7 +56,14 @@ QUICK = (
 
 @dataclass(frozen=True)
 class Compared:
-    """A figure beside another one; within: relative difference that is allowed, any unless said otherwise."""
+    """A computed figure and its reference.
+
+    name, unit: of the figure.
+    found: computed value.
+    source: of the reference.
+    wanted: reference value.
+    within: largest relative difference.
+    """
 
     name: str
     unit: str
@@ -67,7 +81,7 @@ class Compared:
 
 
 def worn_scene(file: Path, quick: bool, settings: list[str]) -> Scene:
-    """The scene with a [wear] and one friction coefficient. Raises SceneError."""
+    """The scene with a [wear] section and one friction coefficient. Raises SceneError."""
     given = load_scene(file)
     how = [f"contact.friction={given.contact.friction[0]}", *(QUICK if quick else FINE if file == SCENE else ())]
     if given.wear is None:
@@ -78,25 +92,25 @@ def worn_scene(file: Path, quick: bool, settings: list[str]) -> Scene:
 
 
 def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared]:
-    """The first passage of a plane pair whose pinion wears, and what the study took off in all."""
+    """Figures of the first mesh passage of a plane pair whose pinion wears, and the volume worn off in all."""
     pair, last, wear = study.pairs[0], study.pairs[-1], study.scene.wear
     assert wear is not None
     K, r = wear.pinion_mm2_per_N, point.radius
-    depths, contacts = Depths.of(pair, Member.PINION, K), Contacts.of(pair.run, Member.PINION)
-    own, line = (UM * float(np.interp(r, depths.radius, values)) for values in (depths.own, depths.line))
+    depths, contacts = DepthProfile.of(pair, Member.PINION, K), ContactProfile.of(pair.run, Member.PINION)
+    at_point, line = (UM * float(np.interp(r, depths.radius, values)) for values in (depths.computed, depths.line))
     pitch = pair.run.pair.working_pitch_diameters[0] / 2.0
-    lowest = UM * float(np.interp(pitch, depths.radius, depths.own))
+    lowest = UM * float(np.interp(pitch, depths.radius, depths.computed))
     ridge = UM * pitch_point_depth(pair.run, Member.PINION, K)
     away = np.abs(depths.radius - pitch) > 0.1 * study.scene.pair.normal_module_mm
-    product = float(np.median(depths.peak_times_sliding[away] / depths.own[away]))
+    product = float(np.median(depths.peak_times_sliding[away] / depths.computed[away]))
     at = {name: float(np.interp(r, contacts.radius, getattr(contacts, name)))
           for name in ("peak", "hertz", "sliding", "single_point")}  # fmt: skip
     hertz_lasts = float(np.ptp(point.rotation[point.hertz > 0.0]))
     volume = pair.run.width * float(chart_grid(last, Member.PINION).areas @ last.worn[0].depth.T.ravel())
-    local = 0.15 if coarse else 0.02  # what a contact's own width and peak are worth
+    local = 0.15 if coarse else 0.02  # accuracy of the width and peak pressure of a single contact
     million, here = "µm a million meshes", f"r = {r:.4g} mm"
     return [
-        Compared(f"depth at {here}", million, own, "line contact, own load", line, 0.05),
+        Compared(f"depth at {here}", million, at_point, "line contact, own load", line, 0.05),
         Compared("depth at the pitch point", million, lowest, "Hertz ridge", ridge, 0.1),
         Compared("Eq. 24 over the depth, median", "", product, "4/π", 4.0 / np.pi, 0.02),
         Compared(f"stress at {here}", "MPa", at["peak"], "Hertz, own load", at["hertz"], local),
@@ -107,7 +121,7 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
 
 
 def check_as_printed(study: WornRun, point: PointPassage) -> None:
-    """What the paper says of its pair, whose point A bears less load than ours. Raises AssertionError."""
+    """Compares with the printed values of the paper, whose point A carries less load. Raises AssertionError."""
     start = engagement(study.pairs[0].run, 0)
     whole = Compared("whole engagement", "°", np.degrees(np.ptp(start.ends)), "printed", 13.824, 0.3 / 13.824)
     slides = Compared("point A slides", "µm", 1e3 * point.sliding[-1], "printed", 59.0)
@@ -119,10 +133,10 @@ def check_as_printed(study: WornRun, point: PointPassage) -> None:
     print(f"deepest after each report: {places}")
     first, *later = np.diff(deepest, prepend=0.0)
     print(f"growth of the deepest: {first:.2f} µm, then {', '.join(f'{d:.2f}' for d in later)} µm; printed: it slows")
-    depths = Depths.of(study.pairs[0], Member.PINION, 1.0)
+    depths = DepthProfile.of(study.pairs[0], Member.PINION, 1.0)
     pitch = study.pairs[0].run.pair.working_pitch_diameters[0] / 2.0
-    radius = float(depths.radius[np.argmax(depths.own)])
-    share = float(np.interp(pitch, depths.radius, depths.own)) / float(depths.own.max())
+    radius = float(depths.radius[np.argmax(depths.computed)])
+    share = float(np.interp(pitch, depths.radius, depths.computed)) / float(depths.computed.max())
     print(f"depth at the pitch point: {share:.3f} of the largest, which is at r = {radius:.2f} mm; printed: the root")
     assert share < 0.06, f"pitch point: wanted nearly no wear, found {share:.3f} of the largest"
     farthest = max(2.0 * radius, *(r.at_diameter_mm for r in reports))
@@ -131,12 +145,13 @@ def check_as_printed(study: WornRun, point: PointPassage) -> None:
 
 
 def write_table(study: WornRun, out: Path) -> None:
-    """OUT/table.csv: over the pinion's radius, a million meshes by the solution and by formulas, and each report."""
+    """Writes OUT/table.csv: depths over the pinion's radius, of a million meshes by solution and formulas, and at each
+    report."""
     wear = study.scene.wear
     assert wear is not None
-    depths, reports = Depths.of(study.pairs[0], Member.PINION, wear.pinion_mm2_per_N), study.pairs[1:]
+    depths, reports = DepthProfile.of(study.pairs[0], Member.PINION, wear.pinion_mm2_per_N), study.pairs[1:]
     head = ["radius_mm", "million_um", "million_line_contact_um", "million_eq_24_um"]
-    formulas = [UM * values for values in (depths.own, depths.line, depths.peak_times_sliding)]
+    formulas = [UM * values for values in (depths.computed, depths.line, depths.peak_times_sliding)]
     columns = [depths.radius, *formulas, *(pair.profile(Member.PINION)[1] for pair in reports)]
     text = io.StringIO()
     table = csv.writer(text)

@@ -20,7 +20,7 @@ from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.gears.gear_study import stages
+from evolvent.wear.gears.gear_study import study_states
 from evolvent.wear.gears.gear_wear import GearWear
 from evolvent_meshes.arrays import Floats
 
@@ -127,7 +127,7 @@ def _sweep_seconds(model: GearModel, case: WearCase) -> float:
 
 def _study_seconds(model: GearModel, case: WearCase) -> float:
     begin, ends = time.process_time(), tuple(case.cycles * k / BLOCKS for k in range(1, BLOCKS + 1))
-    found = list(stages(_gears(model, case), ends, BlockSettings(ends[0], ANY)))
+    found = list(study_states(_gears(model, case), ends, BlockSettings(ends[0], ANY)))
     assert len(found) == BLOCKS + 1
     return time.process_time() - begin
 
@@ -140,6 +140,6 @@ def _study(gears: GearWear, case: WearCase, tolerance: float, implicit: bool) ->
     """Depths at the end, blocks made and refused, seconds."""
     begin = time.process_time()
     settings = BlockSettings(case.cycles * tolerance / 10.0, tolerance, implicit)
-    last = list(stages(gears, (case.cycles,), settings))[-1]
+    last = list(study_states(gears, (case.cycles,), settings))[-1]
     refused = sum(row.refused for row in last.rows)
     return last.state.depth, len(last.rows), refused, time.process_time() - begin

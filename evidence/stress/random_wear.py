@@ -20,8 +20,8 @@ from evolvent.scene.flank_deviations import DEEPEST
 from evolvent.scene.scene import Scene, scene_from_values
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.body_study import Refresh
 from evolvent.wear.cycle import Cycle, Travel
+from evolvent.wear.worn_geometry import MeshMotion
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
 from evolvent_meshes.shapes.variants import with_part
@@ -44,7 +44,7 @@ class BodyStudy:
     problem: Problem
     law: Archard
     cycle: Cycle
-    refresh: Refresh
+    refresh: MeshMotion
     settings: BlockSettings
     cycles: float
     size: float
@@ -122,7 +122,7 @@ def _bodies(draw: Draw) -> BodyStudy:
         draw.one_of(np.inf, draw.decades(0.05, 3.0)),
     )  # fmt: skip
     depth = draw.one_of(np.inf, draw.decades(0.05, 1.0) * wanted * shape.size)
-    refresh = Refresh(depth, draw.one_of("harmonic", "elastic"))
+    refresh = MeshMotion(depth, draw.one_of("harmonic", "elastic"))
     cycle = _travelling(shape, friction) if travels else _to_and_fro(shape, stroke)
     problem = _problem(shape, material, friction)
     return BodyStudy(

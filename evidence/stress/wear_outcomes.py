@@ -29,7 +29,7 @@ from evolvent.scene.scene import Scene
 from evolvent.wear.archard import VolumeLost
 from evolvent.wear.block_stepping import WearState, WearStopped
 from evolvent.wear.body_study import CycleState, WearStudy
-from evolvent.wear.gears.gear_study import Stage, stages
+from evolvent.wear.gears.gear_study import StudyState, study_states
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent.wear.mesh_motion import MeshInverted, mesh_volume
 from evolvent_meshes.arrays import Floats
@@ -94,7 +94,7 @@ def wear_outcome_of(study: Scene | BodyStudy, seed: int) -> WearOutcome:
         found = WearOutcome(seed, WearVerdict.FINISHED, kind="gears", fastest=fastest)
         states, size = gear_states(study), study.pair.normal_module_mm
     else:
-        found = WearOutcome(seed, WearVerdict.FINISHED, kind=study.kind, fastest=max(study.law.both))
+        found = WearOutcome(seed, WearVerdict.FINISHED, kind=study.kind, fastest=max(study.law.coefficients))
         states, size = body_states(study), study.size
     try:
         for judged in _judged(found, states, size):
@@ -148,7 +148,7 @@ def body_states(study: BodyStudy) -> Iterator[Accepted]:
             gained = block.state.depth - depth
             lost += float(block.end.areas @ gained)
             volumes = [*_rates(own, study, block.end), *_gained(own, study, gained, block.length, now, block.end)]
-            depth, now = block.state.depth.copy(), block.state.now
+            depth, now = block.state.depth.copy(), block.state.evaluation
             yield Accepted(depth, volumes, tuple(_mesh_faults(own, study, depth, lost)), 1, block.refused, block.error)
     except STOPS:
         again = own.evaluate(depth)
@@ -174,8 +174,8 @@ def _gained(
 
 def _at_points(study: BodyStudy, state: CycleState) -> dict[int, float]:
     """(K/H) ∫∫p|v_s| dA dt of both bodies per cycle."""
-    work = sum(float(np.sum(r.result.weights * r.result.pressure * r.sliding)) for r in state.rubbing[0])
-    return {body: K * work for body, K in enumerate(study.law.both)}
+    work = sum(float(np.sum(r.result.weights * r.result.pressure * r.sliding)) for r in state.contacts[0])
+    return {body: K * work for body, K in enumerate(study.law.coefficients)}
 
 
 def _mesh_faults(own: WearStudy, study: BodyStudy, depth: Floats, lost: float) -> Iterator[str]:
@@ -183,14 +183,14 @@ def _mesh_faults(own: WearStudy, study: BodyStudy, depth: Floats, lost: float) -
     worst = min(float(scaled_jacobians(body.mesh).min()) for body in own.geometry.problem.bodies)
     if not worst > 0.0:
         yield f"a cell of scaled Jacobian {worst:.3g}"
-    wanted, own.refresh = own.refresh, replace(own.refresh, least_quality=0.0)
+    wanted, own.mesh_motion = own.mesh_motion, replace(own.mesh_motion, least_quality=0.0)
     try:
         moved = own.meshes(depth)
     except MeshInverted as error:
         yield f"accepted, but no mesh follows: {error}"
         return
     finally:
-        own.refresh = wanted
+        own.mesh_motion = wanted
     gone = sum(mesh_volume(body.mesh) - mesh_volume(mesh) for body, mesh in zip(study.problem.bodies, moved))
     if not abs(gone - lost) <= MESH * lost:
         yield f"mesh: wanted {lost:.6g} to be gone, found {gone:.6g}"
@@ -204,19 +204,19 @@ def gear_states(scene: Scene) -> Iterator[Accepted]:
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(model, pitch, scene.contact.friction[0], law_of(wear))
     before: WearState[PitchState] | None = None
-    for stage in islice(stages(gears, wear.reports, settings_of(wear)), BLOCKS + 1):
-        certify_positions(stage.state.now)
+    for stage in islice(study_states(gears, wear.reports, settings_of(wear)), BLOCKS + 1):
+        certify_positions(stage.state.evaluation)
         yield _gear_state(gears, stage, before)
         before = stage.state
 
 
-def _gear_state(gears: GearWear, stage: Stage, before: WearState[PitchState] | None) -> Accepted:
+def _gear_state(gears: GearWear, stage: StudyState, before: WearState[PitchState] | None) -> Accepted:
     state = stage.state
-    work = _passage_work(gears, state.now)
-    volumes = [*zip(_works(gears, state.now.rate), 2 * [work])]
+    work = _passage_work(gears, state.evaluation)
+    volumes = [*zip(_works(gears, state.evaluation.rate), 2 * [work])]
     if before is None:
         return Accepted(state.depth, volumes)
-    ends, row, faults = (_passage_work(gears, before.now), work), stage.rows[-1], []
+    ends, row, faults = (_passage_work(gears, before.evaluation), work), stage.rows[-1], []
     done = _works(gears, (state.depth - before.depth) / row.block_cycles)
     volumes.append((done[0], done[-1]))
     if not (1.0 - WORK) * min(ends) <= done[0] <= (1.0 + WORK) * max(ends):
@@ -227,7 +227,7 @@ def _gear_state(gears: GearWear, stage: Stage, before: WearState[PitchState] | N
 def _works(gears: GearWear, rate: Floats) -> list[float]:
     """The work per passage [N·mm; N] that a depth per cycle (n,) of each gear that wears speaks of."""
     often = 1.0, 1.0 / gears.model.pair.ratio
-    parts = zip(gears.by_gear(gears.areas), gears.by_gear(rate), gears.law.both, often)
+    parts = zip(gears.by_gear(gears.areas), gears.by_gear(rate), gears.law.coefficients, often)
     return [float(areas @ own) / (K * n) for areas, own, K, n in parts if K > 0.0]
 
 

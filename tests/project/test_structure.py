@@ -71,10 +71,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*", "scene"),
     "wear.gears": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "scene", "gears",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears",
         "gears.contact", "gears.sweep", "wear",
     ),
-    "wear.results": ("meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear.gears"),
+    "wear.results": ("meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear", "wear.gears"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "scene", "scene.schema", "scene.meshing", "gears", "gears.sweep",
         "results.*", "wear.*",

@@ -31,9 +31,10 @@ from evolvent.scene.schema.wear import Wear
 from evolvent.scene.skips import wanted_output
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.gears.gear_study import Kept, Stage, kept_of, stages
-from evolvent.wear.gears.gear_wear import Following, GearWear, PitchState
-from evolvent.wear.results.archive import read_study, worn_folder, write_pitch, write_study, write_worn
+from evolvent.wear.gears.gear_study import StudyCheckpoint, StudyState, checkpoint_of, study_states
+from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.pair_geometry import GearMeshMotion
+from evolvent.wear.results.archive import read_checkpoint, worn_folder, write_checkpoint, write_pitch, write_worn
 from evolvent.wear.results.report import read_worn, write_report
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -51,7 +52,7 @@ def wear_scene(
     after N cycles. earlier: what earlier parts of the run have cost. Raises what run_scene does."""
     wear, begin = scene.wear, time.perf_counter()
     assert wear is not None
-    kept = on_first(comm, lambda: read_study(archive) if resume else None)
+    kept = on_first(comm, lambda: read_checkpoint(archive) if resume else None)
     if kept is not None:
         log.info("resumed after %.6g of %.6g cycles", kept.cycles, wear.cycles)
         if kept.cycles >= wear.cycles:
@@ -68,12 +69,13 @@ def wear_scene(
     log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
-    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm, following_of(scene, comm))
+    motion = mesh_motion_of(scene, comm)
+    gears = GearWear(preparation.model, pitch, scene.contact.friction[0], law_of(wear), comm, motion)
     meshes = pinion.mesh, wheel.mesh
     progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))
-    for stage in stages(gears, wear.reports, settings_of(wear), kept):
-        certify_positions(stage.state.now)
-        study = kept_of(gears, stage)
+    for stage in study_states(gears, wear.reports, settings_of(wear), kept):
+        certify_positions(stage.state.evaluation)
+        study = checkpoint_of(gears, stage)
         spent = _timings(preparation, time.perf_counter() - begin)
         cost = earlier + Cost(spent, comm.allreduce(peak_memory_MB()))
         on_first(comm, partial(_write, scene, archive, gears, meshes, stage, study, comm.size, cost))
@@ -111,7 +113,7 @@ def settings_of(wear: Wear) -> BlockSettings:
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")
 
 
-def following_of(scene: Scene, comm: MPI.Comm) -> Following:
+def mesh_motion_of(scene: Scene, comm: MPI.Comm) -> GearMeshMotion:
     """When and how the meshes follow."""
     assert scene.wear is not None
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
@@ -121,7 +123,7 @@ def following_of(scene: Scene, comm: MPI.Comm) -> Following:
         logging.getLogger("evolvent").info("the meshes have followed the wear; both gears are condensed anew")
         return model
 
-    return Following(REFRESH * module if given is None else 1e-3 * given, condensed)
+    return GearMeshMotion(REFRESH * module if given is None else 1e-3 * given, condensed)
 
 
 def certify_positions(state: PitchState) -> None:
@@ -131,28 +133,29 @@ def certify_positions(state: PitchState) -> None:
 
 
 def _write(
-    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: Stage, study: Kept, ranks: int, cost: Cost
-) -> None:
+    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: StudyState, study: StudyCheckpoint,
+    ranks: int, cost: Cost,
+) -> None:  # fmt: skip
     """The pair where it is asked for; then what the study goes on from, whose being there says that it is whole."""
     state = stage.state
     if stage.report and state.cycles == 0.0:
         clear(archive.files)
-        write_pitch(archive, meshes, state.now.positions)
+        write_pitch(archive, meshes, state.evaluation.positions)
         keep_scene(scene, archive.files)
     elif stage.report:
         folder = worn_folder(archive.out, state.cycles)
         RunFolder(folder).clear()
         worn = write_worn(scene, folder, gears, state.depth)
         own = Archive(folder, worn)
-        write_pitch(own, meshes, state.now.positions)
+        write_pitch(own, meshes, state.evaluation.positions)
         data = run_data(worn, own.read_gears(), own.read_positions(worn.gear_pair()))
         write_tables(own.files, summary(data, facts_of(data, meshes, ranks, cost)))
         keep_cost(own.files, cost)
-    write_study(archive, study)
+    write_checkpoint(archive, study)
     keep_cost(archive.files, cost)
 
 
-def _line(stage: Stage) -> str:
+def _line(stage: StudyState) -> str:
     """One line of the log."""
     if not stage.rows:
         return "the pair at the beginning is solved"

@@ -25,8 +25,8 @@ FORCES, DIAMETERS = (1e-6, 1e9), (1e-3, 1e4)
 CONFIDENCE = 0.95
 MIN_LINES = 5  # fewer give no useful spread
 MAX_COEFFICIENT = 1e-5
-"""K/H [mm²/N] above which the units must be wrong: mild steel on mild steel, dry, has 4e-6 (J. F. Archard, W. Hirst, The wear
-of metals under unlubricated conditions, Proc. R. Soc. A 236 (1956) 397: K = 7e-3 at 1860 MPa)."""
+"""K/H [mm²/N] above which the units must be wrong: dry mild steel on mild steel has 4e-6 (J. F. Archard, W. Hirst, The
+wear of metals under unlubricated conditions, Proc. R. Soc. A 236 (1956) 397: K = 7e-3 at 1860 MPa)."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from evidence.stress.wear_outcomes import WearOutcome, WearVerdict, wear_outcome
 from evidence.stress.wear_summary import wear_summary
 from evolvent.scene.scene import Scene
 from evolvent.wear import body_study
-from evolvent.wear.archard import Places
+from evolvent.wear.archard import DepthProjection
 from evolvent.wear.gears import gear_wear
 from evolvent.wear.gears.flank_grid import FlankGrid
 
@@ -40,9 +40,9 @@ def test_a_seed_is_one_study() -> None:
 @pytest.mark.parametrize("seed", [GEARS, BODIES])
 def test_lost_volume_is_seen(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A thousandth less at every node: the study's own certificate stops it, and without that the outcome is wrong."""
-    depth, gathered = Places.depth, FlankGrid.gathered
-    monkeypatch.setattr(Places, "depth", lambda *given: 0.999 * depth(*given))
-    monkeypatch.setattr(FlankGrid, "gathered", lambda *given: 0.999 * gathered(*given))
+    depth, gathered = DepthProjection.depth, FlankGrid.depths_from_volumes
+    monkeypatch.setattr(DepthProjection, "depth", lambda *given: 0.999 * depth(*given))
+    monkeypatch.setattr(FlankGrid, "depths_from_volumes", lambda *given: 0.999 * gathered(*given))
     stopped = wear_outcome_of(random_study(seed), seed)
     assert stopped.verdict is WearVerdict.STOPPED and "VolumeLost" in stopped.message
     for module in (gear_wear, body_study):

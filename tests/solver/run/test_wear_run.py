@@ -13,7 +13,7 @@ from evolvent.cli import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import load_scene
-from evolvent.wear.results.archive import read_study
+from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn
 from tests.conftest import Run
 from tests.support.gear_cases import HELICAL
@@ -76,7 +76,7 @@ def test_stopped_and_resumed(how: str, run_script: Run, tmp_path: Path) -> None:
     settings = (*SHORT, *WEAR, "--set", "wear.refresh_um=0.2")
     computed(run_script, whole, *settings)
     assert computed(run_script, halves, *settings, how=how) != Exit.DONE
-    kept = read_study(Archive(halves, load_scene(halves / "scene.toml")))
+    kept = read_checkpoint(Archive(halves, load_scene(halves / "scene.toml")))
     assert kept is not None and 1 <= len(kept.rows) < len(blocks(whole))
     computed(run_script, halves, *settings, "--resume", ranks=2)
     assert_same(halves, whole, 1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent.fem.surface import surface_of
-from evolvent.wear.archard import Archard, Places
+from evolvent.wear.archard import Archard, DepthProjection
 from evolvent_meshes.shapes.blocks import box, rectangle
 
 
@@ -21,11 +21,11 @@ def test_volume_is_kept(shape: str, order: int) -> None:
     facets = rng.integers(len(top.facets), size=500)
     xi = rng.uniform(-0.02, 1.02 if top.shape != "triangle" else 0.52, (500, mesh.dimension - 1))
     volumes = rng.uniform(0.0, 1.0, 500)
-    places = Places.of(top, facets, xi)
-    depth = places.depth(volumes)
+    projection = DepthProjection.of(top, facets, xi)
+    depth = projection.depth(volumes)
     assert depth.min() >= 0.0
-    assert places.volume(depth) == pytest.approx(volumes.sum(), rel=1e-13)
-    np.testing.assert_allclose(places.at_points(np.ones(len(depth))), 1.0, rtol=1e-14)
+    assert projection.volume(depth) == pytest.approx(volumes.sum(), rel=1e-13)
+    np.testing.assert_allclose(projection.at_points(np.ones(len(depth))), 1.0, rtol=1e-14)
 
 
 def test_uniform_wear_is_uniform() -> None:
@@ -36,8 +36,8 @@ def test_uniform_wear_is_uniform() -> None:
     xi, w = quadrature(top.shape, 4)
     facets = np.repeat(np.arange(len(top.facets)), len(w))
     volumes = np.outer(top.areas(), w).ravel()
-    places = Places.of(top, facets, np.tile(xi, (len(top.facets), 1)))
-    np.testing.assert_allclose(places.depth(volumes), 1.0, rtol=1e-12)
+    projection = DepthProjection.of(top, facets, np.tile(xi, (len(top.facets), 1)))
+    np.testing.assert_allclose(projection.depth(volumes), 1.0, rtol=1e-12)
 
 
 @pytest.mark.parametrize("value", [-1e-10, float("nan"), float("inf")])

@@ -7,7 +7,14 @@ import pytest
 
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.wear import block_stepping
-from evolvent.wear.block_stepping import STABLE, BlockSettings, Evaluated, WearStopped, next_block, unworn
+from evolvent.wear.block_stepping import (
+    STABLE_SHARE,
+    BlockSettings,
+    CycleEvaluation,
+    WearStopped,
+    initial_wear_state,
+    next_block,
+)
 from evolvent.wear.mesh_motion import MeshInverted
 
 END = 20.0
@@ -19,21 +26,21 @@ class Softening:
     def __init__(self) -> None:
         self.calls = 0
 
-    def evaluate(self, depth, before=None):
+    def evaluate(self, depth, previous=None):
         """The rate."""
         self.calls += 1
-        return Evaluated(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
+        return CycleEvaluation(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
 
-    def implicit(self, depth, now, length):
+    def implicit_block(self, depth, start, length):
         """The rate r at the end, r (1 + h + ΔN r) = 1."""
         self.calls += 1
         b = 1.0 + depth * (1.0, 2.0)
-        end = Evaluated((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
+        end = CycleEvaluation((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
         return length * end.rate, end
 
-    def accepted(self, depth, now):
+    def accept(self, depth, end):
         """Nothing follows."""
-        return now
+        return end
 
 
 class Failing(Softening):
@@ -43,10 +50,10 @@ class Failing(Softening):
         super().__init__()
         self.longest = longest
 
-    def implicit(self, depth, now, length):
+    def implicit_block(self, depth, start, length):
         if length > self.longest:
             raise NotConverged("too long")
-        return super().implicit(depth, now, length)
+        return super().implicit_block(depth, start, length)
 
 
 class Inverting(Softening):
@@ -56,29 +63,29 @@ class Inverting(Softening):
         super().__init__()
         self.deepest, self.last, self.known = deepest, last, 0.0
 
-    def accepted(self, depth, now):
+    def accept(self, depth, end):
         """The meshes follow every block."""
         if depth[0] - self.known > self.deepest or depth[0] > self.last:
             raise MeshInverted("cells turned over")
         self.known = depth[0]
-        return now
+        return end
 
 
 class Rippling:
     """dh_k/dN = 1 − (h_k − mean): ripples decay to 1/e in a cycle."""
 
-    def evaluate(self, depth, before=None):
+    def evaluate(self, depth, previous=None):
         """The rate, which is nowhere negative."""
-        return Evaluated(np.maximum(1.0 - (depth - depth.mean()), 0.0), np.ones(2), np.inf, 1.0)
+        return CycleEvaluation(np.maximum(1.0 - (depth - depth.mean()), 0.0), np.ones(2), np.inf, 1.0)
 
-    def accepted(self, depth, now):
+    def accept(self, depth, end):
         """Nothing follows."""
-        return now
+        return end
 
 
 def worn(wearable, settings: BlockSettings):
     """Final depths and the lengths of all blocks."""
-    state, lengths = unworn(wearable, np.zeros(2), settings), []
+    state, lengths = initial_wear_state(wearable, np.zeros(2), settings), []
     while state.cycles < END * (1.0 - 1e-12):
         block = next_block(wearable, state, END, settings)
         state = block.state
@@ -104,7 +111,7 @@ def test_one_cycle_a_block() -> None:
     """A block that is not refused costs one cycle, and one more at the start."""
     study = Softening()
     _, lengths = worn(study, BlockSettings(0.1, 0.05, implicit=False))
-    state = unworn(again := Softening(), np.zeros(2), BlockSettings(0.1, 0.05, implicit=False))
+    state = initial_wear_state(again := Softening(), np.zeros(2), BlockSettings(0.1, 0.05, implicit=False))
     refused = 0
     while state.cycles < END * (1.0 - 1e-12):
         block = next_block(again, state, END, BlockSettings(0.1, 0.05, implicit=False))
@@ -123,7 +130,7 @@ def test_rolled_back() -> None:
 def test_stopped() -> None:
     """No block converges: WearStopped says where and why, and the state is as it was."""
     settings, study = BlockSettings(1.0), Failing(0.0)
-    state = unworn(study, np.full(2, 0.3), settings)
+    state = initial_wear_state(study, np.full(2, 0.3), settings)
     with pytest.raises(WearStopped, match=r"after 0 cycles.*too long.*last good state is kept"):
         next_block(study, state, END, settings)
     assert (state.depth == 0.3).all()
@@ -143,13 +150,13 @@ def test_a_mesh_that_cannot_follow_shortens_the_block() -> None:
     assert study.calls < 100
 
 
-@pytest.mark.parametrize(("share", "grows"), [(STABLE, False), (1.3 * STABLE, True)])
+@pytest.mark.parametrize(("share", "grows"), [(STABLE_SHARE, False), (1.3 * STABLE_SHARE, True)])
 def test_explicit_blocks_are_stable(share: float, grows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """A ripple of 1e-3 on a depth of some cycles, in blocks as long as they may be: it is worn off; in blocks a third
     longer it grows."""
-    monkeypatch.setattr(block_stepping, "STABLE", share)
+    monkeypatch.setattr(block_stepping, "STABLE_SHARE", share)
     study, settings = Rippling(), BlockSettings(END, implicit=False)
-    state = unworn(study, np.array([0.0, 1e-3]), settings)
+    state = initial_wear_state(study, np.array([0.0, 1e-3]), settings)
     for _ in range(30):
         state = next_block(study, state, np.inf, settings).state
     ripple = np.ptp(state.depth)
@@ -160,7 +167,8 @@ def test_deformation_limits_a_block() -> None:
     """At most a tenth of the deformation, 1 mm, a block at the rate of its start, 1 mm a cycle."""
     settings = BlockSettings(5.0, 1.0, implicit=False, deformation_share=0.1)
     study = Softening()
-    assert next_block(study, unworn(study, np.zeros(2), settings), END, settings).length == pytest.approx(0.1)
+    state = initial_wear_state(study, np.zeros(2), settings)
+    assert next_block(study, state, END, settings).length == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("wrong", [{"first": 0.0}, {"first": 1.0, "tolerance": -1.0}, {"first": float("nan")}])

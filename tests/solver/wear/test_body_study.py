@@ -12,9 +12,10 @@ from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings, WearStopped
-from evolvent.wear.body_study import Refresh, WearStudy
+from evolvent.wear.body_study import WearStudy
 from evolvent.wear.cycle import Cycle, Travel
 from evolvent.wear.mesh_motion import mesh_volume
+from evolvent.wear.worn_geometry import MeshMotion
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.support.wear_cases import (
@@ -38,12 +39,12 @@ def test_cylinder(follows: bool) -> None:
     the mesh follows each 1e-3 mm. Volume kF's within 1e-6 at the nodes, and the mesh's own loss within 0.1 %."""
     assert pytest.approx(0.19574, abs=5e-6) == CYLINDER_WIDTH
     assert pytest.approx(3.832e-3, abs=5e-7) == CYLINDER_DEPTH
-    refresh = Refresh(depth=1e-3) if follows else None
-    study, volume = WearStudy(cylinder(), (Archard(K),), MILLIMETRE, refresh), 0.0
+    mesh_motion = MeshMotion(depth=1e-3) if follows else None
+    study, volume = WearStudy(cylinder(), (Archard(K),), MILLIMETRE, mesh_motion), 0.0
     for block in study.blocks(SLIDING, BlockSettings(first=100.0)):
         volume += block.length * block.end.volumes[0, "arc"]
     depth = study.by_side(block.state.depth)[0, "arc"]
-    assert study.refreshed == (3 if follows else 0)
+    assert study.mesh_updates == (3 if follows else 0)
     assert depth.max() == pytest.approx(CYLINDER_DEPTH, rel=0.01)
     assert volume == pytest.approx(K * LINE_LOAD * SLIDING, rel=1e-6)
     before, after = (mesh_volume(mesh) for mesh in (cylinder().bodies[0].mesh, study.meshes(block.state.depth)[0]))
@@ -75,15 +76,15 @@ def test_both_sides(laws: Archard, order: int, friction: float) -> None:
     μ. The sliding is the stroke less what the bodies give way."""
     study, stroke = WearStudy(cylinder(5.0, order, friction), (laws,), to_and_fro(5e-4)), 5e-4
     blocks = list(islice(study.blocks(9e5, BlockSettings(first=3e5, implicit=False)), 3))
-    assert set(blocks[-1].state.now.volumes) == {s for s, k in zip(((0, "arc"), (1, "near")), laws.both) if k > 0.0}
-    for state in (block.state.now for block in blocks):
-        for side, K_own in zip(((0, "arc"), (1, "near")), laws.both):
-            if K_own > 0.0:
-                work = sum(float(own.work.sum()) for own in state.rubbing[0])
-                assert state.volumes[side] == pytest.approx(K_own * work, rel=1e-6)
-                assert 0.97 < work / (4.0 * stroke * LINE_LOAD) < 1.0 + 1e-5
+    coefficients = {s: k for s, k in zip(((0, "arc"), (1, "near")), laws.coefficients) if k > 0.0}
+    assert set(blocks[-1].state.evaluation.volumes) == set(coefficients)
+    for state in (block.state.evaluation for block in blocks):
+        for side, K_side in coefficients.items():
+            work = sum(float(sliding.work.sum()) for sliding in state.contacts[0])
+            assert state.volumes[side] == pytest.approx(K_side * work, rel=1e-6)
+            assert 0.97 < work / (4.0 * stroke * LINE_LOAD) < 1.0 + 1e-5
         if friction:
-            results = [own.result for own in state.rubbing[0]]
+            results = [own.result for own in state.contacts[0]]
             drag = [r.traction - r.pressure[:, None] * r.normals for r in results]
             lost = sum(r.weights @ np.einsum("qa,qa->q", τ, r.slip) for r, τ in zip(results, drag))
             # frames between the nodes of straight facets are shorter than one by 1e-6
@@ -118,7 +119,7 @@ def test_the_loop_goes_on() -> None:
     steel = Material(2.1e5, 0.3)
     study = WearStudy(cylinder(4.0, 1, 0.3, steel), (Archard(K),), to_and_fro(2e-4))
     state = study.evaluate(np.zeros(len(study.areas)))
-    work = [float(own.work.sum()) for own in state.rubbing[0]]
+    work = [float(own.work.sum()) for own in state.contacts[0]]
     assert work[0] == pytest.approx(0.0, abs=1e-9 * max(work))
     assert work[2] == pytest.approx(work[4], rel=1e-3)
 
@@ -146,7 +147,7 @@ def test_worn_far_beyond_reach() -> None:
     study = WearStudy(slabs(), (Archard(1e-6),), MILLIMETRE)
     cycles = 0.8 * 2.0 / (1e-6 * 2e-3 * 2.1e5)
     blocks = list(study.blocks(cycles, BlockSettings(first=cycles)))
-    assert len(blocks) > 3 and blocks[0].refused > 0 and study.refreshed > 3
+    assert len(blocks) > 3 and blocks[0].refused > 0 and study.mesh_updates > 3
     assert scaled_jacobians(study.geometry.problem.bodies[0].mesh).min() > 0.3
     left = mesh_volume(study.meshes(blocks[-1].state.depth)[0])
     assert left == pytest.approx(2.0 - 1.6, rel=1e-3)
@@ -178,9 +179,9 @@ def test_sphere_whose_mesh_follows() -> None:
     """A quarter of a sphere, whose planes of symmetry come down with it: the mesh loses what the contact took away
     within 0.1 %."""
     whole = mesh_volume(sphere().bodies[0].mesh)
-    study = WearStudy(sphere(), (Archard(K),), MILLIMETRE, Refresh(depth=3e-3))
+    study = WearStudy(sphere(), (Archard(K),), MILLIMETRE, MeshMotion(depth=3e-3))
     *_, block = study.blocks(5e4, BlockSettings(first=5e3, tolerance=0.3))
-    study.follow(block.state.depth)
-    assert study.refreshed >= 1
+    study.update_meshes(block.state.depth)
+    assert study.mesh_updates >= 1
     lost = whole - mesh_volume(study.geometry.problem.bodies[0].mesh)
     assert lost == pytest.approx(K * POINT_LOAD / 4.0 * 5e4, rel=1e-3)

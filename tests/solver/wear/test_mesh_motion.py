@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from evolvent.fem.surface import surface_of
-from evolvent.wear.mesh_motion import Follow, MeshInverted, WornSurface, directions, mesh_volume, worn_mesh
+from evolvent.wear.mesh_motion import (
+    InteriorMotion,
+    MeshInverted,
+    WornSurface,
+    mesh_volume,
+    motion_directions,
+    worn_mesh,
+)
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, rectangle
@@ -53,13 +60,13 @@ def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
     smoothly, so that the direction is the normal; at a block's corner it is the side's."""
     disc = cylinder_2d(1.0, 0.1, 0.2)
     arc = surface_of(disc, "arc")
-    np.testing.assert_allclose(directions(disc, arc), arc.normals, atol=1e-12)
+    np.testing.assert_allclose(motion_directions(disc, arc), arc.normals, atol=1e-12)
     mesh = block("quadrilateral", 2)
     sheared = mesh.points.copy()
     sheared[:, 0] += 0.5 * sheared[:, 1]
     mesh = MeshData(sheared, mesh.shape, mesh.order, mesh.cells, mesh.facets, mesh.volumes)
     top = surface_of(mesh, "top")
-    d = directions(mesh, top)
+    d = motion_directions(mesh, top)
     corner = np.argmin(top.points[:, 0])
     np.testing.assert_allclose(d[corner], [0.5, 1.0], atol=1e-12)
     np.testing.assert_allclose(np.einsum("na,na->n", d, top.normals), 1.0, atol=1e-12)
@@ -73,7 +80,7 @@ def test_which_equation_keeps_better_cells(shape: str) -> None:
     mesh = rectangle(2.0, 1.0, 16, 12, 2, shape)
     top = surface_of(mesh, "top")
 
-    def quality(follow: Follow, width: float, deep: float) -> float:
+    def quality(follow: InteriorMotion, width: float, deep: float) -> float:
         depth = deep * np.exp(-(((top.points[:, 0] - 1.0) / width) ** 2))
         return float(scaled_jacobians(worn_mesh(mesh, [WornSurface(top, depth)], ["bottom"], follow)).min())
 

@@ -84,12 +84,12 @@ def test_belt_in_the_plane() -> None:
 
 def in_strips(study: WearStudy, state: CycleState, strips: Floats) -> tuple[Floats, Floats]:
     """Volumes of the track and of the contact's points, K/H ∫∫p|v_s|, between ascending c of the strips' ends."""
-    track, own = study.tracks[RING], state.rubbing[0][0]
+    track, own = study.tracks[RING], state.contacts[0][0]
     fine = np.linspace(track.grid[0], track.grid[-1], 10001)
     middle, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
     depth, length = (np.interp(middle, track.grid, v) for v in (study.by_side(state.rate)[RING], track.lengths))
     lost = np.histogram(middle, strips, weights=depth * length * step)[0]
-    c = track.across.at(own.result.points)
+    c = track.coordinate.at(own.result.points)
     taken = np.histogram(c, strips, weights=study.laws[0].second * own.work)[0]
     return lost, taken
 
@@ -104,7 +104,7 @@ def test_disc_and_belt(travel: Travel, friction: float, order: int) -> None:
     study = WearStudy(punch(order, friction), (Archard(K, 2.0 * K),), Cycle(travel=(travel,)))
     state = fresh(study)
     certified(study, state)
-    c = study.tracks[RING].across.at(state.rubbing[0][0].result.points)
+    c = study.tracks[RING].coordinate.at(state.contacts[0][0].result.points)
     ends = np.linspace(c.min(), c.max(), 4) + np.array([-0.26, 0.0, 0.0, 0.26])  # beside the edge a cell's width, too
     lost, taken = in_strips(study, state, ends)
     assert lost == pytest.approx(taken, rel=0.03)
@@ -192,7 +192,7 @@ def test_mesh_follows(travel: Travel, off: float) -> None:
     gap, before = study.evaluate(depth), study.geometry.problem.bodies[1].mesh
     surface = surface_of(before, "top")
     nodal = study.tracks[RING].hats(surface.points) @ study.by_side(depth)[RING]
-    study.follow(depth)
+    study.update_meshes(depth)
     followed, after = study.evaluate(depth), study.geometry.problem.bodies[1].mesh
     assert mesh_volume(before) - mesh_volume(after) == pytest.approx(surface.weights() @ nodal, rel=1e-3)
     volume = study.areas @ gap.rate
@@ -210,7 +210,7 @@ def test_blocks() -> None:
         blocks = list(study.blocks(400.0, BlockSettings(1.0, tolerance, implicit)))
         assert len(blocks) > 5
         for block in blocks:
-            certified(study, block.state.now)
+            certified(study, block.state.evaluation)
         depths.append(blocks[-1].state.depth)
     off = [study.areas @ np.abs(depth - depths[0]) / (study.areas @ depths[0]) for depth in depths]
     assert off[1] < 0.05 and off[2] < min(0.015, 0.5 * off[1])
@@ -222,6 +222,6 @@ def test_belt_evens_out() -> None:
     study = WearStudy(punch(), (Archard(0.0, 10.0 * K),), Cycle(travel=(BELT,)))
     *_, block = study.blocks(1e4, BlockSettings(20.0, 0.01))
     inside = np.abs(study.tracks[RING].grid) < 0.5 * PUNCH - 1e-9
-    first, last = (state.rate[inside] / (10.0 * K * LOAD / PUNCH) for state in (fresh(study), block.state.now))
+    first, last = (state.rate[inside] / (10.0 * K * LOAD / PUNCH) for state in (fresh(study), block.state.evaluation))
     assert np.abs(first / first.mean() - 1.0).max() > 0.1
     assert np.abs(last / last.mean() - 1.0).max() < 0.03

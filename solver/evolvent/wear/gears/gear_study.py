@@ -1,7 +1,7 @@
-"""A gear pair's wear study: blocks of cycles up to each report, one row of facts a block, and what is kept of it.
+"""A wear study of a gear pair: blocks of cycles up to each report, and the checkpoint from which it resumes.
 
-What is kept is a value that a file can hold: depths, the rate before, the next block's length, and where each position
-was searched, so that a study that goes on from it takes the same blocks as one that was never stopped.
+The checkpoint is plain data: depths, the block before, the next block's length, and where each position was searched. A
+resumed study takes the same blocks as one that was never stopped.
 """
 
 from __future__ import annotations
@@ -12,7 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.gears.sweep.position import SearchedAt
-from evolvent.wear.block_stepping import Block, BlockSettings, WearState, next_block, unworn
+from evolvent.wear.block_stepping import (
+    Block,
+    BlockSettings,
+    PreviousBlock,
+    WearState,
+    initial_wear_state,
+    next_block,
+)
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -22,89 +29,114 @@ ROUNDING = 1e-12  # of the number of cycles
 
 @dataclass(frozen=True)
 class BlockRow:
-    """A finished block of cycles."""
+    """An accepted block of cycles, a line of wear.csv."""
 
     cycles: float
     """Revolutions of the pinion at its end."""
     block_cycles: float
     """Revolutions in it."""
     error: float
-    """Share of its worn volume that may be taken off in the wrong place."""
+    """Estimated volume that it wears off in the wrong place, over its whole worn volume."""
     refused: int
-    """Longer blocks that were tried before and refused."""
+    """Longer blocks that were tried before and rejected."""
     searched: int
-    """Positions that were searched anew."""
+    """Positions whose contact was searched anew."""
     refreshed: int
     """How often the meshes have followed the wear so far."""
     deepest_pinion_um: float
-    """Deepest wear so far between the tip-edge zones, pinion."""
+    """Largest worn depth so far between the tip-edge zones, pinion."""
     deepest_wheel_um: float
     """The same of the wheel."""
     volume_pinion_mm3: float
-    """Worn off a tooth so far, pinion."""
+    """Volume worn off a tooth so far, pinion."""
     volume_wheel_mm3: float
     """The same of the wheel."""
 
 
 @dataclass(frozen=True)
-class Kept:
-    """What a study goes on from: see WearState; known: depths (n,) that the meshes have; searches: of all angles; rows:
-    of the blocks so far."""
+class StudyCheckpoint:
+    """What a study resumes from.
+
+    cycles: revolutions of the pinion done.
+    depth: (n,) worn depths [mm].
+    mesh_depth: (n,) depths that the meshes include [mm].
+    previous: the block before; None at the beginning.
+    next_length: length of the next block [cycles].
+    searches: where the contact was searched, of all positions.
+    rows: of all blocks so far.
+    """
 
     cycles: float
     depth: Floats
-    known: Floats
-    last: tuple[Floats, float] | None
-    length: float
+    mesh_depth: Floats
+    previous: PreviousBlock | None
+    next_length: float
     searches: tuple[SearchedAt, ...]
     rows: tuple[BlockRow, ...]
 
 
 @dataclass(frozen=True)
-class Stage:
-    """A state of the study. rows: of all blocks so far. report: whether it is to be written out."""
+class StudyState:
+    """State of a study between two blocks.
+
+    state: of the wear.
+    rows: of all blocks so far.
+    report: whether the pair is to be written out.
+    """
 
     state: WearState[PitchState]
     rows: tuple[BlockRow, ...]
     report: bool
 
 
-def stages(
-    gears: GearWear, reports: Sequence[float], settings: BlockSettings, kept: Kept | None = None
-) -> Iterator[Stage]:
-    """The state at the beginning (or that was kept) and after each block; blocks end at the reports, the last of which
-    ends the study. Raises WearStopped, VolumeLost, NotConverged."""
+def study_states(
+    gears: GearWear, reports: Sequence[float], settings: BlockSettings, checkpoint: StudyCheckpoint | None = None
+) -> Iterator[StudyState]:
+    """The state at the beginning, or at the checkpoint, and after each block.
+
+    reports: ascending numbers of cycles at which blocks end; the last one ends the study.
+
+    Raises WearStopped, VolumeLost, NotConverged.
+    """
     rows: tuple[BlockRow, ...]
-    if kept is None:
-        state, rows = unworn(gears, gears.begin, settings), ()
+    if checkpoint is None:
+        state, rows = initial_wear_state(gears, gears.begin, settings), ()
     else:
-        if kept.known.any():
-            gears.follow(kept.known)
-        now = gears.resumed(kept.depth, kept.searches)
-        state, rows = WearState(kept.cycles, kept.depth, now, kept.last, kept.length), kept.rows
-    yield Stage(state, rows, kept is None)
+        state, rows = _resumed(gears, checkpoint), checkpoint.rows
+    yield StudyState(state, rows, checkpoint is None)
     while state.cycles < reports[-1] * (1.0 - ROUNDING):
         end = next(float(report) for report in reports if report > state.cycles * (1.0 + ROUNDING))
         block = next_block(gears, state, end, settings)
         state = block.state
         rows = (*rows, _row(gears, block))
-        yield Stage(state, rows, state.cycles >= end * (1.0 - ROUNDING))
+        yield StudyState(state, rows, state.cycles >= end * (1.0 - ROUNDING))
 
 
-def kept_of(gears: GearWear, stage: Stage) -> Kept:
-    """All ranks must call it."""
-    state = stage.state
-    searches = tuple(gears.searches(state.now))
-    return Kept(state.cycles, state.depth, gears.known, state.last, state.length, searches, stage.rows)
+def checkpoint_of(gears: GearWear, study: StudyState) -> StudyCheckpoint:
+    """The checkpoint of a state. All ranks call it."""
+    state = study.state
+    searches = tuple(gears.searches(state.evaluation))
+    return StudyCheckpoint(
+        state.cycles, state.depth, gears.mesh_depth, state.previous, state.next_length, searches, study.rows
+    )
+
+
+def _resumed(gears: GearWear, checkpoint: StudyCheckpoint) -> WearState[PitchState]:
+    """The state of a checkpoint, on the same meshes and from the same searches."""
+    if checkpoint.mesh_depth.any():
+        gears.update_meshes(checkpoint.mesh_depth)
+    evaluation = gears.resumed(checkpoint.depth, checkpoint.searches)
+    return WearState(checkpoint.cycles, checkpoint.depth, evaluation, checkpoint.previous, checkpoint.next_length)
 
 
 def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     state = block.state
     depths = gears.by_gear(state.depth - gears.begin)
     width = gears.model.pair.face_width if gears.model.bodies[0].d == 2 else 1.0
-    inner = [grid.inner(gears.model.pair, gear) for gear, grid in zip(Member, gears.grids)]
-    deepest = [1e3 * float(np.max(depth[own])) for depth, own in zip(depths, inner)]
+    inner = [grid.inner_nodes(gears.model.pair, gear) for gear, grid in zip(Member, gears.grids)]
+    deepest = [1e3 * float(np.max(depth[nodes])) for depth, nodes in zip(depths, inner)]
     volumes = [width * float(areas @ depth) for areas, depth in zip(gears.by_gear(gears.areas), depths)]
     return BlockRow(
-        state.cycles, block.length, block.error, block.refused, state.now.searched, gears.refreshed, *deepest, *volumes
-    )
+        state.cycles, block.length, block.error, block.refused, state.evaluation.searched, gears.mesh_updates,
+        *deepest, *volumes,
+    )  # fmt: skip

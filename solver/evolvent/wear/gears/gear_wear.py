@@ -1,13 +1,13 @@
-"""A gear pair whose flanks wear: the pitch solved on worn flanks, and what a mesh passage takes away.
+"""Wear of a gear pair: the pitch solved on worn flanks, and the depth that a mesh passage wears off.
 
-On several ranks each has its own positions of the pitch: it searches and condenses them, keeps them from cycle to
-cycle, and gathers what they wear off; friction, which has a past, goes from rank to rank.
+Each rank has its own positions of the pitch: it searches and condenses them, keeps them from cycle to cycle, and
+computes what they wear off. Friction depends on the history, so the friction state goes from rank to rank.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -29,236 +29,237 @@ from evolvent.gears.sweep.position import (
     shared_position,
     worn_on,
 )
-from evolvent.scene.scene import GEARS
 from evolvent.wear.archard import Archard, certify_volume
-from evolvent.wear.block_stepping import TOO_LONG, Evaluated
+from evolvent.wear.block_stepping import RETRIED_ERRORS, CycleEvaluation
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
-from evolvent.wear.gears.implicit_block import LinearBlock, Response
-from evolvent.wear.gears.passage import Passage, passage
-from evolvent.wear.gears.worn_sweep import RubbingSweep
-from evolvent.wear.mesh_motion import WornSurface, certify_loss, worn_mesh
-from evolvent_meshes.arrays import Floats
+from evolvent.wear.gears.implicit_block import LinearBlock, PositionResponse
+from evolvent.wear.gears.pair_geometry import GearMeshMotion, PairGeometry
+from evolvent.wear.gears.passage import MeshPassage, mesh_passage
+from evolvent.wear.gears.worn_sweep import WornSweep
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.mesh.mesh_data import MeshData
 
-HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
-"""Groups of a sector that stay when its mesh follows the wear; end faces, which are plane, slide in themselves."""
-SLOPE = 0.01
-"""Of the depth over the flank that a mesh follows: half a degree. Steeper is a tip edge's doing, narrow as a cell."""
-PUT_ON = 1e-7  # of a block's volume may be left out: depths below zero, a tenth of what its certificate allows
+NEGATIVE_VOLUME = 1e-7
+"""Of a block's volume: negative depths up to this are cut off; a tenth of the tolerance of the volume's certificate."""
 
 
 @dataclass(frozen=True)
-class PitchState(Evaluated):
-    """A pitch solved on worn flanks. positions: its results. work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of
-    width in 2D]. shared: search and compliance of this rank's angles, for the next cycle. searched: how many were;
-    refreshed: how often the meshes had followed. points, passage: of this rank's positions without friction."""
+class PitchState(CycleEvaluation):
+    """A pitch solved on worn flanks.
+
+    positions: results of all positions.
+    work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of width in 2D].
+    shared: searches and compliances of this rank's positions, reused in the next cycle.
+    searched: number of positions that were searched anew, on all ranks.
+    mesh_updates: number of mesh updates before.
+    points: contact points of this rank's positions without friction.
+    passage: their mesh passage.
+    """
 
     positions: tuple[PositionResult, ...]
     work: float
     shared: tuple[SharedPosition, ...]
     searched: int
-    refreshed: int
+    mesh_updates: int
     points: tuple[ContactPoints, ...]
-    passage: Passage
-
-
-@dataclass(frozen=True)
-class Following:
-    """When the meshes follow the wear: where they lack more than `depth` [mm] of what they could follow. condensed:
-    makes the model from both gears' meshes."""
-
-    depth: float
-    condensed: Callable[[Callable[[Member], MeshData]], GearModel]
+    passage: MeshPassage
 
 
 class GearWear:
-    """A gear pair at one friction coefficient; a cycle is a revolution of the pinion. law: of pinion and wheel.
+    """Wear of a gear pair at one friction coefficient, a `WearModel`; a cycle is a revolution of the pinion.
 
-    Depths (n,) are those of the pinion's flank nodes, then of the wheel's. begin: as made or as charted; known: what
-    the meshes have of them, after so many times that they were `refreshed`, without `following` never. All ranks of
-    `comm` call every method.
+    pitch: the positions of one pitch.
+    friction: friction coefficient of the contact solutions.
+    law: Archard's coefficients of pinion and wheel.
+    mesh_motion: when and how the meshes follow the wear; None: never.
+    geometry: the gears as meshed at present.
+    begin: (n,) depths of the flanks as charted at the beginning [mm].
+
+    Depths (n,) are those of the pinion's flank nodes, then of the wheel's. All ranks of `comm` call every method.
     """
 
     def __init__(
         self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF,
-        following: Following | None = None,
+        mesh_motion: GearMeshMotion | None = None,
     ) -> None:  # fmt: skip
-        """Raises InputError unless the positions are equal steps of one pitch: they are one tooth's passage."""
+        """Raises InputError unless the positions are equal steps of one pitch, which make up one tooth's passage."""
         angles = np.array(pitch.angles)
         step = 2.0 * np.pi / model.pair.pinion.z / max(len(angles), 1)
         if len(angles) < 2 or not np.allclose(np.diff(angles), step, rtol=1e-6):
             raise InputError(
                 f"wear: wanted at least two positions in equal steps over one pitch, found {len(angles)} over "
-                f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; see gear_sweep.uniform_pitch"
+                f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; take those of uniform_pitch"
             )
-        self.model, self.pitch, self.friction, self.law = model, pitch, friction, law
-        self.grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
-        self._first, self._comm, self._step = len(model.bodies[0].flank.points), comm, step
-        self._often = 1.0, 1.0 / model.pair.ratio  # a tooth of each gear meets in a cycle
-        self.following = following
-        self._made = tuple((body.mesh, body.flank) for body in model.bodies)
+        self.pitch, self.friction, self.law, self.mesh_motion = pitch, friction, law, mesh_motion
+        self.geometry = PairGeometry.of(model)
         charted = [b.worn if b.worn is not None else np.zeros(len(b.flank.points)) for b in model.bodies]
         self.begin = np.concatenate(charted)
-        self.known, self.refreshed = np.zeros(len(self.areas)), 0
-        self._own = range(len(pitch.angles))[division(len(pitch.angles), comm.size)[comm.rank]]
-        self._sweep = RubbingSweep(pitch, friction, self.grids, step, comm, self._own)
+        self._comm, self._step = comm, step
+        self._passages = 1.0, 1.0 / model.pair.ratio  # of a tooth of each gear in a cycle
+        self._numbers = range(len(pitch.angles))[division(len(pitch.angles), comm.size)[comm.rank]]
+        self._sweep = WornSweep(pitch, friction, self.grids, step, comm, self._numbers)
+
+    @property
+    def model(self) -> GearModel:
+        """The condensed gears on the present meshes."""
+        return self.geometry.model
+
+    @property
+    def grids(self) -> tuple[FlankGrid, FlankGrid]:
+        """The grids of pinion and wheel flank."""
+        return self.geometry.grids
 
     @property
     def areas(self) -> Floats:
         """(n,) of all flank nodes [mm²; mm in 2D]."""
-        return np.concatenate([grid.areas for grid in self.grids])
+        return self.geometry.areas
+
+    @property
+    def mesh_depth(self) -> Floats:
+        """(n,) depth that the meshes include [mm]."""
+        return self.geometry.mesh_depth
+
+    @property
+    def mesh_updates(self) -> int:
+        """Number of times that the meshes have followed the wear."""
+        return self.geometry.mesh_updates
 
     def by_gear(self, depth: Floats) -> tuple[Floats, Floats]:
         """Depths of the pinion's and of the wheel's flank nodes."""
-        return depth[: self._first], depth[self._first :]
+        return self.geometry.by_gear(depth)
 
-    def gentle(self, depth: Floats) -> Floats:
-        """What of depths (n,) meshes can follow: where it is steeper than SLOPE, as in the pits of tip edges, the rest
-        stays a matter of the gap."""
-        return np.concatenate([grid.gentle(own, SLOPE) for grid, own in zip(self.grids, self.by_gear(depth))])
+    def update_meshes(self, depth: Floats) -> None:
+        """Moves both meshes to what they can follow of depths (n,) and condenses the gears anew.
 
-    def lacking(self, depth: Floats) -> float:
-        """How much [mm] of these depths the meshes lack at most of what they can follow."""
-        return float(np.abs(self.gentle(depth) - self.known).max())
+        Raises MeshInverted, MeshVolumeLost.
+        """
+        assert self.mesh_motion is not None
+        self.geometry = self.geometry.moved(depth, self.mesh_motion)
 
-    def follow(self, depth: Floats) -> None:
-        """Moves both gears' meshes as they were made to what is gentle of these depths, and condenses them anew. Raises
-        MeshInverted, MeshVolumeLost."""
-        assert self.following is not None
-        known = self.gentle(depth)
-        lost = self.by_gear(known)
-
-        def moved(gear: Member) -> MeshData:
-            made, flank = self._made[gear]
-            mesh = worn_mesh(made, [WornSurface(flank, lost[gear])], HELD)
-            certify_loss(made, mesh, float(flank.weights() @ lost[gear]))
-            return mesh
-
-        self.model, self.known, self.refreshed = self.following.condensed(moved), known, self.refreshed + 1
-
-    def evaluate(self, depth: Floats, before: PitchState | None = None) -> PitchState:
-        """One pitch at depths (n,), see `Wearable`; positions near which the gears stood in the
-        cycle `before` are not searched again."""
-        return self._evaluated(depth, before, {})
-
-    def _evaluated(self, depth: Floats, before: PitchState | None, foreseen: Mapping[int, np.ndarray]) -> PitchState:
-        """foreseen: of this rank's angles, (q,) bool, which points are likely to be pressed."""
-        usable = before is not None and before.refreshed == self.refreshed  # on the same meshes
-        model, kept = self._worn(depth), before.shared if before is not None and usable else ()
-        shared, searched = together(self._comm, lambda: self._prepared(model, kept, foreseen))
-        return self._solved(model, shared, self._comm.allreduce(searched))
+    def evaluate(self, depth: Floats, previous: PitchState | None = None) -> PitchState:
+        """One pitch at depths (n,), see `WearModel`. Positions near which the gears stood in the evaluation `previous`
+        are not searched again. Raises VolumeLost as well."""
+        return self._evaluate(depth, previous, {})
 
     def resumed(self, depth: Floats, searches: Sequence[SearchedAt]) -> PitchState:
-        """The pitch at depths (n,), from searches made where `searched` says that they were."""
-        model = self._worn(depth)
-        frictions = [self.friction]
-        shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._own])
-        return self._solved(model, shared, 0)
+        """The pitch at depths (n,) with the contact searched where `searches`, one a position, say."""
+        model, frictions = self.geometry.with_gap(depth), [self.friction]
+        shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._numbers])
+        return self._solve(model, shared, 0)
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
-        """Where each angle's search was made, on all ranks."""
-        own = [SearchedAt(s.contact.stand.angle, s.contact.stand.extra, s.contact.half_width) for s in state.shared]
-        return [search for part in self._comm.allgather(own) for search in part]
+        """Where the contact of each position was searched, of all ranks."""
+        mine = [SearchedAt(s.contact.stand.angle, s.contact.stand.extra, s.contact.half_width) for s in state.shared]
+        return [search for part in self._comm.allgather(mine) for search in part]
 
-    def implicit(self, depth: Floats, now: PitchState, length: float) -> tuple[Floats, PitchState]:
-        """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `Wearable`. The
-        pressures follow the depth as they do without friction. Raises NotConverged."""
-        if now.refreshed != self.refreshed:
+    def implicit_block(self, depth: Floats, start: PitchState, length: float) -> tuple[Floats, PitchState]:
+        """A block by the linearised rate of its end, (1 − ΔN ∂r/∂h) Δh = ΔN r, and the pitch there, see `WearModel`.
+
+        The pressures respond to the depth as they do without friction. Raises NotConverged; InputError for a start on
+        other meshes.
+        """
+        if start.mesh_updates != self.mesh_updates:
             raise InputError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
-        responses = together(self._comm, lambda: [Response.of(*each) for each in zip(now.shared, now.points)])
-        found, openings = now.passage, self._opened([r.points for r in responses])
-        block = LinearBlock(length * now.rate, found.pressure, openings, partial(self._worn_in, length, found))
-        gained, more = block.solved(responses, self._comm)
-        # with friction a point that leaves may have pressed less than without it
-        gone, put = np.maximum(gained, 0.0), np.maximum(-gained, 0.0)
-        if not float(self.areas @ put) <= PUT_ON * float(self.areas @ gone):
-            raise NotConverged(f"a block of {length:.6g} cycles would put {put.max():.2g} mm of material on")
-        self._certify(gone, length * (now.work + sum(self._comm.allgather(float(found.works @ more)))))
-        foreseen = dict(zip(self._own, block.pressed(responses, more)))
-        return gone, self._evaluated(depth + gone, now, foreseen)
+        pairs = zip(start.shared, start.points)
+        responses = together(self._comm, lambda: [PositionResponse.of(*each) for each in pairs])
+        passage, openings = start.passage, self._openings([r.points for r in responses])
+        worn_off = partial(self._worn_off, length, passage)
+        block = LinearBlock(length * start.rate, passage.pressure, openings, worn_off)
+        gained, change = block.solve(responses, self._comm)
+        # with friction a point that leaves the contact may have had a lower pressure than without
+        positive, negative = np.maximum(gained, 0.0), np.maximum(-gained, 0.0)
+        if not float(self.areas @ negative) <= NEGATIVE_VOLUME * float(self.areas @ positive):
+            raise NotConverged(f"a block of {length:.6g} cycles would put {negative.max():.2g} mm of material on")
+        work = start.work + sum(self._comm.allgather(float(passage.swept_volumes @ change)))
+        self._certify(positive, length * work)
+        pressed = dict(zip(self._numbers, block.pressed_at_end(responses, change)))
+        return positive, self._evaluate(depth + positive, start, pressed)
 
-    def accepted(self, depth: Floats, now: PitchState) -> PitchState:
-        """The pitch once the meshes have followed where they lack too much of depths (n,), see `Wearable`."""
-        if self.following is None or self.lacking(depth) <= self.following.depth:
-            return now
-        before = self.model, self.known, self.refreshed
+    def accept(self, depth: Floats, end: PitchState) -> PitchState:
+        """The pitch after an update of meshes that lack too much of depths (n,), see `WearModel`."""
+        if self.mesh_motion is None or self.geometry.lacking(depth) <= self.mesh_motion.depth:
+            return end
+        before = self.geometry
         try:
-            self.follow(depth)
+            self.update_meshes(depth)
             return self.evaluate(depth)
-        except TOO_LONG:
-            self.model, self.known, self.refreshed = before
+        except RETRIED_ERRORS:
+            self.geometry = before
             raise
 
-    def _worn(self, depth: Floats) -> GearModel:
-        pinion, wheel = (replace(b, worn=own) for b, own in zip(self.model.bodies, self.by_gear(depth - self.known)))
-        return replace(self.model, bodies=(pinion, wheel))
+    def _evaluate(self, depth: Floats, previous: PitchState | None, pressed: Mapping[int, Bools]) -> PitchState:
+        """pressed: by number of this rank's positions, (q,) which points are likely to be pressed."""
+        reusable = previous is not None and previous.mesh_updates == self.mesh_updates
+        model, kept = self.geometry.with_gap(depth), previous.shared if previous is not None and reusable else ()
+        shared, searched = together(self._comm, lambda: self._prepared(model, kept, pressed))
+        return self._solve(model, shared, self._comm.allreduce(searched))
 
     def _prepared(
-        self, model: GearModel, kept: Sequence[SharedPosition], foreseen: Mapping[int, np.ndarray]
+        self, model: GearModel, kept: Sequence[SharedPosition], pressed: Mapping[int, Bools]
     ) -> tuple[list[SharedPosition], int]:
-        """This rank's positions without friction, and how many of them had to be searched."""
-        found: list[SharedPosition] = []
+        """This rank's positions without friction, and how many of them were searched anew."""
+        positions: list[SharedPosition] = []
         searched = 0
-        for i, k in enumerate(self._own):
+        for i, k in enumerate(self._numbers):
             old = kept[i] if kept else None
-            shared = worn_on(model, old, foreseen.get(k)) if old is not None else None
+            shared = worn_on(model, old, pressed.get(k)) if old is not None else None
             if shared is None:
-                near = old or (found[-1] if found else None)  # where the gears stood in the cycle before
+                near = old or (positions[-1] if positions else None)
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
                 footprint = None if near is None else near.footprint
                 shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], footprint)
                 searched += 1
-            found.append(shared)
-        return found, searched
+            positions.append(shared)
+        return positions, searched
 
-    def _solved(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
-        """The pitch with friction, and what it wears off."""
-        rubbed = self._sweep.rubbed(model, shared)
-        found = self._passage([own.contact for own in rubbed.results])
-        smooth = self._passage(rubbed.smooth) if model.has_friction_terms(self.friction) else found
-        rate, work = self._rate(found, found.pressure), sum(self._comm.allgather(found.work))
+    def _solve(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
+        """The pitch with friction, and its wear rate."""
+        swept = self._sweep.solve(model, shared)
+        passage = self._passage([result.contact for result in swept.results])
+        smooth = self._passage(swept.smooth) if model.has_friction_terms(self.friction) else passage
+        rate, work = self._rate(passage, passage.pressure), sum(self._comm.allgather(passage.work))
         self._certify(rate, work)
-        positions = tuple(result for part in self._comm.allgather(rubbed.results) for result in part)
-        decay = self._decay(rate, positions)
+        positions = tuple(result for part in self._comm.allgather(swept.results) for result in part)
         return PitchState(
-            rate, self.areas, np.inf, decay, positions, work, tuple(shared), searched, self.refreshed,
-            tuple(rubbed.smooth), smooth,
+            rate=rate, areas=self.areas, deformation=np.inf, ripple_decay=self._ripple_decay(rate, positions),
+            positions=positions, work=work, shared=tuple(shared), searched=searched, mesh_updates=self.mesh_updates,
+            points=tuple(swept.smooth), passage=smooth,
         )  # fmt: skip
 
-    def _decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
-        """Cycles in which a ripple of two nodes along the profile decays to 1/e where flanks wear fastest: 1/(K/H
-        πE*/ℓ s), the sliding distance s of a passage being that of the rate (K/H) p̄ s. Between the tip-edge zones: the
-        pits of edges are as deep as the mesh makes them."""
+    def _ripple_decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
+        """Cycles in which a ripple of two nodes along the profile decays to 1/e, 1/((K/H)(πE*/ℓ) s), where the flanks
+        wear fastest between the tip-edge zones; the sliding distance s of a passage from the rate (K/H) p̄ s."""
         points = ContactPoints.joined([position.contact for position in positions])
         mean = float(points.weights @ points.pressure**2) / float(points.weights @ points.pressure)
-        ripple = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
+        wavelength = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
         modulus = joint_modulus(*(body.material for body in self.model.bodies))
-        inner = [grid.inner(self.model.pair, gear) for gear, grid in zip(Member, self.grids)]
+        inner = [grid.inner_nodes(self.model.pair, gear) for gear, grid in zip(Member, self.grids)]
         fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
-        return mean * ripple / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
+        return mean * wavelength / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
 
     def _certify(self, depth: Floats, work: float) -> None:
-        """Raises VolumeLost unless depths (n,) are what this work takes off both gears."""
-        pairs = zip(GEARS, self.by_gear(self.areas), self.by_gear(depth), self.law.both, self._often)
-        for name, areas, own, K, often in pairs:
-            certify_volume(name, float(areas @ own), K * often * work)
+        """Raises VolumeLost unless depths (n,) are what this work wears off both gears."""
+        pairs = zip(Member, self.by_gear(self.areas), self.by_gear(depth), self.law.coefficients, self._passages)
+        for gear, areas, own, K, passages in pairs:
+            certify_volume(gear.label, float(areas @ own), K * passages * work)
 
-    def _passage(self, positions: Sequence[ContactPoints]) -> Passage:
-        return passage(self.model.pair, positions, self.grids, self._step)
+    def _passage(self, positions: Sequence[ContactPoints]) -> MeshPassage:
+        return mesh_passage(self.model.pair, positions, self.grids, self._step)
 
-    def _rate(self, found: Passage, pressure: Floats) -> Floats:
-        """Depths (n,) per cycle [mm] of this rank's pressures (q,), over all ranks, to the last bit alike."""
-        own = [K * n * (D @ pressure) for K, n, D in zip(self.law.both, self._often, found.depths)]
-        return np.asarray(np.sum(self._comm.allgather(np.concatenate(own)), axis=0))
+    def _rate(self, passage: MeshPassage, pressure: Floats) -> Floats:
+        """Depths (n,) per cycle [mm] of this rank's pressures (q,), summed over all ranks; the same on each to the last
+        bit."""
+        parts = zip(self.law.coefficients, self._passages, passage.depths)
+        mine = [K * passages * (depths @ pressure) for K, passages, depths in parts]
+        return np.asarray(np.sum(self._comm.allgather(np.concatenate(mine)), axis=0))
 
-    def _worn_in(self, length: float, found: Passage, pressure: Floats) -> Floats:
-        """Depths (n,) of so many cycles."""
-        return length * self._rate(found, pressure)
+    def _worn_off(self, length: float, passage: MeshPassage, pressure: Floats) -> Floats:
+        """Depths (n,) of `length` cycles [mm]."""
+        return length * self._rate(passage, pressure)
 
-    def _opened(self, positions: Sequence[ContactPoints]) -> sp.csr_matrix:
-        """(q, n) by how much depths open the gap at the points of positions."""
+    def _openings(self, positions: Sequence[ContactPoints]) -> sp.csr_matrix:
+        """Opening (q, n) of the gap at the points of positions, per depth."""
         if not positions:
             return sp.csr_matrix((0, len(self.areas)))
         points = ContactPoints.joined(positions)

@@ -1,7 +1,7 @@
-"""A long block of wear of a gear pair: the rate of its end, linear in the depths that it takes away.
+"""An implicit block of a gear pair's wear: the rate at its end, linearised in the depths that it wears off.
 
-Δh = ΔN r(λ + ∂λ), ∂λ = R(Δh) at every position. Points that would pull at the end leave the contact: they lose their
-pressure, the others take it over, until none pulls.
+Δh = ΔN r(λ + ∂λ), ∂λ = R(Δh) at every position. Points whose pressure would be negative at the block's end leave the
+contact, and the others take over their load, until no pressure is negative.
 """
 
 from __future__ import annotations
@@ -22,155 +22,170 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.sweep.position import SharedPosition
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
-KRYLOV = 1e-6  # of the right-hand side may be left of a block's equations
-LEAVINGS = 6  # times at most points are let go that would pull at a block's end
-SMALL = 200  # points of a position at most, whose response is then kept as a matrix
-PULL = 1e-3  # of the largest pressure: less is left to the next block
+GMRES_TOLERANCE = 1e-6  # residual of a block's equations over their right-hand side
+MAX_SEPARATIONS = 6  # rounds in which points with a negative pressure leave the contact
+SMALL = 200  # pressed points of a position up to which its response is stored as a matrix
+NEGATIVE_PRESSURE = 1e-3  # of the largest pressure: smaller negative pressures are cut off
 
 
-class Response:
-    """How the pressures at a position's p pressed points follow when the gap opens there: ∂λ = `released` + R ∂g.
+class PositionResponse:
+    """Linear response of the pressures at a position's p pressed points to an opening of their gaps, ∂λ =
+    `separation` + R ∂g.
 
-    points: those. leaving: (p,) bool, which of them lose their pressure; that is what `released` follows.
+    points: the pressed points.
+    separating: (p,) which of them leave the contact; `separation` is the response to the loss of their pressure.
     """
 
     def __init__(
-        self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, leaving: np.ndarray,
-        staying: Response | None = None,
+        self, normal: CondensedSystem, state: Equilibrium, points: ContactPoints, separating: Bools,
+        full: PositionResponse | None = None,
     ) -> None:  # fmt: skip
-        """About a state of a frictionless system. staying: the response in which all points stay, where the matrix is
-        to follow from its matrix."""
-        self._normal, self._state, self.points, self.leaving = normal, state, points, leaving
-        self._pressed, self._staying = np.flatnonzero(state.traction[:, 0] > 0.0), staying
+        """About a state of a frictionless system. full: the response in which no point separates, from whose matrix
+        this one's is computed; None: from the system."""
+        self._normal, self._state, self.points, self.separating = normal, state, points, separating
+        self._pressed, self._full = np.flatnonzero(state.traction[:, 0] > 0.0), full
 
     @staticmethod
-    def of(shared: SharedPosition, points: ContactPoints) -> Response:
-        """Of a position's frictionless state, in which all its pressed points stay. Raises NotConverged."""
+    def of(shared: SharedPosition, points: ContactPoints) -> PositionResponse:
+        """The response of a position's frictionless state in which no point separates. Raises NotConverged."""
         none = np.zeros(len(points.weights), dtype=bool)
-        return Response(normal_part(shared.system), shared.smooth, points, none)._ready()
+        return PositionResponse(normal_part(shared.system), shared.smooth, points, none)._factored()
 
     def __call__(self, opening: Floats) -> Floats:
-        """R ∂g (p,) or (p, c) [MPa] of ∂g (p,) or (p, c) [mm]."""
-        return self._whole(self.everywhere(opening))[self._pressed]
+        """R ∂g (p,) or (p, c) [MPa] of openings ∂g (p,) or (p, c) [mm]."""
+        return self._at_all_points(self.at_all_points(opening))[self._pressed]
 
-    def _ready(self) -> Response:
-        """With all that may fail done: a rank that fails later would fail alone."""
-        _ = self.released, self.matrix if self.few else None
+    def _factored(self) -> PositionResponse:
+        """The same with everything computed that may fail, so that all ranks fail together."""
+        _ = self.separation, self.matrix if self.is_small else None
         return self
 
     @cached_property
-    def _whole(self) -> PressureResponse:
-        return PressureResponse(self._normal, self._state, self.everywhere(self.leaving))
+    def _at_all_points(self) -> PressureResponse:
+        return PressureResponse(self._normal, self._state, self.at_all_points(self.separating))
 
     @cached_property
     def matrix(self) -> Floats:
         """R (p, p) [MPa/mm]."""
-        if self._staying is None:
-            return self(np.eye(len(self.leaving)))
-        R = self._staying.matrix
-        return R + self._held(-R[self.leaving])
+        if self._full is None:
+            return self(np.eye(len(self.separating)))
+        R = self._full.matrix
+        return R + self._to_pressures(-R[self.separating])
 
     @cached_property
-    def released(self) -> Floats:
-        """(p,) [MPa]."""
-        if self._staying is None:
-            return self._whole.released[self._pressed]
-        return self._held(-self.points.pressure[self.leaving])
+    def separation(self) -> Floats:
+        """Response (p,) [MPa] to the loss of the separating points' pressure."""
+        if self._full is None:
+            return self._at_all_points.released[self._pressed]
+        return self._to_pressures(-self.points.pressure[self.separating])
 
-    def _held(self, change: Floats) -> Floats:
-        """∂λ (p, ...) when the leaving points' pressures change so: by openings there, R_LL ∂g = change."""
-        assert self._staying is not None
-        R, left = self._staying.matrix, self.leaving
-        if left.all():
+    def _to_pressures(self, change: Floats) -> Floats:
+        """Response ∂λ (p, ...) to given changes of the separating points' pressures S, by openings R_SS ∂g = change.
+
+        Raises NotConverged.
+        """
+        assert self._full is not None
+        R, separating = self._full.matrix, self.separating
+        if separating.all():
             raise NotConverged("a block of wear: all points of a position would pull; take a shorter one")
         try:
-            return np.asarray(R[:, left] @ np.linalg.solve(R[np.ix_(left, left)], change))
+            return np.asarray(R[:, separating] @ np.linalg.solve(R[np.ix_(separating, separating)], change))
         except np.linalg.LinAlgError as error:
             raise NotConverged(f"a block of wear: points cannot leave ({error}); take a shorter one") from error
 
-    def without(self, pulled: np.ndarray) -> Response:
-        """The same when those of the p points leave the contact as well. Raises NotConverged."""
-        if not pulled.any():
+    def without(self, pulling: Bools) -> PositionResponse:
+        """The response when more of the p points leave the contact. Raises NotConverged."""
+        if not pulling.any():
             return self
-        staying = (self._staying or self) if self.few else None
-        return Response(self._normal, self._state, self.points, self.leaving | pulled, staying)._ready()
+        full = (self._full or self) if self.is_small else None
+        return PositionResponse(self._normal, self._state, self.points, self.separating | pulling, full)._factored()
 
     @property
-    def few(self) -> bool:
-        """Whether its matrix is worth having."""
-        return len(self.leaving) <= SMALL
+    def is_small(self) -> bool:
+        """Whether its matrix is stored."""
+        return len(self.separating) <= SMALL
 
-    def everywhere(self, values: Floats | np.ndarray) -> np.ndarray:
-        """(q, ...) of values (p, ...) at the pressed points, nothing elsewhere."""
-        whole = np.zeros((len(self._state.traction), *values.shape[1:]), dtype=values.dtype)
-        whole[self._pressed] = values
-        return whole
+    def at_all_points(self, values: np.ndarray) -> np.ndarray:
+        """Values (q, ...) at all points of the position, from values (p, ...) at the pressed ones; zero elsewhere."""
+        everywhere = np.zeros((len(self._state.traction), *values.shape[1:]), dtype=values.dtype)
+        everywhere[self._pressed] = values
+        return everywhere
 
 
 @dataclass(frozen=True)
 class LinearBlock:
-    """right: ΔN r (n,) [mm] at the block's start. pressure: λ (q,) [MPa] of this rank's points there; openings:
-    (q, n) by how much depths open the gap there. worn: depths (n,) that pressures (q,) wear off in
-    the block, over all ranks."""
+    """The linearised equations of a block.
 
-    right: Floats
+    explicit: (n,) depths ΔN r at the rate of the block's start [mm].
+    pressure: (q,) pressures of this rank's points at the start [MPa].
+    openings: (q, n) opening of the gap at these points per depth.
+    worn_off: depths (n,) [mm] that pressures (q,) wear off in the block, summed over all ranks.
+    """
+
+    explicit: Floats
     pressure: Floats
     openings: sp.csr_matrix
-    worn: Callable[[Floats], Floats]
+    worn_off: Callable[[Floats], Floats]
 
-    def solved(self, responses: Sequence[Response], comm: MPI.Comm) -> tuple[Floats, Floats]:
-        """Δh (n,), and ∂λ (q,) of this rank, with no pressure below zero at the end: from these ∂λ once more, so that
-        the depths are to rounding what they wear off. Raises NotConverged."""
-        depth, more = self.right, np.zeros_like(self.pressure)
-        for _ in range(LEAVINGS):
-            depth, more = self._linear(responses, depth)
-            pulled = np.split(self.pressure + more < -PULL * self.pressure.max(initial=0.0), _ends(responses))
-            if not comm.allreduce(sum(int(own.sum()) for own in pulled)):
+    def solve(self, responses: Sequence[PositionResponse], comm: MPI.Comm) -> tuple[Floats, Floats]:
+        """Depths Δh (n,) [mm] and pressure changes ∂λ (q,) [MPa] of this rank, with no negative pressure at the end.
+
+        The depths are recomputed from the final ∂λ, so that they are what these pressures wear off to rounding.
+        Raises NotConverged.
+        """
+        depth, change = self.explicit, np.zeros_like(self.pressure)
+        for _ in range(MAX_SEPARATIONS):
+            depth, change = self._solve_linear(responses, depth)
+            negative = self.pressure + change < -NEGATIVE_PRESSURE * self.pressure.max(initial=0.0)
+            pulling = np.split(negative, _ends(responses))
+            if not comm.allreduce(sum(int(each.sum()) for each in pulling)):
                 break
-            responses = together(comm, partial(_without, responses, pulled))
-        more = np.maximum(more, -self.pressure)
-        return self.right + self.worn(more), more
+            responses = together(comm, partial(_without, responses, pulling))
+        change = np.maximum(change, -self.pressure)
+        return self.explicit + self.worn_off(change), change
 
-    def pressed(self, responses: Sequence[Response], more: Floats) -> list[np.ndarray]:
-        """(q,) bool of each position: the points that still press at the block's end."""
-        ends = np.split(self.pressure + more > 0.0, _ends(responses))
-        return [response.everywhere(own) for response, own in zip(responses, ends)]
+    def pressed_at_end(self, responses: Sequence[PositionResponse], change: Floats) -> list[Bools]:
+        """Per position (q,), which of its points are pressed at the block's end."""
+        pressed = np.split(self.pressure + change > 0.0, _ends(responses))
+        return [response.at_all_points(each) for response, each in zip(responses, pressed)]
 
-    def _linear(self, responses: Sequence[Response], start: Floats) -> tuple[Floats, Floats]:
-        """Δh (n,) with this contact, and ∂λ (q,) of this rank. Raises NotConverged."""
-        responded = _joined(responses)
+    def _solve_linear(self, responses: Sequence[PositionResponse], start: Floats) -> tuple[Floats, Floats]:
+        """Δh (n,) and ∂λ (q,) of this rank with a given set of points in contact. Raises NotConverged."""
+        respond = _joined(responses)
 
-        def follow(h: Floats) -> Floats:
-            return responded(self.openings @ h)
+        def pressure_change(h: Floats) -> Floats:
+            return respond(self.openings @ h)
 
-        def slope(h: Floats) -> Floats:
-            return h - self.worn(follow(h))
+        def equations(h: Floats) -> Floats:
+            return h - self.worn_off(pressure_change(h))
 
-        released = np.concatenate([r.released for r in responses] or [np.zeros(0)])
-        size, known = 2 * (len(self.right),), self.right + self.worn(released)
-        found, failed = gmres(LinearOperator(size, slope), known, x0=start, atol=0.0, **{RELATIVE: KRYLOV})
+        separation = np.concatenate([r.separation for r in responses] or [np.zeros(0)])
+        size, right = 2 * (len(self.explicit),), self.explicit + self.worn_off(separation)
+        tolerance = {RELATIVE: GMRES_TOLERANCE}
+        depth, failed = gmres(LinearOperator(size, equations), right, x0=start, atol=0.0, **tolerance)
         if failed:
             raise NotConverged("a block of wear: its equations were not solved; take a shorter one")
-        return found, released + follow(found)
+        return depth, separation + pressure_change(depth)
 
 
-def _joined(responses: Sequence[Response]) -> Callable[[Floats], Floats]:
-    """R of all positions, (q,) of (q,). Where they are small as one sparse matrix: forty small products take longer to
-    be called than to be made."""
-    if responses and all(r.few for r in responses):
-        whole = sp.block_diag([r.matrix for r in responses], format="csr")
-        return lambda opening: np.asarray(whole @ opening)
+def _joined(responses: Sequence[PositionResponse]) -> Callable[[Floats], Floats]:
+    """R of all positions, (q,) to (q,); small ones as one sparse matrix, since many small products are slower."""
+    if responses and all(r.is_small for r in responses):
+        matrix = sp.block_diag([r.matrix for r in responses], format="csr")
+        return lambda opening: np.asarray(matrix @ opening)
     ends = _ends(responses)
-    return lambda opening: np.concatenate([r(own) for r, own in zip(responses, np.split(opening, ends))] or [opening])
+    return lambda opening: np.concatenate(
+        [response(each) for response, each in zip(responses, np.split(opening, ends))] or [opening]
+    )
 
 
-def _ends(responses: Sequence[Response]) -> Ints:
-    """Where the points of each but the last end in the list of all."""
-    return np.cumsum([len(r.leaving) for r in responses])[:-1]
+def _ends(responses: Sequence[PositionResponse]) -> Ints:
+    """Where the points of each position but the last end in the list of all."""
+    return np.cumsum([len(r.separating) for r in responses])[:-1]
 
 
-def _without(responses: Sequence[Response], pulled: Sequence[np.ndarray]) -> list[Response]:
-    """The same when the points that pull have left the contact."""
-    return [response.without(own) for response, own in zip(responses, pulled)]
+def _without(responses: Sequence[PositionResponse], pulling: Sequence[Bools]) -> list[PositionResponse]:
+    """The responses when the pulling points have left the contact. Raises NotConverged."""
+    return [response.without(each) for response, each in zip(responses, pulling)]

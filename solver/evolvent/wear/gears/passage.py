@@ -1,14 +1,14 @@
-"""What a tooth loses in one mesh passage, gathered in the moving frame of the contact line.
+"""The worn depth of one mesh passage of a tooth, accumulated in the moving frame of the contact line.
 
-All teeth are alike, so the positions of a pitch are one tooth's passage. At a position the ridge of pressure lies at a
-distance s across the contact line; to the neighbouring positions it travels over the flank with the line and changes
-little. So each contact point is a parcel that goes with the line, over the step before its position and the one after,
-while its share rises and falls linearly: that is the ridge interpolated linearly in ξ at fixed s. It takes away
+All teeth are alike, so the positions of a pitch make up one tooth's passage. At a position the pressure ridge lies at a
+distance s across the contact line; until the neighbouring positions it moves over the flank with the line and hardly
+changes. So each contact point is carried along with the line, over the step before its position and the one after, and
+its share rises and falls linearly: this interpolates the ridge linearly in ξ at fixed s. Along its path it removes
 
     (K/H) w λ ∫ B(η) |v_s(ξ + η)| dη / r_b1 ,   v_s(ξ + η) = v_s(ξ) + (1 + 1/u) η per radian of the pinion,
 
-B the hat of the step, at the places that it passes. A parcel that leaves the flank stays at its rim, where the tip's
-edge bears instead. The volume is the integral of the parcels' work, whatever the step.
+B the hat function of the step. A point that leaves the flank stays at its rim, where the tip edge bears. The worn
+volume is the integral of p|v_s| for any step.
 """
 
 from __future__ import annotations
@@ -25,54 +25,63 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
-FINE = 0.5  # of the grid's finest spacing a parcel goes at a time
+PATH_STEP = 0.5  # of the grid's finest spacing: integration step along a point's path
 
 
 @dataclass(frozen=True)
-class Passage:
+class MeshPassage:
     """One mesh passage at K/H = 1, linear in the pressures λ (q,) of all points of all positions.
 
-    depths: of pinion and wheel flank, (n, q) [mm per MPa·mm²/N], per passage of a tooth of each. works: (q,) w ∫B|v_s|
-    [mm³; mm² in 2D]. pressure: (q,) of the positions [MPa].
+    depths: of pinion and wheel, nodal depths (n, q) per unit pressure at the points [mm per MPa·mm²/N].
+    swept_volumes: (q,) w ∫B|v_s| of the points [mm³; mm² in 2D].
+    pressure: (q,) [MPa].
     """
 
     depths: tuple[sp.csc_matrix, sp.csc_matrix]
-    works: Floats
+    swept_volumes: Floats
     pressure: Floats
 
     @staticmethod
-    def nothing(grids: tuple[FlankGrid, FlankGrid]) -> Passage:
-        """Of no points."""
+    def empty(grids: tuple[FlankGrid, FlankGrid]) -> MeshPassage:
+        """A passage without contact points."""
         none, (pinion, wheel) = np.zeros(0), (sp.csc_matrix((grid.node.size, 0)) for grid in grids)
-        return Passage((pinion, wheel), none, none)
+        return MeshPassage((pinion, wheel), none, none)
 
     @property
     def work(self) -> float:
         """∫∫p|v_s| dA dt [N·mm; per mm of width in 2D]."""
-        return float(self.works @ self.pressure)
+        return float(self.swept_volumes @ self.pressure)
 
 
-def passage(
-    pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[FlankGrid, FlankGrid], turn: float
-) -> Passage:
-    """Of some of the positions that stand equal steps `turn` [rad of the pinion] apart over one pitch."""
+def mesh_passage(
+    pair: GearPair, positions: Sequence[ContactPoints], grids: tuple[FlankGrid, FlankGrid], step_angle: float
+) -> MeshPassage:
+    """The contribution of some positions of a pitch to a mesh passage.
+
+    positions: contact points of each.
+    grids: of pinion and wheel flank.
+    step_angle: pinion rotation between the positions of the pitch [rad].
+    """
     if not positions:
-        return Passage.nothing(grids)
-    step = pair.pinion.base_radius * turn
-    count = max(int(np.ceil(step / (FINE * np.diff(grid.arcs).min()))) for grid in grids)
+        return MeshPassage.empty(grids)
+    step = pair.pinion.base_radius * step_angle
+    count = max(int(np.ceil(step / (PATH_STEP * np.diff(grid.arcs).min()))) for grid in grids)
     η = step * ((np.arange(-count, count) + 0.5) / count)
     points = ContactPoints.joined(positions)
-    works = _shares(pair, points.sliding / (1.0 + 1.0 / pair.ratio), η, step) * points.weights[:, None]
+    swept = _sliding_shares(pair, points.sliding / (1.0 + 1.0 / pair.ratio), η, step) * points.weights[:, None]
     depths = []
     for gear, s in zip(Member, (points.across, points.opposite)):
         u = line_arc(pair, gear, points.ξ[:, None] + η) + s[:, None]
-        depths.append(grids[gear].gathered(u, points.z, works))
-    return Passage((depths[0], depths[1]), works.sum(axis=1), points.pressure)
+        depths.append(grids[gear].depths_from_volumes(u, points.z, swept))
+    return MeshPassage((depths[0], depths[1]), swept.sum(axis=1), points.pressure)
 
 
-def _shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:
-    """(q, e) parts of the sliding distance [mm] ∫B|v_s| dη/r_b1 of each parcel, whose sliding is the nominal one at
-    roll distances ξ (q,): by midpoints, their sum exact."""
+def _sliding_shares(pair: GearPair, ξ: Floats, η: Floats, step: float) -> Floats:
+    """Parts (q, e) of the sliding distance ∫B|v_s| dη/r_b1 [mm] of points along their paths η (e,) [mm].
+
+    ξ: (q,) roll distances at which the nominal sliding is that of the points [mm]. By the midpoint rule, scaled to the
+    exact sum.
+    """
     rough = (1.0 - np.abs(η) / step) * np.abs(ξ[:, None] + η)
     x = np.minimum(np.abs(ξ) / step, 1.0)
     whole = np.where(np.abs(ξ) >= step, np.abs(ξ), step * (1.0 / 3.0 + x**2 - x**3 / 3.0))

@@ -1,4 +1,4 @@
-"""A pitch of positions that are searched already: friction, and how the flanks slide, elastic part included."""
+"""The friction sweep over a pitch whose positions are already searched, and the sliding with its elastic part."""
 
 from __future__ import annotations
 
@@ -20,76 +20,95 @@ from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
-class Rubbed:
-    """A rank's positions: results, and contact points of the states without friction; their sliding with what
-    deflection adds."""
+class SweptPitch:
+    """A rank's positions of the pitch; the sliding of all points includes its elastic part.
+
+    results: the solved positions.
+    smooth: contact points of the states without friction.
+    """
 
     results: list[PositionResult]
     smooth: list[ContactPoints]
 
 
 @dataclass(frozen=True)
-class Turn:
-    """How far a sweep has come, from rank to rank. again: in a further round. errors: transmission errors (1,) so far
-    [mm]. found: the positions of this turn."""
+class SweepProgress:
+    """Progress of a sweep, passed from rank to rank.
+
+    state: to continue from.
+    again: whether the pitch is being repeated.
+    errors: (1,) transmission errors so far [mm].
+    closed: whether the friction state is periodic.
+    positions: those solved by the present rank in its turn, by number; empty while it is sent between ranks.
+    """
 
     state: SweepState
     again: bool = False
     errors: tuple[Floats, ...] = ()
     closed: bool = False
-    found: Mapping[int, SweptPosition] = field(default_factory=dict)
+    positions: Mapping[int, SweptPosition] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class RubbingSweep:
-    """At one friction coefficient; `own` angles of the pitch are this rank's of `comm`. grids: of both flanks. step:
-    between positions [rad]."""
+class WornSweep:
+    """A sweep over one pitch of worn flanks at one friction coefficient.
+
+    pitch: all its angles.
+    friction: friction coefficient.
+    grids: of pinion and wheel flank.
+    step: pinion rotation between positions [rad].
+    comm: the ranks that share the pitch.
+    numbers: numbers of this rank's positions.
+    """
 
     pitch: Pitch
     friction: float
     grids: Grids
     step: float
     comm: MPI.Comm
-    own: range
+    numbers: range
 
-    def rubbed(self, model: GearModel, shared: Sequence[SharedPosition]) -> Rubbed:
-        """From all positions that this rank has searched. Raises NotConverged."""
+    def solve(self, model: GearModel, shared: Sequence[SharedPosition]) -> SweptPitch:
+        """Solves the pitch from the positions that this rank has searched. All ranks call it. Raises NotConverged."""
         swept = self._swept(model, shared)
         deflections = together(self.comm, lambda: [self._deflection(model, *pair) for pair in zip(swept, shared)])
         deflected = self._exchanged(model, swept, deflections)
-        return together(self.comm, partial(self._slid, model, swept, shared, deflected))
+        return together(self.comm, partial(self._completed, model, swept, shared, deflected))
 
     def _swept(self, model: GearModel, shared: Sequence[SharedPosition]) -> list[SweptPosition]:
-        """With friction the ranks take turns: each goes on from the one before, the first one from the last, until
-        nothing is left of where the sweep began (periodic_pitch.py)."""
-        state = initial_state([self.friction])
-        common = dict(zip(self.own, shared))
+        """With friction the ranks solve one after the other, each from the friction history of the one before, and
+        repeat the pitch until the friction state is periodic (periodic_pitch.py)."""
+        progress = SweepProgress(initial_state([self.friction]))
+        by_number = dict(zip(self.numbers, shared))
         if not model.has_friction_terms(self.friction):
-            found = together(self.comm, partial(self._in_turn, model, common, Turn(state))).found
-            return [found[k] for k in self.own]
-        turn, mine = Turn(state), dict[int, SweptPosition]()
+            swept = together(self.comm, partial(self._in_turn, model, by_number, progress)).positions
+            return [swept[k] for k in self.numbers]
+        mine: dict[int, SweptPosition] = {}
         for again in range(1 + ROUNDS):
             for rank in range(self.comm.size):
-                own = common if rank == self.comm.rank else {}
-                turn = together(self.comm, partial(self._in_turn, model, own, replace(turn, again=again > 0)))
-                mine |= turn.found
-                turn = self.comm.bcast(replace(turn, found={}), rank)
-                if turn.closed:
-                    return [mine[k] for k in self.own]
-            turn = replace(turn, state=turn.state.earlier(1))
-        raise never_closed(turn.errors, self.pitch)
+                searched = by_number if rank == self.comm.rank else {}
+                before = replace(progress, again=again > 0)
+                progress = together(self.comm, partial(self._in_turn, model, searched, before))
+                mine |= progress.positions
+                progress = self.comm.bcast(replace(progress, positions={}), rank)
+                if progress.closed:
+                    return [mine[k] for k in self.numbers]
+            progress = replace(progress, state=progress.state.earlier(1))
+        raise never_closed(progress.errors, self.pitch)
 
-    def _in_turn(self, model: GearModel, own: Mapping[int, SharedPosition], turn: Turn) -> Turn:
-        """The turn of a rank with these positions, until the pitch closes."""
-        for k, common in own.items():
-            swept = next(sweep_pitch(model, self.pitch, [self.friction], turn.state, k, common))
-            errors = (*turn.errors, errors_of(swept, [self.friction]))
-            closed = turn.again and is_closed(errors, self.pitch)
+    def _in_turn(
+        self, model: GearModel, searched: Mapping[int, SharedPosition], progress: SweepProgress
+    ) -> SweepProgress:
+        """Solves the positions of one rank, until the friction state is periodic."""
+        for k, common in searched.items():
+            swept = next(sweep_pitch(model, self.pitch, [self.friction], progress.state, k, common))
+            errors = (*progress.errors, errors_of(swept, [self.friction]))
+            closed = progress.again and is_closed(errors, self.pitch)
             state = replace(swept.state, footprint=None)
-            turn = Turn(state, turn.again, errors, closed, {**turn.found, k: swept})
+            progress = SweepProgress(state, progress.again, errors, closed, {**progress.positions, k: swept})
             if closed:
                 break
-        return turn
+        return progress
 
     def _deflection(self, model: GearModel, swept: SweptPosition, common: SharedPosition) -> Deflection:
         memory, stand = swept.state.memories[0], swept.results[0].stand
@@ -103,28 +122,32 @@ class RubbingSweep:
     def _exchanged(
         self, model: GearModel, swept: Sequence[SweptPosition], deflections: Sequence[Deflection]
     ) -> PitchDeflection:
-        """This rank's positions, and their neighbours on other ranks."""
-        own = dict(zip(self.own, deflections))
-        ends = {k: own[k] for k in (*self.own[:1], *self.own[-1:])}
-        known = {k: each for part in self.comm.allgather(ends) for k, each in part.items()} | own
+        """Deflections of this rank's positions and of their neighbours on other ranks."""
+        mine = dict(zip(self.numbers, deflections))
+        ends = {k: mine[k] for k in (*self.numbers[:1], *self.numbers[-1:])}
+        known = {k: each for part in self.comm.allgather(ends) for k, each in part.items()} | mine
         stands = self.comm.allgather([position.results[0].stand for position in swept])
         worn = model.bodies[0].worn, model.bodies[1].worn
         return PitchDeflection(self.grids, self.step, tuple(each for part in stands for each in part), known, worn)
 
-    def _slid(
+    def _completed(
         self, model: GearModel, swept: Sequence[SweptPosition], shared: Sequence[SharedPosition], pitch: PitchDeflection
-    ) -> Rubbed:
+    ) -> SweptPitch:
+        """The results, with the elastic part of the sliding added at their contact points."""
         results = [position.results[0] for position in swept]
-        rough = self._with_more([result.contact for result in results], pitch)
-        found = [replace(result, contact=points) for result, points in zip(results, rough)]
+        points = self._with_elastic_sliding([result.contact for result in results], pitch)
+        complete = [replace(result, contact=contact) for result, contact in zip(results, points)]
         if not model.has_friction_terms(self.friction):
-            return Rubbed(found, rough)
-        return Rubbed(found, self._with_more([self._smooth_points(model, common) for common in shared], pitch))
+            return SweptPitch(complete, points)
+        smooth = [self._smooth_points(model, common) for common in shared]
+        return SweptPitch(complete, self._with_elastic_sliding(smooth, pitch))
 
     def _smooth_points(self, model: GearModel, shared: SharedPosition) -> ContactPoints:
         stand = shared.contact.stand.turned(model.load.on, float(shared.smooth.motion[0]))
         return contact_points(shared.contact, shared.smooth.traction, 0.0, stand.extra)
 
-    def _with_more(self, points: Sequence[ContactPoints], pitch: PitchDeflection) -> list[ContactPoints]:
-        pairs = zip(points, pitch.added(self.own, points))
-        return [replace(own, sliding=own.sliding + more) for own, more in pairs]
+    def _with_elastic_sliding(
+        self, points: Sequence[ContactPoints], pitch: PitchDeflection
+    ) -> list[ContactPoints]:  # fmt: skip
+        elastic = pitch.elastic_sliding(self.numbers, points)
+        return [replace(each, sliding=each.sliding + more) for each, more in zip(points, elastic)]

@@ -1,7 +1,7 @@
-"""A wear study on disk: OUT/results/wear.npz is what it goes on from, OUT/worn_400000/ the worn pair at a report.
+"""A wear study on disk: the checkpoint OUT/results/wear.npz, and the worn pair at a report in OUT/worn_400000/.
 
-Each such folder is a run of its own: its scene has the worn flanks as charts, so that it can be solved, drawn and worn
-on by itself.
+Each such folder is a run of its own: its scene names the worn flanks as charts, so that it can be solved, drawn and
+worn further by itself.
 """
 
 from __future__ import annotations
@@ -20,41 +20,43 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import keep_scene
 from evolvent.results.tables.tables import csv_text
 from evolvent.scene.flank_deviations import FlankChart
-from evolvent.scene.scene import GEARS, Scene
-from evolvent.wear.gears.gear_study import BlockRow, Kept
+from evolvent.scene.scene import Scene
+from evolvent.wear.block_stepping import PreviousBlock
+from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint
 from evolvent.wear.gears.gear_wear import GearWear
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 FILE = "wear.npz"
-COUNTS = "refused", "searched", "refreshed"  # of a block's facts, the whole numbers
+COUNTS = "refused", "searched", "refreshed"  # the integer columns of a BlockRow
 
 
-def write_study(archive: Archive, kept: Kept) -> None:
-    """Keeps a study, and OUT/wear.csv, a line a block. Raises OSError."""
-    last = kept.last or (np.zeros(0), 0.0)
+def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
+    """Writes OUT/wear.csv, a line a block, and then the checkpoint. Raises OSError."""
+    previous = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0)
     arrays = {
-        "fingerprint": archive.fingerprint, "cycles": kept.cycles, "depth": kept.depth, "known": kept.known,
-        "length": kept.length,
-        "last_rate": last[0], "last_length": last[1],
-        "searches": np.array([(s.angle, *s.extra, s.half_width) for s in kept.searches]),
-        "rows": np.array([list(asdict(row).values()) for row in kept.rows]),
+        "fingerprint": archive.fingerprint, "cycles": checkpoint.cycles, "depth": checkpoint.depth,
+        "known": checkpoint.mesh_depth, "length": checkpoint.next_length,
+        "last_rate": previous.rate, "last_length": previous.length,
+        "searches": np.array([(s.angle, *s.extra, s.half_width) for s in checkpoint.searches]),
+        "rows": np.array([list(asdict(row).values()) for row in checkpoint.rows]),
     }  # fmt: skip
-    if kept.rows:
-        archive.files.write_text("wear.csv", csv_text([asdict(row) for row in kept.rows]))
+    if checkpoint.rows:
+        archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
     archive.keep(FILE, arrays)
 
 
-def read_study(archive: Archive) -> Kept | None:
-    """What was kept, None where nothing was. Raises ArchiveError where it is another scene's."""
+def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
+    """The checkpoint of a study, None where there is none. Raises ArchiveError where it is another scene's."""
     if not (archive.folder / FILE).exists():
         return None
     arrays = read_arrays(archive.folder / FILE)
     archive.require_own(arrays)
-    last = (arrays["last_rate"], float(arrays["last_length"])) if len(arrays["last_rate"]) else None
+    rate = arrays["last_rate"]
+    previous = PreviousBlock(rate, float(arrays["last_length"])) if len(rate) else None
     searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
-    return Kept(
-        float(arrays["cycles"]), arrays["depth"], arrays["known"], last, float(arrays["length"]), searches,
+    return StudyCheckpoint(
+        float(arrays["cycles"]), arrays["depth"], arrays["known"], previous, float(arrays["length"]), searches,
         tuple(map(_row, arrays["rows"].tolist())),
     )  # fmt: skip
 
@@ -66,31 +68,33 @@ def _row(values: list[float]) -> BlockRow:
 
 
 def worn_folder(out: Path, cycles: float) -> Path:
-    """Where the pair after so many cycles is written; OUT itself has the pair at the beginning."""
+    """The folder of the pair after so many cycles; OUT itself is that of the pair at the beginning."""
     return out / f"worn_{cycles:.15g}" if cycles > 0.0 else out
 
 
 def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Scene:
-    """Writes the flanks after some cycles as charts, depths (n,), and the scene that has them; returns that scene.
-    Raises OSError."""
+    """Writes the flanks with depths (n,) [mm] as charts, and a scene that names them; returns that scene.
+
+    Raises OSError.
+    """
     files = RunFolder(folder)
     worn: dict[str, object] = {"wear": None}
-    for gear, name, own in zip(Member, GEARS, gears.by_gear(depth)):
-        path = files.write_text(f"flank_{name}.csv", chart_of(gears, gear, own).text())
-        worn[name] = getattr(scene, name).model_copy(update={"flank_csv": str(path)})
-    changed = scene.model_copy(update=worn)
-    keep_scene(changed, files)
-    return changed
+    for gear, nodal in zip(Member, gears.by_gear(depth)):
+        path = files.write_text(f"flank_{gear.label}.csv", chart_of(gears, gear, nodal).text())
+        worn[gear.label] = getattr(scene, gear.label).model_copy(update={"flank_csv": str(path)})
+    worn_scene = scene.model_copy(update=worn)
+    keep_scene(worn_scene, files)
+    return worn_scene
 
 
 def chart_of(gears: GearWear, gear: Member, depth: Floats) -> FlankChart:
-    """Depths (n,) [mm] of a gear's flank nodes over diameter and height."""
+    """The chart over diameter and height of depths (n,) [mm] at a gear's flank nodes."""
     grid, base = gears.grids[gear], gears.model.pair.gears[gear].base_radius
     return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)
 
 
 def write_pitch(archive: Archive, meshes: Meshes, results: Sequence[PositionResult]) -> None:
-    """A pitch at one friction coefficient as a sweep leaves it. Raises OSError."""
+    """Writes a pitch at one friction coefficient as a run without wear does. Raises OSError."""
     archive.write_gears(gear_shapes(meshes))
     for k, result in enumerate(results):
         state = SweepState(result.stand.extra, (None,))

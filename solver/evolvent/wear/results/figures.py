@@ -1,4 +1,5 @@
-"""Pictures of a wear study: depth over the profile and over the flank, its growth, and what it does to the mesh."""
+"""Pictures of a wear study: depth over profile and flank, its growth, and its effect on load sharing and transmission
+error."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ from evolvent.wear.results.report import WornPair, WornRun
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
-PATCH = (240, 60)  # points of a flank over profile and width: wear is smooth
+PATCH = (240, 60)  # points of a flank over profile and width; few suffice, as wear is smooth
 Draw = Callable[[WornRun], Figure]
 
 
@@ -58,7 +59,7 @@ def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
 
 
 def wearing(study: WornRun) -> dict[Member, float]:
-    """The gears that wear, and their K/H [mm²/N]."""
+    """K/H [mm²/N] of the gears that wear."""
     wear = study.scene.wear
     assert wear is not None
     return {gear: K for gear, K in zip(Member, (wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
@@ -78,15 +79,15 @@ def _colours(study: WornRun) -> list[tuple[float, ...]]:
 
 def depth_over_profile(study: WornRun) -> Figure:
     """Depth over the diameter at each report, mean over the face."""
-    last, own = study.pairs[-1], wearing(study)
-    found = [getattr(last.report(), GEARS[gear]) for gear in own]
+    last, gears = study.pairs[-1], wearing(study)
+    reports = [getattr(last.report(), GEARS[gear]) for gear in gears]
     deepest = ", ".join(
-        f"{GEARS[gear]} {_three(each.deepest_um)} µm at d = {each.at_diameter_mm:.1f} mm"
-        for gear, each in zip(own, found)
+        f"{GEARS[gear]} {_three(report.deepest_um)} µm at d = {report.at_diameter_mm:.1f} mm"
+        for gear, report in zip(gears, reports)
     )
     see = f"Deepest on the flank after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
     figure = sheet("Wear depth over the profile", see)
-    for ax, gear in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own):
+    for ax, gear in zip(figure.subplots(1, len(gears), sharey=True, squeeze=False)[0], gears):
         for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
             ax.plot(*pair.profile(gear), color=colour, label=f"{cycles_label(pair.cycles)} cycles")
         ax.axvline(study.pairs[0].run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
@@ -100,10 +101,10 @@ def depth_over_profile(study: WornRun) -> Figure:
 
 def depth_over_flank(study: WornRun) -> Figure:
     """The worn flanks unrolled, at the end."""
-    last, own = study.pairs[-1], wearing(study)
+    last, gears = study.pairs[-1], wearing(study)
     title = f"Worn flanks after {cycles_label(last.cycles)} cycles"
-    figure = sheet(title, f"{_most(study)} The tip is above, the root below.", (5.8 * len(own) + 1.0, 5.6))
-    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+    figure = sheet(title, f"{_most(study)} The tip is above, the root below.", (5.8 * len(gears) + 1.0, 5.6))
+    for ax, gear in zip(figure.subplots(1, len(gears), squeeze=False)[0], gears):
         chart = last.worn[gear]
         shown = ax.pcolormesh(
             chart.heights, chart.diameters, 1e3 * chart.depth, cmap=PRESSURE_MAP, vmin=0.0, vmax=_deepest(last, gear),
@@ -119,11 +120,11 @@ def depth_over_flank(study: WornRun) -> Figure:
 
 def worn_teeth(study: WornRun) -> Figure:
     """The worn flanks on their teeth, at the end."""
-    last, own = study.pairs[-1], wearing(study)
+    last, gears = study.pairs[-1], wearing(study)
     title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
     see = f"Little along the pitch line, where the flanks roll. {_most(study)}"
-    figure = sheet(title, see, (6.2 * len(own) + 1.0, 5.0))
-    for ax, gear in zip(figure.subplots(1, len(own), squeeze=False)[0], own):
+    figure = sheet(title, see, (6.2 * len(gears) + 1.0, 5.0))
+    for ax, gear in zip(figure.subplots(1, len(gears), squeeze=False)[0], gears):
         patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)
         ρ, z = np.meshgrid(patch.roll_length, patch.z, indexing="ij")
         depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
@@ -136,28 +137,28 @@ def worn_teeth(study: WornRun) -> Figure:
 
 
 def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
-    """Each gear's own: their depths may be far apart. Tip edges are beyond its end."""
+    """A colour bar a gear, as their depths may differ widely; tip edges are beyond its end."""
     figure.colorbar(shown, ax=ax, label=f"wear depth [µm]   ({ABOVE})", shrink=0.85, extend="max")
 
 
 def _most(study: WornRun) -> str:
-    """What stands at the upper end of the colours."""
-    found = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
-    return f"Deepest between the tip-edge zones: {', '.join(found)}."
+    """The caption with the depths at the upper end of the colours."""
+    depths = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
+    return f"Deepest between the tip-edge zones: {', '.join(depths)}."
 
 
 def _three(value: float) -> str:
-    """A number in three digits, also where the last is 0."""
+    """A number with three significant digits, trailing zeros included."""
     return f"{value:#.3g}".removesuffix(".")
 
 
 def _deepest(pair: WornPair, gear: Member) -> float:
-    """Deepest wear [µm] of a gear between the tip-edge zones."""
+    """Largest worn depth [µm] of a gear between the tip-edge zones."""
     return 1e3 * float(pair.worn[gear].depth[pair.inner(gear)].max())
 
 
 def growth(study: WornRun) -> Figure:
-    """Deepest wear and worn volume over the cycles; a dot a block."""
+    """Largest depth and worn volume over the cycles; a dot a block."""
     error = 100.0 * max(row.error for row in study.rows)
     see = f"{len(study.rows)} blocks of cycles; estimated error of a block's worn volume at most {error:.1f} %."
     figure = sheet("How the wear grows", see)
@@ -194,14 +195,14 @@ def force_on_tooth(study: WornRun) -> Figure:
 
 
 def _force(pair: WornPair) -> tuple[Floats, Floats]:
-    """From where the tooth takes up load to where it has given it up."""
+    """Rotation [°] and force [N] over the whole engagement of a tooth."""
     curve = engagement(pair.run, 0)
     first, last = curve.ends
     return np.degrees([first, *curve.angle, last]), np.array([0.0, *curve.force, 0.0])
 
 
 def transmission_error(study: WornRun) -> Figure:
-    """Loaded transmission error less its mean over a pitch at each report."""
+    """Loaded transmission error minus its mean over a pitch at each report."""
     first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
     see = f"Peak to peak {first:.2f} µm as new, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
     label = "transmission error less its mean [µm]"

@@ -1,5 +1,5 @@
-"""Figures of one mesh passage of a plane pair, as in He et al. 2022, Figs 17 to 19: stress and sliding of a point, over
-the profile, and the depth of a million meshes; each beside its formula."""
+"""Figures of one mesh passage of a plane pair, each beside its formula: stress and sliding of one point and over the
+profile, and the depth of a million passages (He et al. 2022, Figs 17 to 19)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.figures import wearing
-from evolvent.wear.results.mesh_passage import Contacts, Depths, PointPassage, pitch_point_depth
+from evolvent.wear.results.mesh_passage import ContactProfile, DepthProfile, PointPassage, pitch_point_depth
 from evolvent.wear.results.report import WornRun
 from evolvent_meshes.gears.member import Member
 
 T = TypeVar("T")
 FORMULA = {"color": INK, "linestyle": "--", "linewidth": 1.2}
 MESHES = 1e6
-UM = 1e3 * MESHES  # from mm a mesh to µm in a million
+UM = 1e3 * MESHES  # from mm per passage to µm in a million
 
 
 def pictures(study: WornRun, point: PointPassage) -> Iterator[Picture]:
@@ -34,13 +34,13 @@ def pictures(study: WornRun, point: PointPassage) -> Iterator[Picture]:
     yield Picture("28_depth_by_formula.png", partial(_drawn, depth_by_formula, study))
 
 
-def _drawn(figure: Callable[[T], Figure], of: T) -> bytes:
+def _drawn(figure: Callable[[T], Figure], data: T) -> bytes:
     with styled():
-        return png(figure(of))
+        return png(figure(data))
 
 
 def point_in_contact(point: PointPassage) -> Figure:
-    """Stress and sliding of a point of the pinion while it bears (Fig. 17a)."""
+    """Contact stress and sliding of a point of the pinion while it is in contact (Fig. 17a)."""
     see = f"It bears over {np.degrees(point.lasts):.3f}° of pinion rotation, at most {point.pressure.max():.0f} MPa"
     see += f" (Hertz: {point.hertz.max():.0f} MPa), and slides {1e3 * point.sliding[-1]:.1f} µm."
     figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
@@ -58,12 +58,12 @@ def point_in_contact(point: PointPassage) -> Figure:
 
 
 def stress_and_sliding(run: RunData) -> Figure:
-    """Largest stress and sliding distance of the points over the pinion's profile (Figs 17b and 18)."""
-    both = Contacts.of(run, Member.PINION), Contacts.of(run, Member.WHEEL)
+    """Largest contact stress and sliding distance of the points over the pinion's profile (Figs 17b and 18)."""
+    both = ContactProfile.of(run, Member.PINION), ContactProfile.of(run, Member.WHEEL)
     pinion = both[0]
     stress, width = (
-        100.0 * float(np.median(np.abs(found / wanted - 1.0)))
-        for found, wanted in ((pinion.peak, pinion.hertz), (pinion.half_width, pinion.hertz_half_width))
+        100.0 * float(np.median(np.abs(computed / formula - 1.0)))
+        for computed, formula in ((pinion.peak, pinion.hertz), (pinion.half_width, pinion.hertz_half_width))
     )
     see = f"Half of the points are within {stress:.1f} % of Hertz's stress and {width:.1f} % of Hertz's contact width"
     see += " for the same load."
@@ -74,11 +74,11 @@ def stress_and_sliding(run: RunData) -> Figure:
     left.plot(pinion.radius, pinion.peak, ".", color=PINION, label="computed")
     left.plot(pinion.radius, pinion.hertz, label="Hertz, same load", **FORMULA)
     left.set(ylabel="largest contact stress [MPa]", ylim=(0.0, 1.1 * pinion.peak.max()))
-    for own, colour, name in zip(both, (PINION, WHEEL), GEARS):
-        right.plot(pinion.radius, 1e3 * own.sliding, ".", color=colour, label=f"{name}, computed")
-    for own, label in zip(both, ("2b|1 − v₂/v₁|, 2b|1 − v₁/v₂|", None)):
-        right.plot(pinion.radius, 1e3 * own.single_point, label=label, **FORMULA)
-    top = 1e3 * max(float(own.single_point.max()) for own in both)
+    for profile, colour, name in zip(both, (PINION, WHEEL), GEARS):
+        right.plot(pinion.radius, 1e3 * profile.sliding, ".", color=colour, label=f"{name}, computed")
+    for profile, label in zip(both, ("2b|1 − v₂/v₁|, 2b|1 − v₁/v₂|", None)):
+        right.plot(pinion.radius, 1e3 * profile.single_point, label=label, **FORMULA)
+    top = 1e3 * max(float(profile.single_point.max()) for profile in both)
     right.set(ylabel="sliding distance in one mesh [µm]", ylim=(0.0, 1.35 * top))
     for ax, corner in ((left, "lower center"), (right, "upper center")):
         ax.set(xlabel="radius on the pinion [mm]   (dashed: pitch point)")
@@ -88,18 +88,19 @@ def stress_and_sliding(run: RunData) -> Figure:
 
 
 def depth_by_formula(study: WornRun) -> Figure:
-    """Depth of a million meshes of the unworn pair, and two formulas (Fig. 19)."""
-    pair, own = study.pairs[0], wearing(study)
+    """Depth of a million mesh passages of the unworn pair, computed and by two formulas (Fig. 19)."""
+    pair, coefficients = study.pairs[0], wearing(study)
     see = "Largest stress times sliding distance, He et al. Eq. 24, is 4/π times the exact depth of a line contact."
     figure = sheet("Wear of a million meshes, flanks as new", see)
-    for ax, (gear, coefficient) in zip(figure.subplots(1, len(own), sharey=True, squeeze=False)[0], own.items()):
-        depths = Depths.of(pair, gear, coefficient)
-        ax.plot(depths.radius, UM * depths.own, color=(PINION, WHEEL)[gear], lw=2.6, label="computed")
+    columns = figure.subplots(1, len(coefficients), sharey=True, squeeze=False)[0]
+    for ax, (gear, coefficient) in zip(columns, coefficients.items()):
+        depths = DepthProfile.of(pair, gear, coefficient)
+        ax.plot(depths.radius, UM * depths.computed, color=(PINION, WHEEL)[gear], lw=2.6, label="computed")
         ax.plot(depths.radius, UM * depths.line, label="(K/H) (F/L) |ζ|, same load", **FORMULA)
         ax.plot(depths.radius, UM * depths.peak_times_sliding, color=FAINT, ls=":", label="He et al., Eq. 24")
         pitch = pair.run.pair.working_pitch_diameters[gear] / 2.0
-        deep = UM * pitch_point_depth(pair.run, gear, coefficient)
-        ax.plot([pitch], [deep], "o", color=INK, mfc="white", ms=5, label="Hertz ridge over the pitch point")
+        at_pitch_point = UM * pitch_point_depth(pair.run, gear, coefficient)
+        ax.plot([pitch], [at_pitch_point], "o", color=INK, mfc="white", ms=5, label="Hertz ridge over the pitch point")
         _pitch_point(ax, pitch)
         ax.set(xlabel=f"radius on the {GEARS[gear]} [mm]")
         ax.label_outer()

@@ -1,4 +1,4 @@
-"""What a wear study has found, read from its folder: worn flanks and solved pitches at each report, and the blocks."""
+"""Results of a wear study, read from its folder: blocks, worn flanks and solved pitches at each report; wear.json."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
-from evolvent.wear.results.archive import read_study, worn_folder
+from evolvent.wear.results.archive import read_checkpoint, worn_folder
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
 class GearReport:
-    """A gear after some cycles."""
+    """Wear of a gear after some cycles."""
 
     deepest_um: float
-    """Deepest wear between the tip-edge zones."""
+    """Largest worn depth between the tip-edge zones."""
     at_diameter_mm: float
-    """The diameter where it is."""
+    """Diameter at which it is."""
     at_z_mm: float
-    """The height above mid-face where it is."""
+    """Height above mid-face at which it is."""
     at_pitch_point_um: float
-    """Wear at the pitch point, mean over the face."""
+    """Worn depth at the pitch point, mean over the face."""
     volume_mm3: float
-    """Worn off a tooth in all."""
+    """Total volume worn off a tooth."""
 
 
 @dataclass(frozen=True)
@@ -52,13 +52,13 @@ class PairReport:
     max_pressure_MPa: float
     """Largest contact pressure of a tooth's engagement."""
     transmission_error_peak_to_peak_um: float
-    """Largest less smallest transmission error of the pitch."""
+    """Largest minus smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangent, mean of the pitch."""
+    """Tangent stiffness, mean over the pitch."""
     loss_percent: float
-    """Friction work of the pitch, of the input."""
+    """Friction work over the input work of the pitch."""
     balance_error: float
-    """Of the energy of the pitch."""
+    """Error of the energy balance over the pitch."""
 
 
 @dataclass(frozen=True)
@@ -70,17 +70,22 @@ class WearReport:
     blocks: int
     """Blocks of cycles."""
     refused_blocks: int
-    """Longer ones that were tried and refused."""
+    """Longer blocks that were tried and rejected."""
     largest_block_error: float
-    """Share of a block's worn volume that may be taken off in the wrong place, the largest."""
+    """Largest estimated error of a block: volume worn off in the wrong place over its whole worn volume."""
     reports: tuple[PairReport, ...]
     """The pair at the beginning and at each report."""
 
 
 @dataclass(frozen=True)
 class WornPair:
-    """cycles; the pitch solved then; worn: what the study has taken off pinion and wheel, charts on the flank's nodes;
-    volumes: off a tooth of each [mm³]."""
+    """The pair after some cycles.
+
+    cycles: revolutions of the pinion.
+    run: the pitch solved on the worn flanks.
+    worn: depths worn off pinion and wheel in the study, as charts on the flanks' nodes.
+    volumes: worn off a tooth of each [mm³].
+    """
 
     cycles: float
     run: RunData
@@ -88,18 +93,18 @@ class WornPair:
     volumes: tuple[float, float]
 
     def inner(self, gear: Member) -> np.ndarray:
-        """(k,) bool: the chart's diameters between the tip-edge zones, where pressure is singular and so is wear."""
+        """(k,) which diameters of the chart are between the tip-edge zones, in which pressure and wear are singular."""
         low, high = inner_arcs(self.run.pair, gear)
         arcs = self.worn[gear].arcs(self.run.pair.gears[gear])
         return np.asarray((arcs >= low) & (arcs <= high))
 
     def profile(self, gear: Member) -> tuple[Floats, Floats]:
-        """Diameters [mm] between the tip-edge zones, and wear [µm] there, mean over the face."""
+        """Diameters (k,) [mm] between the tip-edge zones, and worn depth (k,) [µm] there, mean over the face."""
         inner, chart = self.inner(gear), self.worn[gear]
         return chart.diameters[inner], 1e3 * _mean(chart)[inner]
 
     def report(self) -> PairReport:
-        """The figures of it."""
+        """The figures of the pair for wear.json."""
         row = friction_rows(self.run)[0]
         return PairReport(
             self.cycles, self._gear(Member.PINION), self._gear(Member.WHEEL), row.max_pressure_MPa,
@@ -119,7 +124,12 @@ class WornPair:
 
 @dataclass(frozen=True)
 class WornRun:
-    """A finished study. pairs: at the beginning and at each report."""
+    """A finished study.
+
+    scene: its scene.
+    rows: of all blocks.
+    pairs: at the beginning and at each report.
+    """
 
     scene: Scene
     rows: tuple[BlockRow, ...]
@@ -127,53 +137,55 @@ class WornRun:
 
 
 def read_worn(folder: Path) -> WornRun:
-    """The study that `folder` holds. Raises SceneError, ArchiveError."""
+    """The finished study in `folder`. Raises SceneError; ArchiveError where there is none."""
     scene = load_scene(folder / "scene.toml")
-    kept = read_study(Archive(folder, scene))
-    if scene.wear is None or kept is None or kept.cycles < scene.wear.cycles:
+    study = read_checkpoint(Archive(folder, scene))
+    if scene.wear is None or study is None or study.cycles < scene.wear.cycles:
         found = "a scene without [wear]" if scene.wear is None else "one that has not reached its last report"
         raise ArchiveError(f"{folder}: wanted a finished wear study, found {found}; `evolvent run ... --resume`")
-    volumes = {0.0: (0.0, 0.0)} | {row.cycles: (row.volume_pinion_mm3, row.volume_wheel_mm3) for row in kept.rows}
+    volumes = {0.0: (0.0, 0.0)} | {row.cycles: (row.volume_pinion_mm3, row.volume_wheel_mm3) for row in study.rows}
     ends = np.array(list(volumes))
     pairs = []
     for cycles in (0.0, *scene.wear.reports):
-        own = worn_folder(folder, cycles)
-        charts = [_worn(scene, own if cycles else worn_folder(folder, scene.wear.reports[0]), gear) for gear in Member]
+        pair_folder = worn_folder(folder, cycles)
+        chart_folder = pair_folder if cycles else worn_folder(folder, scene.wear.reports[0])
+        charts = [_worn(scene, chart_folder, gear) for gear in Member]
         if cycles == 0.0:
             charts = [FlankChart(c.diameters, c.heights, np.zeros_like(c.depth)) for c in charts]
         volume = volumes[float(ends[np.argmin(np.abs(ends - cycles))])]
-        pairs.append(WornPair(cycles, read_run(own), (charts[0], charts[1]), volume))
-    return WornRun(scene, kept.rows, tuple(pairs))
+        pairs.append(WornPair(cycles, read_run(pair_folder), (charts[0], charts[1]), volume))
+    return WornRun(scene, study.rows, tuple(pairs))
 
 
 def _worn(scene: Scene, folder: Path, gear: Member) -> FlankChart:
-    """A worn flank less what was charted at the beginning."""
+    """The depth worn off a flank: its chart minus that of the beginning."""
     chart = FlankChart.read(folder / f"flank_{GEARS[gear]}.csv")
     before = scene.flank_chart(GEARS[gear])
     if before is None:
         return chart
-    own = scene.gear_pair().gears[gear]
+    geometry = scene.gear_pair().gears[gear]
     d, z = np.meshgrid(chart.diameters, chart.heights, indexing="ij")
-    roll = np.sqrt(np.maximum(d.ravel() ** 2 / 4.0 - own.base_radius**2, 0.0))
-    return FlankChart(chart.diameters, chart.heights, chart.depth - before.at(own, roll, z.ravel()).reshape(d.shape))
+    roll = np.sqrt(np.maximum(d.ravel() ** 2 / 4.0 - geometry.base_radius**2, 0.0))
+    earlier = before.at(geometry, roll, z.ravel()).reshape(d.shape)
+    return FlankChart(chart.diameters, chart.heights, chart.depth - earlier)
 
 
 def _mean(chart: FlankChart) -> Floats:
-    """(k,) over the face, by the trapezoid rule."""
+    """Mean (k,) over the face by the trapezoid rule."""
     if len(chart.heights) == 1:
         return chart.depth[:, 0]
     return np.asarray(trapezoid(chart.depth, chart.heights, axis=1) / np.ptp(chart.heights))
 
 
 def write_report(study: WornRun, folder: RunFolder) -> None:
-    """OUT/wear.json: the figures at each report. Raises OSError."""
+    """Writes OUT/wear.json, the figures at each report. Raises OSError."""
     wear = study.scene.wear
     assert wear is not None
-    found = WearReport(
+    report = WearReport(
         {"pinion": wear.pinion_mm2_per_N, "wheel": wear.wheel_mm2_per_N},
         blocks=len(study.rows),
         refused_blocks=sum(row.refused for row in study.rows),
         largest_block_error=max(row.error for row in study.rows),
         reports=tuple(pair.report() for pair in study.pairs),
     )
-    folder.write_text("wear.json", json.dumps(asdict(found), ensure_ascii=False, indent=1) + "\n")
+    folder.write_text("wear.json", json.dumps(asdict(report), ensure_ascii=False, indent=1) + "\n")

@@ -171,5 +171,5 @@ def test_given_deflections(k: int) -> None:
         R = stand.rotation(gear, 3, number)
         lost = gear.sign * (0.02, 0.01)[gear] * np.cos(pair.pinion.base_helix_angle)
         wanted += share * (u @ R.T @ n - lost) + ρ * ε_rate[gear] + gear.sign * (u_rate @ R.T @ t)
-    found = pitch.added([k], [points])[0]
+    found = pitch.elastic_sliding([k], [points])[0]
     np.testing.assert_allclose(found, wanted, atol=3e-3 * np.abs(wanted).max())

@@ -14,8 +14,9 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.gears.gear_study import Stage, kept_of, stages
-from evolvent.wear.gears.gear_wear import SLOPE, Following, GearWear
+from evolvent.wear.gears.gear_study import StudyState, checkpoint_of, study_states
+from evolvent.wear.gears.gear_wear import GearWear
+from evolvent.wear.gears.pair_geometry import MESHABLE_SLOPE, GearMeshMotion
 from evolvent.wear.mesh_motion import mesh_volume
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -34,14 +35,14 @@ def scene_of(kind: str, *settings: str) -> Scene:
 
 
 def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearModel]:
-    """See GearWear.follow."""
+    """See GearMeshMotion."""
     return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 
 
 def gears_of(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
     model = prepare_model(scene, MPI.COMM_SELF).model
-    pitch, following = uniform_pitch(model.pair.pinion.z, positions), Following(refresh, condenser(scene))
+    pitch, following = uniform_pitch(model.pair.pinion.z, positions), GearMeshMotion(refresh, condenser(scene))
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 
 
@@ -67,8 +68,8 @@ def test_meshes_that_follow_make_the_same_contact(kind: str, order: int) -> None
     depth = hollow(gears, 5e-3)
     fresh, gap = gears.evaluate(gears.begin), gears.evaluate(depth)
     before = [body.mesh for body in gears.model.bodies]
-    gears.follow(depth)
-    np.testing.assert_allclose(gears.known, depth, atol=1e-12)
+    gears.update_meshes(depth)
+    np.testing.assert_allclose(gears.mesh_depth, depth, atol=1e-12)
     for old, body, areas, own in zip(before, gears.model.bodies, gears.by_gear(gears.areas), gears.by_gear(depth)):
         assert mesh_volume(old) - mesh_volume(body.mesh) == pytest.approx(float(areas @ own), rel=1e-3)
         assert scaled_jacobians(body.mesh).min() > scaled_jacobians(old).min() - 0.01
@@ -85,9 +86,9 @@ def test_a_block_on_other_meshes_is_refused() -> None:
     scene = scene_of("spur")
     gears = gears_of(scene)
     now = gears.evaluate(gears.begin)
-    gears.follow(hollow(gears, 1e-3))
+    gears.update_meshes(hollow(gears, 1e-3))
     with pytest.raises(ValueError, match="found one on others"):
-        gears.implicit(gears.begin, now, 1e3)
+        gears.implicit_block(gears.begin, now, 1e3)
 
 
 def test_what_meshes_can_follow() -> None:
@@ -96,28 +97,29 @@ def test_what_meshes_can_follow() -> None:
     gears = gears_of(scene_of("helical"))
     rng = np.random.default_rng(0)
     depth = hollow(gears, 2e-3) + 1e-3 * rng.random(len(gears.begin))
-    found = gears.gentle(depth)
+    found = gears.geometry.meshable(depth)
     assert (found <= depth).all() and found.min() >= 0.0
-    np.testing.assert_allclose(gears.gentle(found), found, atol=1e-15)
+    np.testing.assert_allclose(gears.geometry.meshable(found), found, atol=1e-15)
     for grid, own in zip(gears.grids, gears.by_gear(found)):
+        slope = MESHABLE_SLOPE * (1.0 + 1e-9)
         assert (own[grid.node[:, 0]] == 0.0).all()
-        assert (np.abs(np.diff(own[grid.node], axis=1)) <= SLOPE * np.diff(grid.arcs) * (1.0 + 1e-9)).all()
-        assert (np.abs(np.diff(own[grid.node], axis=0)) <= SLOPE * np.diff(grid.heights)[:, None] * (1.0 + 1e-9)).all()
+        assert (np.abs(np.diff(own[grid.node], axis=1)) <= slope * np.diff(grid.arcs)).all()
+        assert (np.abs(np.diff(own[grid.node], axis=0)) <= slope * np.diff(grid.heights)[:, None]).all()
     smooth = hollow(gears, 1e-3)
-    np.testing.assert_allclose(gears.gentle(smooth), smooth, atol=1e-15)
+    np.testing.assert_allclose(gears.geometry.meshable(smooth), smooth, atol=1e-15)
 
 
 @cache
-def studied(refresh: float) -> tuple[GearWear, list[Stage]]:
+def studied(refresh: float) -> tuple[GearWear, list[StudyState]]:
     """A spur pair worn by 3 µm."""
     gears = gears_of(scene_of("spur"), 8, refresh)
-    return gears, list(stages(gears, (2e5, 8e5), BlockSettings(4e4)))
+    return gears, list(study_states(gears, (2e5, 8e5), BlockSettings(4e4)))
 
 
 def test_study_with_meshes_that_follow() -> None:
     """Meshes that follow each 0.5 µm or not at all: depths within 1 % of the volume; both lose what was worn off."""
     (never, fixed), (often, moved) = studied(np.inf), studied(5e-4)
-    assert never.refreshed == 0 and often.refreshed >= 3
+    assert never.mesh_updates == 0 and often.mesh_updates >= 3
     one, other = fixed[-1].state.depth, moved[-1].state.depth
     assert never.areas @ np.abs(one - other) < 0.01 * never.areas @ one
     assert [stage.report for stage in moved].count(True) == 3
@@ -129,11 +131,11 @@ def test_study_goes_on_from_what_was_kept() -> None:
     _, whole = studied(5e-4)
     scene = scene_of("spur")
     first = gears_of(scene, 8, 5e-4)
-    sweep = stages(first, (2e5, 8e5), BlockSettings(4e4))
+    sweep = study_states(first, (2e5, 8e5), BlockSettings(4e4))
     stage = next(stage for k, stage in enumerate(sweep) if k == 4)
-    assert first.refreshed > 0
-    second, kept = gears_of(scene, 8, 5e-4), kept_of(first, stage)
-    rest = list(stages(second, (2e5, 8e5), BlockSettings(4e4), kept))
+    assert first.mesh_updates > 0
+    second, kept = gears_of(scene, 8, 5e-4), checkpoint_of(first, stage)
+    rest = list(study_states(second, (2e5, 8e5), BlockSettings(4e4), kept))
     assert [s.state.cycles for s in rest] == pytest.approx([s.state.cycles for s in whole[4:]], rel=1e-9)
     deepest = whole[-1].state.depth.max()
     np.testing.assert_allclose(rest[-1].state.depth, whole[-1].state.depth, atol=1e-9 * deepest)

@@ -12,7 +12,7 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears import implicit_block
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
-from evolvent.wear.gears.implicit_block import Response
+from evolvent.wear.gears.implicit_block import PositionResponse
 from tests.support.gear_cases import model_of, spur_scene
 
 LENGTH = 4e5  # cycles, in which many points would pull
@@ -30,23 +30,23 @@ def test_response_as_a_matrix() -> None:
     """R times an opening is the same by the matrix and by the product, to rounding; points that have left the contact
     keep no pressure, whatever opens."""
     now = fresh()[1]
-    whole = Response.of(now.shared[0], now.points[0])
-    pulled = np.arange(len(whole.leaving)) % 3 == 0
+    whole = PositionResponse.of(now.shared[0], now.points[0])
+    pulled = np.arange(len(whole.separating)) % 3 == 0
     for response in (whole, whole.without(pulled)):
-        opening = 1e-3 * np.cos(np.arange(len(response.leaving)))
+        opening = 1e-3 * np.cos(np.arange(len(response.separating)))
         product = response(opening)
         np.testing.assert_allclose(response.matrix @ opening, product, atol=1e-10 * np.abs(product).max())
-        assert np.abs(response.matrix[response.leaving]).max(initial=0.0) < 1e-12 * np.abs(response.matrix).max()
+        assert np.abs(response.matrix[response.separating]).max(initial=0.0) < 1e-12 * np.abs(response.matrix).max()
     left = whole.without(pulled)
-    np.testing.assert_allclose(left.released[pulled], -left.points.pressure[pulled], rtol=1e-12)
+    np.testing.assert_allclose(left.separation[pulled], -left.points.pressure[pulled], rtol=1e-12)
 
 
 def test_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
     """An implicit block is the same within what GMRES leaves, however many points count as few."""
     gears, now = fresh()
-    few, _ = gears.implicit(gears.begin, now, LENGTH)
+    few, _ = gears.implicit_block(gears.begin, now, LENGTH)
     monkeypatch.setattr(implicit_block, "SMALL", 0)
-    many, _ = gears.implicit(gears.begin, now, LENGTH)
+    many, _ = gears.implicit_block(gears.begin, now, LENGTH)
     np.testing.assert_allclose(few, many, atol=1e-5 * few.max())
 
 
@@ -54,7 +54,7 @@ def test_long_block_lets_points_go() -> None:
     """In 4e5 cycles at once points would pull: what is worn off is nowhere below zero, and the pressures of the block's
     end, found by solving the pitch there, are those that it has reckoned with, within a tenth of the work."""
     gears, now = fresh()
-    depth, end = gears.implicit(gears.begin, now, LENGTH)
+    depth, end = gears.implicit_block(gears.begin, now, LENGTH)
     assert depth.min() >= 0.0
     wrong = gears.areas @ np.abs(depth - LENGTH * end.rate)
     assert wrong < 0.2 * gears.areas @ depth

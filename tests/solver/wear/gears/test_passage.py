@@ -13,7 +13,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.flank_grid import FlankGrid
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
-from evolvent.wear.gears.passage import passage
+from evolvent.wear.gears.passage import mesh_passage
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
@@ -68,7 +68,7 @@ def test_ridge_of_constant_load(gear: Member, positions: int) -> None:
     ξ; there below 2 % of the largest. Work: F' ∫|v_s| dφ."""
     pair = spur_scene().gear_pair()
     grids = grid(pair, Member.PINION), grid(pair, Member.WHEEL)
-    found = passage(pair, ridges(pair, positions), grids, 2.0 * np.pi / pair.pinion.z / positions)
+    found = mesh_passage(pair, ridges(pair, positions), grids, 2.0 * np.pi / pair.pinion.z / positions)
     u, h = grids[gear].arcs, K * (found.depths[gear] @ found.pressure)
     ξ, exact = line_contact(pair, gear, u, LINE_LOAD)
     start, end = pair.path_of_contact
@@ -174,7 +174,7 @@ def test_implicit_block_against_many_explicit_ones() -> None:
     within a factor of two, no depth is negative, and the volume is that of the linearised pressures."""
     study, fresh = solved(20)
     length = 6e4
-    gained, end = study.implicit(study.begin, fresh, length)
+    gained, end = study.implicit_block(study.begin, fresh, length)
     depth, now = study.begin, fresh
     for _ in range(24):
         half = study.evaluate(depth + length / 48.0 * now.rate, now)

@@ -18,13 +18,13 @@ from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.results.mesh_passage import (
-    Contacts,
-    Depths,
+    ContactProfile,
+    DepthProfile,
     PointPassage,
     pitch_point_depth,
     radius_at,
     roll_distance_at,
-    sliding,
+    sliding_distance,
 )
 from evolvent.wear.results.passage_figures import point_in_contact
 from evolvent.wear.results.report import WornPair
@@ -92,14 +92,14 @@ def test_contacts_over_the_profile() -> None:
     """Fitted stress and width are Hertz'; away from the pitch point the sliding is 2b|1 − v_2/v_1|, at point A 0.0625
     mm, and at the pitch point it is not zero."""
     for gear in Member:
-        found = Contacts.of(he(), gear)
+        found = ContactProfile.of(he(), gear)
         np.testing.assert_allclose(found.peak, found.hertz, rtol=1e-3)
         np.testing.assert_allclose(found.half_width, found.hertz_half_width, rtol=1e-3)
-        away = np.abs(found.ξ) > 1.0
+        away = np.abs(found.roll_distance) > 1.0
         np.testing.assert_allclose(found.sliding[away], found.single_point[away], rtol=3e-3)
-        at = int(np.argmin(np.abs(found.ξ)))
+        at = int(np.argmin(np.abs(found.roll_distance)))
         assert found.single_point[at] < 1e-3 < 3e-3 < found.sliding[at]
-    pinion = Contacts.of(he(), Member.PINION)
+    pinion = ContactProfile.of(he(), Member.PINION)
     assert np.interp(A, pinion.radius, pinion.single_point) == pytest.approx(0.0625, abs=1e-4)
 
 
@@ -108,14 +108,14 @@ def test_depths_of_a_million_meshes() -> None:
     the pitch point what a Hertz ridge leaves there within 5 %."""
     pair = unworn(he())
     for gear in Member:
-        depths = Depths.of(pair, gear, K)
+        depths = DepthProfile.of(pair, gear, K)
         own, line, product = (
             1e9 * float(np.interp(A, depths.radius, values))
-            for values in (depths.own, depths.line, depths.peak_times_sliding)
+            for values in (depths.computed, depths.line, depths.peak_times_sliding)
         )
         assert (line, product) == pytest.approx((2.885, 3.674), abs=2e-3)
         assert own == pytest.approx(line, rel=1e-2)
-        lowest = float(np.interp(75.0, depths.radius, depths.own))
+        lowest = float(np.interp(75.0, depths.radius, depths.computed))
         assert lowest == pytest.approx(pitch_point_depth(pair.run, gear, K), rel=5e-2)
 
 
@@ -124,9 +124,9 @@ def test_pitch_point_depth_is_the_integral() -> None:
     run = synthetic_run("pinion.face_width_mm=25.0", file="demos/zhang2023.toml")
     pair, φ = run.pair, np.linspace(-0.02, 0.02, 400_001)
     for gear in Member:
-        ridge = Contacts.of(run, gear)
-        at = int(np.argmin(np.abs(ridge.ξ)))
-        assert abs(ridge.ξ[at]) < 1e-9
+        ridge = ContactProfile.of(run, gear)
+        at = int(np.argmin(np.abs(ridge.roll_distance)))
+        assert abs(ridge.roll_distance[at]) < 1e-9
         ξ = pair.pinion.base_radius * φ
         s = line_arc(pair, gear, np.zeros(1)) - line_arc(pair, gear, ξ)
         speed = (1.0 + 1.0 / pair.ratio) * np.abs(ξ)
@@ -142,7 +142,7 @@ def test_sliding_is_the_integral() -> None:
         for ξ in (-6.0, -0.1, 0.0, 5.0):
             s = line_arc(pair, gear, np.array([ξ])) - line_arc(pair, gear, pair.pinion.base_radius * φ)
             whole = float(speed @ (np.abs(s) < b)) * (φ[1] - φ[0])
-            assert sliding(pair, gear, np.array([ξ]), np.array([b]))[0] == pytest.approx(whole, rel=1e-3)
+            assert sliding_distance(pair, gear, np.array([ξ]), np.array([b]))[0] == pytest.approx(whole, rel=1e-3)
 
 
 def places(pair: GearPair, gear: Member, ξ: Floats) -> Floats:

@@ -64,7 +64,7 @@ def test_nothing_separates_a_full_graph() -> None:
     assert whole == Part(0, 0, 6)
 
 
-def test_loose_rows_are_shared_out() -> None:
+def test_rows_without_neighbours_are_divided() -> None:
     """Rows without neighbours, with or without a diagonal: two parts, nothing between them."""
     for graph in (sp.eye(10, format="csr"), sp.csr_matrix((10, 10))):
         side = cut(graph)
@@ -73,7 +73,7 @@ def test_loose_rows_are_shared_out() -> None:
 
 
 @pytest.mark.parametrize("sizes", [(9, 2, 3, 2), (2, 3, 9, 2), (4, 4, 4)])
-def test_pieces_are_halved(sizes: tuple[int, ...]) -> None:
+def test_disconnected_graphs_are_divided_between_pieces(sizes: tuple[int, ...]) -> None:
     """A graph in pieces, the largest no more than 70 % of it, is cut between pieces or across one, wherever in the
     numbering they are: at most one row in the separator, and at least 30 % of the rows on either side."""
     pieces = sp.block_diag([sp.diags([1.0, 1.0, 1.0], [-1, 0, 1], shape=(n, n)) for n in sizes], format="csr")
@@ -99,7 +99,7 @@ def test_wide_coupling_joins_the_separator() -> None:
     assert sorted(beside[beside != 0] * np.sign(beside.sum())) == [1, 2, 3]
 
 
-def test_plan_tiles_the_rows() -> None:
+def test_separator_tree_tiles_the_rows() -> None:
     """Parts begin where the one before ends, hold no more than a leaf's rows or are cut, and no entry of the matrix in
     the new order joins two of them."""
     matrix = grid(30, 30, 2)
@@ -121,12 +121,12 @@ def test_plan_tiles_the_rows() -> None:
     assert len(list(leaves(whole))) >= 16
 
 
-def test_same_plan_every_time() -> None:
+def test_elimination_order_is_reproducible() -> None:
     """Runs repeat bit for bit, so the seeds are fixed."""
     assert np.array_equal(planned(grid(30, 30), None, 50)[0], planned(grid(30, 30), None, 50)[0])
 
 
-def test_without_metis(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_metis_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """The message says what to install."""
     elimination_order._library.cache_clear()
     monkeypatch.setattr(elimination_order, "find_library", lambda _: None)

@@ -30,7 +30,7 @@ print(kept - before, resident() - before)
 """
 
 
-def test_what_is_given_up_is_used_again() -> None:
+def test_released_memory_is_reused() -> None:
     """Three arrays, two of them within a block: the next one made lies where the first of these was, and neither
     touches the one below."""
     stack = Stack()
@@ -47,7 +47,7 @@ def test_what_is_given_up_is_used_again() -> None:
     assert np.all(below == 1.0)
 
 
-def test_given_up_after_an_error() -> None:
+def test_memory_is_released_after_an_error() -> None:
     """An error within a block gives up what was made in it."""
     stack = Stack()
     made = []
@@ -62,7 +62,7 @@ def test_given_up_after_an_error() -> None:
     assert stack.empty(2, 2).ctypes.data == made[0].ctypes.data
 
 
-def test_more_than_the_machine_has() -> None:
+def test_array_larger_than_the_machine_is_refused() -> None:
     """An array larger than all memory is refused with both sizes, not by the kernel."""
     columns = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 8
     with pytest.raises(MemoryError, match="take a coarser mesh"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.fem.material import Material, joint_modulus, traction_rows
+from evolvent.fem.material import Material, contact_modulus, traction_rows
 
 
 @pytest.mark.parametrize(
@@ -23,7 +23,7 @@ def test_elastic_constants_of_steel() -> None:
     half the modulus E/(1−ν²) of one."""
     steel = Material(210e3, 0.3)
     assert steel.lame == pytest.approx((121153.846, 80769.2308))
-    assert joint_modulus(steel, steel) == pytest.approx(steel.plane_modulus / 2) == pytest.approx(210e3 / 0.91 / 2)
+    assert contact_modulus(steel, steel) == pytest.approx(steel.plane_modulus / 2) == pytest.approx(210e3 / 0.91 / 2)
 
 
 @pytest.mark.parametrize("d", [2, 3])

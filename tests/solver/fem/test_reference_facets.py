@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent.fem.lagrange import tabulate
-from evolvent.fem.reference_facets import TURNED_OVER, hats, reference_cell, subcell_rule
+from evolvent.fem.reference_facets import REVERSED_FACET, hats, reference_cell, subcell_rule
 
 CELLS = [(s, o) for s in ("interval", "quadrilateral", "triangle") for o in (1, 2)]
 
@@ -47,4 +47,4 @@ def test_turning_a_facet_over_keeps_its_points(shape, order):
     """The turned facet has the same nodes at mirrored reference points, and the opposite normal."""
     nodes = reference_cell(shape, order).nodes
     mirrored = 1.0 - nodes if nodes.shape[1] == 1 else nodes[:, ::-1]
-    assert np.allclose(nodes[TURNED_OVER[shape, order]], mirrored)
+    assert np.allclose(nodes[REVERSED_FACET[shape, order]], mirrored)

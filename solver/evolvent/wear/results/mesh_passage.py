@@ -17,7 +17,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from evolvent.contact.hertz import line_half_width, line_peak_pressure
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.gears.sweep.position import PositionResult
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_field
@@ -116,7 +116,7 @@ class Depths:
         radius = pair.worn[gear].diameters[inner] / 2.0
         ξ = roll_distance_at(run.pair, gear, radius)
         load, ζ = line_load(run, ξ), np.abs(run.pair.specific_sliding(ξ)[gear])
-        R, modulus = run.pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
+        R, modulus = run.pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())
         product = line_peak_pressure(load, R, modulus) * 2.0 * line_half_width(load, R, modulus) * ζ
         own = coefficient * gathered(pair)[gear][inner]
         return Depths(radius, own, coefficient * load * ζ, coefficient * product)
@@ -142,7 +142,8 @@ def pitch_point_depth(run: RunData, gear: int, coefficient: float) -> float:
     """Depth [mm] a mesh at the pitch point of a gear, where the line contact's formula has none: a Hertz ridge of the
     load there passes while the sliding goes through zero, (K/H)(1 + 1/u)(r_b²/r_b1 ρ²)·⅔ p0 b², K/H [mm²/N]."""
     pair, zero = run.pair, np.zeros(1)
-    load, R, modulus = line_load(run, zero), pair.relative_curvature_radius(zero), joint_modulus(*run.scene.materials())
+    load, R = line_load(run, zero), pair.relative_curvature_radius(zero)
+    modulus = contact_modulus(*run.scene.materials())
     p0, b = line_peak_pressure(load, R, modulus), line_half_width(load, R, modulus)
     lever = (pair.gears[gear].base_radius / pair.pitch_point_roll_lengths[gear]) ** 2 / pair.pinion.base_radius
     return float(coefficient * (1.0 + 1.0 / pair.ratio) * lever * 2.0 / 3.0 * p0[0] * b[0] ** 2)
@@ -168,7 +169,7 @@ class PointPassage:
         the rotation at equal distance from the contact line, as wear is gathered."""
         pair, base = run.pair, run.pair.pinion.base_radius
         ξ = roll_distance_at(pair, 0, radius)
-        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
+        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())
         b = float(line_half_width(load, R, modulus))
         lasts = b / (pair.pitch_point_roll_lengths[0] + float(ξ))  # half of it; the line moves by ρ over the flank
         rotation = float(ξ) / base + WIDER * lasts * np.linspace(-1.0, 1.0, count)

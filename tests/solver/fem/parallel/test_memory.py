@@ -8,7 +8,7 @@ import os
 import numpy as np
 import pytest
 
-from evolvent.fem.parallel.memory import Stack, untouched_square
+from evolvent.fem.parallel.memory import Stack, lazy_zeros
 from tests.conftest import Run
 
 KEPT = """
@@ -36,7 +36,7 @@ def test_released_memory_is_reused() -> None:
     stack = Stack()
     below = stack.empty(3, 5)
     below[:] = 1.0
-    with stack.given_up_after():
+    with stack.released_at_exit():
         first = stack.empty(100, 10)
         second = stack.empty(7, 7)
         first[:], second[:] = 2.0, 3.0
@@ -53,7 +53,7 @@ def test_memory_is_released_after_an_error() -> None:
     made = []
 
     def fails() -> None:
-        with stack.given_up_after():
+        with stack.released_at_exit():
             made.append(stack.empty(2, 2))
             raise RuntimeError
 
@@ -79,8 +79,8 @@ def test_freed_arrays_stay_until_returned(run_script: Run) -> None:
     assert kept > 60e6 and returned < 10e6
 
 
-def test_untouched_square_is_zero() -> None:
+def test_lazy_zeros_is_zero() -> None:
     """(n × n) zeros that can be written to; n = 0 too."""
-    square = untouched_square(3)
+    square = lazy_zeros(3)
     square[1, 2] = 5.0
-    assert square.sum() == 5.0 and untouched_square(0).shape == (0, 0)
+    assert square.sum() == 5.0 and lazy_zeros(0).shape == (0, 0)

@@ -13,7 +13,7 @@ from evidence.ladder.axisymmetric import pressed_on_plane, sphere_section
 from evolvent import Contact, ContactResult, Placement, Position, Problem, Step, solve
 from evolvent.contact.problem.condensed_body import prepare
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import STEEL, joint_modulus
+from evolvent.fem.material import STEEL, contact_modulus
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.rings import ring_sphere
@@ -69,7 +69,7 @@ class Found:
     @property
     def hertz(self) -> tuple[float, float]:
         """p0 and a of this force."""
-        modulus, radius = joint_modulus(STEEL, STEEL), RADIUS / 2.0
+        modulus, radius = contact_modulus(STEEL, STEEL), RADIUS / 2.0
         a = (3.0 * self.force * radius / (4.0 * modulus)) ** (1.0 / 3.0)
         return 1.5 * self.force / (np.pi * a**2), a
 

@@ -11,7 +11,7 @@ from demos.hertz_cylinder import Profile
 from evidence.claims import Claim, Reference, Rung
 from evolvent import Contact, Placement, Problem, Step, solve
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import STEEL, Material, joint_modulus
+from evolvent.fem.material import STEEL, Material, contact_modulus
 from evolvent.results.drawing.style import FAINT, WHEEL, dot_size
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -62,7 +62,7 @@ class RoundedPunch:
         return np.where(inside, scale * bracket, 0.0)
 
 
-EXACT = RoundedPunch(FLAT, ROUNDING, HALF_WIDTH, joint_modulus(STEEL, ALUMINIUM))
+EXACT = RoundedPunch(FLAT, ROUNDING, HALF_WIDTH, contact_modulus(STEEL, ALUMINIUM))
 PROBLEM = f"""
 A steel punch, flat over 2a = {2 * FLAT:g} mm with edges rounded by R = {ROUNDING:g} mm, on an aluminium block, plane
 strain, no friction: the punch of NAFEMS' second contact benchmark (R0094) in 2D, with both bodies so large

@@ -57,6 +57,16 @@ def dofs_of(nodes: np.ndarray, dimension: int) -> np.ndarray:
     return (dimension * np.ravel(nodes)[:, None] + np.arange(dimension)).ravel()
 
 
+def block(counts: tuple[int, int, int]) -> tuple[sp.csr_matrix, np.ndarray, sp.csr_matrix]:
+    """K of a block with unit cells, free dofs (bottom z = 0 held), and displacement + traction-like functionals."""
+    numbers, cells = grid_cells(counts)
+    points = np.indices(numbers.shape).reshape(3, -1).T.astype(float)
+    matrix = stiffness(points, cells)
+    top = dofs_of(numbers[:, :, -1], 3)
+    pick = sp.csr_matrix((np.ones(len(top)), (np.arange(len(top)), top)), shape=(len(top), matrix.shape[0]))
+    return matrix, dofs_of(numbers[:, :, 1:], 3), (pick - 1e-6 * matrix[top]).tocsr()
+
+
 @dataclass(frozen=True)
 class Ring:
     """`count` sectors of an annulus (toothed outer edge), held at the bore; nodes (radius, angle, [z]).

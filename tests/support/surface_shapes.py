@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from evolvent.fem.reference_facets import TURNED_OVER, reference_cell
+from evolvent.fem.reference_facets import REVERSED_FACET, reference_cell
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
 
@@ -32,7 +32,7 @@ def curve(n: int, order: int, place: Callable[[Floats], Floats]) -> Surface:
 
 def facing(surface: Surface) -> Surface:
     """The same surface seen from the other side."""
-    turned = surface.facets[:, TURNED_OVER[surface.shape, surface.order]]
+    turned = surface.facets[:, REVERSED_FACET[surface.shape, surface.order]]
     return Surface.from_arrays(surface.points, turned, surface.shape, surface.order)
 
 

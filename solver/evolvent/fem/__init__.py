@@ -1,1 +1,1 @@
-"""Elastic bodies: mesh, material, supports, loads, contact surfaces, stress."""
+"""Elastic bodies: material, supports, loads, stiffness, contact surfaces, stress."""

@@ -1,8 +1,8 @@
-"""A body: mesh, material, and what acts on it; its stiffness, assembled by dolfinx.
+"""An elastic body: mesh, material, supports and loads; its stiffness matrix and load vector, assembled by dolfinx.
 
-A rigidly coupled body is described in the frame of its coupling: the coupled nodes are at rest there, and the small
-rigid motion δ of that frame is an unknown with a load, or is prescribed. A rigid motion carries no stress, so the
-stiffness knows nothing of it.
+The displacements of a body with a rigid coupling are relative to the coupled facet group, whose nodes are held. The
+small rigid motion δ of that group is an unknown with a load, or is prescribed. A rigid motion causes no stress, so that
+the stiffness does not depend on it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 import ufl
-from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from evolvent.fem.backend import dolfinx_compat
@@ -25,7 +24,7 @@ from evolvent.fem.material import STEEL, Material
 from evolvent.fem.parallel.memory import keep_freed_memory
 from evolvent.fem.rigid_modes import rigid_modes
 from evolvent.fem.surface import boundary_group, facet_group
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.input_checks import members, refuse, text
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
@@ -38,35 +37,42 @@ __all__ = [
     "BodyForce",
     "Fixed",
     "Freedom",
-    "Load",
     "Rigid",
     "RigidMotions",
     "Traction",
     "assemble",
-    "prescribed",
+    "prescribed_displacements",
 ]
-
-Load = Traction | BodyForce
 
 
 @dataclass(frozen=True)
 class Body:
     """A deformable body.
 
-    mesh: of `read_msh`, `evolvent_meshes.shapes.blocks` or of one's own arrays.
-    material: isotropic and elastic.
-    supports: what is held; the rigid motions that they leave free are found by equilibrium.
-    loads: tractions and body forces; a step's load factor multiplies them.
+    mesh: from `read_msh`, from `evolvent_meshes.shapes`, or from arrays.
+    material: isotropic, linear elastic.
+    supports: facet groups that are held or displaced; rigid motions that they leave free are unknowns.
+    loads: tractions and body forces, multiplied by the load factor of a step.
     rigid: a facet group that moves as a rigid body.
-    name: stands in messages and file names.
-    Raises MeshError for a mesh that cannot be used (`evolvent_meshes.mesh.soundness`), InputError for anything else
-    that does not fit.
+    name: used in messages and file names.
+    Raises MeshError for an unusable mesh (`evolvent_meshes.mesh.soundness`), InputError for other inconsistent input.
+
+    >>> from evolvent_meshes.shapes.blocks import rectangle
+    >>> mesh = rectangle(40.0, 20.0, nx=4, ny=2)
+    >>> block = Body(mesh, supports=(Fixed("bottom"),), loads=(Traction("top", (0.0, -1.0)),))
+    >>> block.material.youngs_modulus, block.mesh.dimension
+    (210000.0, 2)
+    >>> Body(mesh, supports=(Fixed("floor"),), name="block")
+    Traceback (most recent call last):
+    ...
+    evolvent_meshes.mesh.mesh_data.MeshError: block: wanted one of the facet groups bottom, left, right, top, found \
+'floor'; name one of these
     """
 
     mesh: MeshData
     material: Material = STEEL
     supports: tuple[Fixed, ...] = ()
-    loads: tuple[Load, ...] = ()
+    loads: tuple[Traction | BodyForce, ...] = ()
     rigid: Rigid | None = None
     name: str = "body"
 
@@ -83,7 +89,7 @@ class Body:
             refuse(f"{self.name}, rigid", "a Rigid", self.rigid, 'write Rigid("top"), or leave it out')
         self._check_groups()
         self._check_dimension()
-        prescribed(self)
+        prescribed_displacements(self)
 
     def _check_groups(self) -> None:
         for support in self.supports:
@@ -115,9 +121,11 @@ class Body:
             refuse(f"{self.name}, rigid coupling", f"a centre of {d} coordinates", self.rigid.centre, "write (x, y, z)")
 
 
-def prescribed(body: Body) -> tuple[NDArray[np.bool_], Floats]:
-    """What the supports hold, (N, d) bool, and the displacements [mm] that they prescribe there, (N, d). Raises
-    InputError where two of them, or one and the rigid coupling, prescribe different ones."""
+def prescribed_displacements(body: Body) -> tuple[Bools, Floats]:
+    """Where the supports prescribe a displacement, (N, d), and its value there (N, d) [mm], zero elsewhere.
+
+    Raises InputError where two supports, or a support and the rigid coupling, prescribe different ones.
+    """
     d = body.mesh.dimension
     held, value = np.zeros((len(body.mesh.points), d), dtype=bool), np.zeros((len(body.mesh.points), d))
     rigid = np.unique(body.mesh.facets[body.rigid.group]) if body.rigid else np.empty(0, dtype=np.int64)
@@ -138,10 +146,11 @@ def prescribed(body: Body) -> tuple[NDArray[np.bool_], Floats]:
 
 @dataclass(frozen=True)
 class RigidMotions:
-    """The rigid motions of a body that contact sees.
+    """Rigid motions of a body, superposed to its displacements.
 
-    shapes: (N, d, r) unit motions at the mesh nodes; load: (r,) their load [N, N·mm], NaN where the motion is
-    prescribed; value: (r,) the prescribed motion [mm, rad], NaN where it is loaded.
+    shapes: (N, d, r) displacements of the mesh nodes by unit motions.
+    load: (r,) load of each motion [N, N·mm], NaN where it is prescribed.
+    value: (r,) prescribed motion [mm, rad], NaN where it is an unknown.
     """
 
     shapes: Floats
@@ -150,23 +159,25 @@ class RigidMotions:
 
     @property
     def free(self) -> Ints:
-        """Indices of the unknown motions."""
+        """Indices of the motions that are unknowns."""
         return np.flatnonzero(np.isnan(self.value))
 
 
 @dataclass(frozen=True)
 class Assembled:
-    """Stiffness and load of a body on all its degrees of freedom (node-major: d·node + component).
+    """Stiffness matrix and load vector of a body on all of its degrees of freedom d·node + component.
 
-    stiffness: (N·d, N·d) without supports.
-    held: (N·d,) bool, where a displacement is prescribed.
+    body: what was assembled.
+    stiffness: (N·d, N·d) without supports [N/mm].
+    held: (N·d,) where a displacement is prescribed.
     load: (N·d,) external nodal forces [N].
-    prescribed: (N·d,) displacements where held, zero elsewhere [mm].
+    prescribed: (N·d,) prescribed displacements, zero elsewhere [mm].
+    motions: rigid motions superposed to the displacements.
     """
 
     body: Body
     stiffness: sp.csr_matrix
-    held: NDArray[np.bool_]
+    held: Bools
     load: Floats
     prescribed: Floats
     motions: RigidMotions = field(repr=False)
@@ -178,21 +189,24 @@ class Assembled:
 
     @property
     def d(self) -> int:
-        """Space dimension."""
+        """Dimension of space, 2 or 3."""
         return self.body.mesh.dimension
 
 
 def assemble(body: Body) -> Assembled:
-    """Stiffness by dolfinx, loads, supports and rigid motions of a body.
+    """Stiffness matrix, load vector, supports and rigid motions of a body.
 
-    A body that its supports let float is held at as many degrees of freedom as it has rigid motions left, and these
-    motions become unknowns without load: the reactions of such pins vanish in equilibrium.
+    Rigid motions that the supports leave free become unknowns, and as many degrees of freedom are pinned; in
+    equilibrium the reactions at these pins vanish.
+
+    Raises InputError where a support holds a freedom of the rigid coupling, MeshError where a piece of the mesh is not
+    held, CompileError and CacheError where dolfinx cannot compile the forms.
     """
-    keep_freed_memory()  # here, because whatever is large follows from a stiffness
+    keep_freed_memory()  # before the first large array
     d = body.mesh.dimension
     points = body.mesh.points[:, :d]
     stiffness, load = _stiffness_and_load(body)
-    held, value = prescribed(body)
+    held, value = prescribed_displacements(body)
     if body.rigid:
         motions = _coupled_motions(body, body.rigid, held)
         held[np.unique(body.mesh.facets[body.rigid.group])] = True
@@ -217,7 +231,7 @@ def _stiffness_and_load(body: Body) -> tuple[sp.csr_matrix, Floats]:
     ε = ufl.sym(ufl.grad(u))
     form = ufl.inner(λ * ufl.tr(ε) * ufl.Identity(d) + 2 * μ * ε, ufl.sym(ufl.grad(v))) * dx
     stiffness = cast(sp.csr_matrix, dolfinx_compat.assemble_csr(form)[order][:, order].tocsr())
-    stiffness.eliminate_zeros()  # sums drop them too, and who compares patterns must not be misled
+    stiffness.eliminate_zeros()  # sums of matrices drop them too, and patterns are compared
     return stiffness, _load(body, mesh, v)[order] if body.loads else np.zeros(len(order))
 
 
@@ -233,7 +247,7 @@ def _load(body: Body, mesh: Mesh, v: object) -> Floats:
     return np.sum([dolfinx_compat.assemble_array(term) for term in terms], axis=0)
 
 
-def _coupled_motions(body: Body, rigid: Rigid, held: NDArray[np.bool_]) -> RigidMotions:
+def _coupled_motions(body: Body, rigid: Rigid, held: Bools) -> RigidMotions:
     d = body.mesh.dimension
     shapes = rigid_modes(body.mesh.points[:, :d] - np.asarray(rigid.centre)[:d])
     chosen = shapes[:, :, [DIRECTIONS[d].index(f.direction) for f in rigid.freedoms]]
@@ -252,8 +266,8 @@ def _coupled_motions(body: Body, rigid: Rigid, held: NDArray[np.bool_]) -> Rigid
     )
 
 
-def _refuse_loose_pieces(body: Body, held: NDArray[np.bool_]) -> None:
-    """A mesh in several pieces, for instance because its nodes are not welded, needs each of them held."""
+def _refuse_loose_pieces(body: Body, held: Bools) -> None:
+    """Raises MeshError where the mesh has several pieces, as with nodes that are not welded, and one is not held."""
     cells, points = body.mesh.cells, body.mesh.points[:, : body.mesh.dimension]
     links = np.ones(cells.size, dtype=np.int8), (np.repeat(cells[:, 0], cells.shape[1]), cells.ravel())
     count, number = connected_components(sp.csr_matrix(links, shape=(len(points),) * 2), directed=False)
@@ -269,8 +283,8 @@ def _refuse_loose_pieces(body: Body, held: NDArray[np.bool_]) -> None:
             )
 
 
-def _floating_motions(points: Floats, held: NDArray[np.bool_]) -> RigidMotions:
-    """What the supports leave free; pins one degree of freedom a motion in `held`."""
+def _floating_motions(points: Floats, held: Bools) -> RigidMotions:
+    """The rigid motions that the supports leave free; sets one degree of freedom for each in `held` (N, d)."""
     shapes = rigid_modes(points - points.mean(axis=0))
     n, d, r = shapes.shape
     scale = 1.0 / np.linalg.norm(shapes.reshape(n * d, r), axis=0)

@@ -1,4 +1,4 @@
-"""What holds and loads a body: supports, tractions, body forces, rigid coupling."""
+"""Boundary conditions and loads of a body: supports, tractions, body forces, rigid coupling."""
 
 from __future__ import annotations
 
@@ -8,16 +8,21 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.input_checks import members, number, refuse, text, vector
 
 DIRECTIONS = {2: ("x", "y", "rz"), 3: ("x", "y", "z", "rx", "ry", "rz")}
+"""Dimension -> its rigid motions, in the order of `rigid_modes`."""
 AXES = "xyz"
 
 
 @dataclass(frozen=True)
 class Fixed:
-    """No displacement of a facet group in these directions, or a prescribed one.
+    """A support: the displacement of a facet group is zero in some directions, or has a prescribed value in one.
 
-    directions: letters of "xyz"; the default holds all that the body has.
-    displacement: [mm] in the one direction that is then named, times the step's load factor.
+    group: name of the facet group.
+    directions: letters of "xyz"; by default all directions of the body.
+    displacement: prescribed displacement [mm], multiplied by the load factor of a step; it needs a single direction.
     Raises InputError.
+
+    >>> Fixed("symmetry_x", "x")
+    Fixed(group='symmetry_x', directions='x', displacement=0.0)
     """
 
     group: str
@@ -38,9 +43,11 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Traction:
-    """A constant traction on a facet group, in the body's frame: as many components [MPa] as the body has dimensions.
+    """A constant traction on a facet group, in the frame of the body.
 
-    On a rigidly coupled group its resultant loads the coupling's freedoms. Raises InputError.
+    group: name of the facet group; on a rigidly coupled one the resultant loads the freedoms of the coupling.
+    vector: (d,) components [MPa].
+    Raises InputError.
     """
 
     group: str
@@ -49,31 +56,37 @@ class Traction:
     def __post_init__(self) -> None:
         text("traction", self.group, 'give the name of a facet group, as in Traction("top", (0.0, -1.0))')
         wanted = "two finite components [MPa] in 2D, three in 3D"
-        found = vector(f"traction on {self.group!r}", self.vector, (2, 3), wanted, "give one number a direction")
-        object.__setattr__(self, "vector", found)
+        components = vector(f"traction on {self.group!r}", self.vector, (2, 3), wanted, "give one number a direction")
+        object.__setattr__(self, "vector", components)
 
 
 @dataclass(frozen=True)
 class BodyForce:
-    """A constant force on the whole volume, in the body's frame: as many components [N/mm³] as it has dimensions.
+    """A constant body force, in the frame of the body.
 
-    Weight is ϱg: 7.7e-5 N/mm³ for steel. Raises InputError.
+    vector: (d,) components [N/mm³]; the weight ϱg of steel is 7.7e-5 N/mm³.
+    Raises InputError.
     """
 
     vector: tuple[float, ...]
 
     def __post_init__(self) -> None:
         wanted = "two finite components [N/mm³] in 2D, three in 3D"
-        found = vector("body force", self.vector, (2, 3), wanted, "give one number a direction")
-        object.__setattr__(self, "vector", found)
+        components = vector("body force", self.vector, (2, 3), wanted, "give one number a direction")
+        object.__setattr__(self, "vector", components)
 
 
 @dataclass(frozen=True)
 class Freedom:
-    """One rigid motion of a coupled group: loaded (force [N] or moment [N·mm]; per mm of thickness in 2D) or
-    prescribed (displacement [mm] or angle [rad], small).
+    """A rigid motion of a coupled facet group, either loaded or prescribed.
 
-    direction: "x", "y", "z", or "rx", "ry", "rz" about the coupling's centre. Raises InputError.
+    direction: "x", "y", "z", or "rx", "ry", "rz" about the centre of the coupling.
+    load: force [N] or moment [N·mm], in 2D per mm of thickness; None where the motion is prescribed.
+    displacement: displacement [mm] or small angle [rad]; None where the motion is loaded.
+    Raises InputError.
+
+    >>> Freedom("y", load=-1000.0)
+    Freedom(direction='y', load=-1000.0, displacement=None)
     """
 
     direction: str
@@ -95,9 +108,12 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A facet group that moves as a rigid body; motions that are not named are held.
+    """A rigid coupling: a facet group that moves as a rigid body.
 
-    centre: [mm] of the rotations. Raises InputError.
+    group: name of the facet group.
+    freedoms: motions that are loaded or prescribed; all others are zero.
+    centre: point about which the group rotates [mm].
+    Raises InputError.
     """
 
     group: str

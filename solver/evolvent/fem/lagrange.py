@@ -1,6 +1,6 @@
-"""Lagrange shape functions on reference cells and facets, by basix.
+"""Lagrange shape functions and quadrature on reference cells and facets, by basix.
 
-Node order is basix's everywhere in the solver; `gmsh_permutation` brings gmsh's connectivity into it.
+The solver numbers nodes in the order of basix; `gmsh_permutation` converts connectivity from the order of gmsh.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ def _element(shape: str, order: int) -> Any:
 
 
 def tabulate(shape: str, order: int, xi: Floats) -> tuple[Floats, Floats]:
-    """Shape functions and their reference gradients.
+    """Shape functions N (q, k) and their reference gradients ∂N/∂ξ (q, t, k).
 
-    xi: (q, t) points of the reference cell ([0, 1]^t, or the unit simplex). Returns N (q, k) and ∂N/∂ξ (q, t, k).
+    xi: (q, t) points of the reference cell, [0, 1]^t or the unit simplex.
     """
     xi = np.asarray(xi, dtype=float)
     table = _element(shape, order).tabulate(1, xi)[..., 0]
@@ -40,12 +40,12 @@ def node_points(shape: str, order: int) -> Floats:
 
 @cache
 def quadrature(shape: str, degree: int) -> tuple[Floats, Floats]:
-    """Points (q, t) and weights (q,) exact for polynomials of this degree on the reference cell."""
+    """Points (q, t) and weights (q,) of a rule that is exact for polynomials of this degree on the reference cell."""
     points, weights = basix.make_quadrature(getattr(basix.CellType, shape), degree)
     return np.asarray(points, dtype=float), np.asarray(weights, dtype=float)
 
 
 @cache
 def gmsh_permutation(shape: str, order: int) -> Ints:
-    """perm (k,) such that cells[:, perm] has basix's node order where cells has gmsh's."""
+    """perm (k,): cells[:, perm] are in the node order of basix where cells are in that of gmsh."""
     return dolfinx_compat.gmsh_permutation(shape, len(node_points(shape, order)))

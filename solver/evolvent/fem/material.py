@@ -12,12 +12,16 @@ from evolvent_meshes.input_checks import number
 
 @dataclass(frozen=True)
 class Material:
-    """Isotropic elastic material; 2D bodies are in plane strain.
+    """Isotropic linear elastic material; 2D bodies are in plane strain.
 
-    youngs_modulus: [MPa] from 1e-12 to 1e20.
-    poissons_ratio: from −0.9999 to 0.49999, beyond which rounding makes the stiffness useless. Contact pressures are
-        verified up to 0.45 (poisson_limit.py).
+    youngs_modulus: E [MPa], from 1e-12 to 1e20.
+    poissons_ratio: ν, from −0.9999 to 0.49999, beyond which rounding spoils the stiffness. Contact pressures are
+        verified up to 0.45 (evolvent.contact.problem.poisson_limit).
     Raises InputError.
+
+    >>> steel = Material(youngs_modulus=210e3, poissons_ratio=0.3)
+    >>> print(f"{steel.plane_modulus:.0f} MPa")
+    230769 MPa
     """
 
     youngs_modulus: float = 210e3
@@ -33,18 +37,18 @@ class Material:
 
     @property
     def lame(self) -> tuple[float, float]:
-        """(λ, μ) [MPa], of 3D and of plane strain."""
+        """Lamé parameters (λ, μ) [MPa], of 3D and of plane strain."""
         E, ν = self.youngs_modulus, self.poissons_ratio
         return E * ν / ((1.0 + ν) * (1.0 - 2.0 * ν)), E / (2.0 * (1.0 + ν))
 
     @property
     def plane_modulus(self) -> float:
-        """E/(1−ν²) [MPa]."""
+        """Plane strain modulus E/(1−ν²) [MPa]."""
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
 
-def joint_modulus(one: Material, other: Material) -> float:
-    """E* [MPa] of two bodies in contact, 1/E* = Σ (1−ν²)/E."""
+def contact_modulus(one: Material, other: Material) -> float:
+    """Contact modulus E* [MPa] of two bodies, 1/E* = Σ (1−ν²)/E (Johnson, Contact Mechanics, 1985, 4.2)."""
     return 1.0 / (1.0 / one.plane_modulus + 1.0 / other.plane_modulus)
 
 
@@ -52,9 +56,11 @@ STEEL = Material()
 
 
 def traction_rows(material: Material, gradients: Floats, normals: Floats) -> Floats:
-    """σ(u)n as a linear map of nodal displacements.
+    """Tractions σ(u)n at p points as a linear map of nodal displacements: (p, d, k, d), that is component of the
+    traction, node, component of the displacement [N/mm³].
 
-    gradients: (p, k, d) ∇N at p points; normals: (p, d). Returns (p, d, k, d): row component, node, node component.
+    gradients: (p, k, d) gradients ∇N of the shape functions [1/mm].
+    normals: (p, d) unit normals n.
     """
     λ, μ = material.lame
     d = normals.shape[1]

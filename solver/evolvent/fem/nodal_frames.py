@@ -1,4 +1,4 @@
-"""Smooth orthonormal frames on a contact surface, one a node; local components interpolate like the frames do."""
+"""Orthonormal frames of normal and tangents at the nodes of a contact surface, which vary smoothly along it."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ import numpy as np
 
 from evolvent_meshes.arrays import Floats
 
-ALONG = 0.9  # an axis this close (cosine) to a normal of the surface gives no smooth tangent there
+ALONG = 0.9  # cosine between an axis and a normal from which on the axis gives no smooth tangent
 
 
 def tangent_frames(normals: Floats) -> Floats:
-    """Frames (n, d, d) with rows n, t1[, t2], right-handed, for unit normals (n, d).
+    """Right-handed frames (n, d, d) with rows n, t1 and, in 3D, t2 for unit normals (n, d).
 
-    In 3D t1 = r × n for one axis r of the whole surface, z if it can be: on a gear's flank t1 then lies in the
-    transverse plane. A surface with normals near all three axes has no smooth frame; its parts should be groups of
-    their own.
+    In 3D t1 = r × n with one axis r for the whole surface, z if possible: on a gear flank t1 lies in the transverse
+    plane. A surface with normals along all three axes has no smooth frame; divide it into several facet groups.
     """
     if normals.shape[1] == 2:
         return np.stack([normals, np.stack([-normals[:, 1], normals[:, 0]], axis=1)], axis=1)

@@ -1,4 +1,8 @@
-"""The reference cells of contact facets: monomials, hat functions of the node grid, rules on its sub-facets."""
+"""Reference cells of contact facets: monomials, hat functions of the node grid, quadrature on its sub-facets.
+
+The nodes of a second-order facet divide it into sub-facets of half its size. The hat functions ψ are linear, or
+bilinear, on each sub-facet; they are not negative, unlike the shape functions N of second order.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +16,7 @@ from numpy.typing import ArrayLike
 from evolvent.fem.lagrange import node_points, quadrature, tabulate
 from evolvent_meshes.arrays import Floats, Ints
 
-# The permutation of a facet's nodes (basix order) that turns it over.
-TURNED_OVER = {
+REVERSED_FACET = {
     ("interval", 1): [1, 0],
     ("interval", 2): [1, 0, 2],
     ("triangle", 1): [0, 2, 1],
@@ -21,16 +24,20 @@ TURNED_OVER = {
     ("quadrilateral", 1): [0, 2, 1, 3],
     ("quadrilateral", 2): [0, 2, 1, 3, 5, 4, 7, 6, 8],
 }
+"""(shape, order) -> permutation of a facet's nodes (basix order) that reverses its normal."""
 
 
 @dataclass(frozen=True)
 class ReferenceCell:
-    """A facet's reference cell.
+    """Reference cell of a facet of dimension dt = 1 or 2.
 
-    nodes: (k, dt) Lagrange nodes; dt = 1 or 2 is the facet's dimension.
-    corners: (c, dt) counter-clockwise. centre: (dt,) the centroid. measure: its length or area.
-    exponents: (k, dt) of the monomials, coefficients: (k, k) with N_k = Σ_i monomial_i coefficients_ik.
-    subcells: (s, c, dt) corners of the cells of the node grid, counter-clockwise, on each of which the hats are smooth.
+    nodes: (k, dt) Lagrange nodes, in the order of basix.
+    corners: (c, dt) counter-clockwise.
+    centre: (dt,) centroid.
+    measure: length or area.
+    exponents: (k, dt) exponents of the monomials.
+    coefficients: (k, k) with N_k = Σ_i monomial_i coefficients_ik.
+    subcells: (s, c, dt) corners of the sub-facets, counter-clockwise; hats are smooth on each of them.
     """
 
     nodes: Floats
@@ -44,9 +51,9 @@ class ReferenceCell:
 
 @cache
 def reference_cell(shape: str, order: int) -> ReferenceCell:
-    """The reference cell of a facet. ValueError for anything but intervals, quadrilaterals, triangles of order 1, 2."""
-    if (shape, order) not in TURNED_OVER:
-        raise ValueError(f"facets must be {sorted(TURNED_OVER)}; found {(shape, order)}: mesh with one of these")
+    """The reference cell of a facet: interval, quadrilateral or triangle, order 1 or 2. Raises ValueError."""
+    if (shape, order) not in REVERSED_FACET:
+        raise ValueError(f"facets must be {sorted(REVERSED_FACET)}; found {(shape, order)}: mesh with one of these")
     nodes = node_points(shape, order)
     dimension = nodes.shape[1]
     powers = np.array(list(np.ndindex(*(order + 1,) * dimension)), dtype=np.int64)
@@ -65,7 +72,7 @@ def reference_cell(shape: str, order: int) -> ReferenceCell:
 
 
 def _halved(shape: str, corners: Floats) -> Floats:
-    """The half-size cells of the node grid, one at each corner and, in a triangle, the turned one in the middle."""
+    """Corners (s, c, dt) of the sub-facets: one at each corner and, in a triangle, an inverted one in the middle."""
     cells = 0.5 * (corners[:, None, :] + corners[None, :, :])
     if shape == "triangle":
         middle = 0.5 * (corners + np.roll(corners, -1, axis=0))
@@ -74,7 +81,7 @@ def _halved(shape: str, corners: Floats) -> Floats:
 
 
 def monomials(cell: ReferenceCell, xi: Floats) -> tuple[Floats, list[Floats]]:
-    """The monomials (..., k) of a reference cell and their derivative along each direction, at xi (..., dt)."""
+    """Monomials (..., k) of a reference cell, and their derivatives along each direction, at points xi (..., dt)."""
     columns = [_powers(xi[..., i], e) for i, e in enumerate(cell.exponents.T)]
     value, first = columns[0]
     if len(columns) == 1:
@@ -84,7 +91,7 @@ def monomials(cell: ReferenceCell, xi: Floats) -> tuple[Floats, list[Floats]]:
 
 
 def _powers(x: Floats, exponents: Ints) -> tuple[Floats, Floats]:
-    """x**e and its derivative for x (...) and exponents e (k,) of at most 2: (..., k) each."""
+    """Powers x**e (..., k) and their derivatives (..., k), for x (...) and exponents e (k,) of at most 2."""
     value, first = np.empty((*x.shape, len(exponents))), np.empty((*x.shape, len(exponents)))
     for k, e in enumerate(exponents):
         value[..., k] = 1.0 if e == 0 else x if e == 1 else x * x
@@ -93,10 +100,10 @@ def _powers(x: Floats, exponents: Ints) -> tuple[Floats, Floats]:
 
 
 def hats(shape: str, order: int, xi: ArrayLike) -> Floats:
-    """The piecewise (bi)linear hat functions ψ of a facet's node grid at reference points xi (q, dt): (q, k).
+    """Hat functions ψ (q, k) of a facet at reference points xi (q, dt).
 
-    Non-negative inside the facet, one at their own node, they sum to one. In order 2 they are smooth only on the
-    sub-facets (2 in an interval, 4 in a quadrilateral or a triangle).
+    Piecewise linear or bilinear, not negative inside the facet, one at their node, and of sum one. In order 2 they are
+    smooth only on each sub-facet (2 of an interval, 4 of a quadrilateral or a triangle).
     """
     x = np.asarray(xi, dtype=np.float64)
     if order == 1:
@@ -116,7 +123,7 @@ def _triangle_hats(x: Floats) -> Floats:
 
 
 def subcell_rule(shape: str, order: int, degree: int) -> tuple[Floats, Floats]:
-    """A rule on the reference cell that is exact to the degree on every sub-facet: points (q, dt), weights (q,)."""
+    """Points (q, dt) and weights (q,) of a rule that is exact for polynomials of this degree on every sub-facet."""
     cell = reference_cell(shape, order)
     x, w = quadrature(shape, degree)
     edges = np.stack([cell.subcells[:, 1], cell.subcells[:, -1]][: x.shape[1]], axis=1) - cell.subcells[:, :1]
@@ -126,7 +133,7 @@ def subcell_rule(shape: str, order: int, degree: int) -> tuple[Floats, Floats]:
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """a × b along the last axis (numpy.cross takes several times longer on short vectors)."""
+    """a × b (..., 3); numpy.cross takes several times longer on short vectors."""
     return np.stack(
         [
             a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],
@@ -138,7 +145,7 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 
 def area_vector(tangents: Sequence[Floats]) -> Floats:
-    """Outward normal times surface measure per reference measure, from the tangents ∂x/∂ξ_i (..., d): (..., d)."""
+    """Outward normal times dA/dξ (..., d), from the tangents ∂x/∂ξ_i (..., d)."""
     if len(tangents) == 2:
         return cross(tangents[0], tangents[1])
     return np.stack([tangents[0][..., 1], -tangents[0][..., 0]], axis=-1)

@@ -1,4 +1,4 @@
-"""Rigid displacements of points."""
+"""Displacements by small rigid motions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from evolvent_meshes.arrays import Floats
 
 
 def rigid_modes(points: Floats) -> Floats:
-    """Small rigid motions at points (n, d): (n, d, r), r = 3 in 2D (x, y, turn), 6 in 3D (x, y, z, turns)."""
+    """Displacements (n, d, r) of points (n, d) by small unit rigid motions, about the origin.
+
+    2D: r = 3 motions x, y, rz; 3D: r = 6 motions x, y, z, rx, ry, rz.
+    """
     n, d = points.shape
     shift = np.broadcast_to(np.eye(d), (n, d, d))
     if d == 2:

@@ -1,4 +1,7 @@
-"""Stress in the cells of a body, for pictures and checks away from the contact (contact pressure is λ, not this)."""
+"""Stress at the centres of a body's cells, for pictures and checks away from the contact.
+
+Contact pressure is the multiplier λ of the contact formulation, not this stress.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,10 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 def cell_stress(mesh: MeshData, material: Material, displacement: Floats) -> Floats:
-    """σ [MPa] at the cells' centres, (n_cells, 3, 3) also in 2D (plane strain: σ_zz = ν(σ_xx + σ_yy)).
+    """Stress tensors (n_cells, 3, 3) [MPa] at the centres of the cells; in 2D of plane strain, σ_zz = ν(σ_xx + σ_yy).
 
-    displacement: (N, d) of the mesh nodes [mm]. Raises InputError for another shape.
+    displacement: (N, d) displacements of the mesh nodes [mm].
+    Raises InputError for a displacement of another shape.
     """
     d = mesh.dimension
     if np.shape(displacement) != (len(mesh.points), d):
@@ -34,7 +38,7 @@ def cell_stress(mesh: MeshData, material: Material, displacement: Floats) -> Flo
 
 
 def von_mises(stress: Floats) -> Floats:
-    """√(3/2 s:s) [MPa] of stresses (n, 3, 3), s their deviator: (n,)."""
+    """Von Mises stresses √(3/2 s:s) (n,) [MPa] of stress tensors (n, 3, 3) with deviator s."""
     deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
     result: Floats = np.sqrt(1.5 * np.einsum("nab,nab->n", deviator, deviator))
     return result

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.fem.material import Material, joint_modulus
+from evolvent.fem.material import Material, contact_modulus
 from evolvent.gears.sweep.position import PositionResult
 from evolvent_meshes.arrays import Floats
 
@@ -53,7 +53,7 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
     edges = layer_edges(heights)
     c = result.contact
     layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, len(edges) - 2)
-    modulus = joint_modulus(*materials)
+    modulus = contact_modulus(*materials)
     keys = np.unique(np.column_stack([c.tooth, layer]), axis=0)
     rows = [_slice(result, (c.tooth == t) & (layer == k), edges[k : k + 2], modulus) for t, k in keys]
     columns = list(zip(*rows)) if rows else [()] * 9

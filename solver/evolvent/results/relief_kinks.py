@@ -20,7 +20,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.results.engagement import TurnPeak
 from evolvent.results.run_data import RunData
 from evolvent_meshes.gears.flank import MICROMETRE
@@ -53,7 +53,8 @@ def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
     kink at every position."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
-    step, modulus = run.pair.pinion.base_radius * run.pitch / len(run.positions), joint_modulus(*run.scene.materials())
+    step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
+    modulus = contact_modulus(*run.scene.materials())
     at = np.concatenate([each[index].cut.ξ for each in run.positions])
     hertz = np.concatenate([each[index].cut.hertz for each in run.positions])
     found = []

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from evolvent.contact.problem.definition import Contact, Problem, Side
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.fem.surface import Surface
 from evolvent.wear.archard import Archard
 from evolvent.wear.cycle import SlidingContact
@@ -53,4 +53,4 @@ def ripple_decay(
 
 def _modulus(problem: Problem, contact: Contact) -> float:
     """Contact modulus E* [MPa] of a contact's two materials."""
-    return joint_modulus(*(problem.bodies[index].material for index, _ in (contact.first, contact.second)))
+    return contact_modulus(*(problem.bodies[index].material for index, _ in (contact.first, contact.second)))

@@ -76,7 +76,7 @@ def test_normal_is_normal_to_the_modified_surface(gear: GearParameters) -> None:
 
 
 @every_flank
-def test_principal_curvatures(gear: GearParameters) -> None:
+def test_principal_curvatures_of_the_helicoid(gear: GearParameters) -> None:
     """The helicoid is straight along its generators and curved by cos β_b/ρ across them (second differences)."""
     flank, (rho, z), step = Flank(replace(gear, modifications=Modifications())), grid(gear, 5), 1e-3
     rho, z = rho[:, 1:], z[:, 1:]  # next to the base circle the curvature changes within any step
@@ -114,7 +114,7 @@ def test_inside_the_base_cylinder_there_is_no_distance() -> None:
     assert np.isnan(Flank(he().pinion).distance(np.array([70.0, 0.0, 0.0])))
 
 
-def test_modification_values() -> None:
+def test_relief_and_crowning_at_known_points() -> None:
     """Relief: full at the tip, 0 below its start, half or a quarter at half the roll; crowning: full at both faces."""
     for given, middle in ((RELIEF, 0.5), (PARABOLA, 0.25)):
         gear = replace(yang().pinion, modifications=given)

@@ -112,7 +112,7 @@ def test_fillet_is_the_envelope_of_the_rolling_rack(gear: GearParameters) -> Non
 
 
 @every_gear
-def test_arc_lengths(gear: GearParameters) -> None:
+def test_arc_lengths_of_the_profile_segments(gear: GearParameters) -> None:
     """Segment lengths against chords of a fine outline; equal steps of t are equal arcs."""
     profile = Profile(gear)
     for name in SEGMENTS:

@@ -1,62 +1,24 @@
 """Tooth sectors of the papers' gears: exact nodes, matching cuts, groups, quality."""
 
 from dataclasses import replace
-from functools import cache
 from itertools import product
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.profile import Profile
-from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
+from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.sector.section import SectorResolution, section_mesh
 from evolvent_meshes.sector.sector import layer_heights, sector_mesh
-from tests.meshes.shapes.test_blocks import covers_boundary, measure
-from tests.support.paper_pairs import he, yang, zhang
-
-GEARS = {
-    "yang pinion": (yang, 0),
-    "yang wheel": (yang, 1),
-    "he": (he, 0),
-    "zhang pinion": (zhang, 0),
-    "zhang gear": (zhang, 1),
-}
-COARSE = SectorResolution(profile_elements=12, face_elements=4)
-
-
-def gear_and_start(name: str) -> tuple[GearParameters, float]:
-    """A gear and a flank start a little below the start of its active profile."""
-    make, index = GEARS[name]
-    pair = make()
-    gear = pair.gears[index]
-    return gear, max(gear.root_form_diameter, pair.active_start_diameters[index] - 0.15)
-
-
-@cache
-def sector(name: str, shape: str = "hexahedron") -> MeshData:
-    """A coarse sector."""
-    gear, start = gear_and_start(name)
-    return sector_mesh(gear, replace(COARSE, flank_start_diameter=start), shape)
-
-
-def nodes_of(mesh: MeshData, group: str) -> NDArray[np.float64]:
-    """Points of a facet group."""
-    return mesh.points[np.unique(mesh.facets[group])]
-
-
-def turned(points: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    """Points turned about +z."""
-    c, s = np.cos(angle), np.sin(angle)
-    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+from tests.support.mesh_measures import covers_boundary, measure
+from tests.support.sector_cases import COARSE, GEARS, gear_and_start, nodes_of, sector, turned
 
 
 @pytest.mark.parametrize("name", GEARS)
-def test_quick_size_and_quality(name: str) -> None:
+def test_quick_sectors_are_small_and_well_shaped(name: str) -> None:
     """The quick section: at most 880 nodes, 27 elements on the flank, scaled Jacobian at least 0.3, all gears."""
     gear, start = gear_and_start(name)
     section = section_mesh(gear, SectorResolution(flank_start_diameter=start))
@@ -85,7 +47,7 @@ def test_flank_lies_on_the_helicoid(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", GEARS)
-def test_outline_is_exact(name: str) -> None:
+def test_fillet_and_back_lie_on_the_profile(name: str) -> None:
     """Nodes of fillet and back lie on the exact profile: distance to its dense polygon at most the polygon's sag."""
     gear, _ = gear_and_start(name)
     mesh = sector(name, "quadrilateral")
@@ -142,7 +104,7 @@ def test_groups_are_the_boundary_and_volume_is_right(name: str, shape: str) -> N
 
 
 @pytest.mark.parametrize("name", ["yang pinion", "yang wheel", "he"])
-def test_modified_flank(name: str) -> None:
+def test_flank_nodes_follow_the_modifications(name: str) -> None:
     """Tip relief 20 µm and crowning 10 µm: nodes on the modified flank, at the same radii and heights, rest unmoved."""
     gear, start = gear_and_start(name)
     changed = replace(gear, modifications=Modifications(20.0, gear.tip_diameter - 2.0, True, 10.0))
@@ -156,27 +118,8 @@ def test_modified_flank(name: str) -> None:
         assert moved[np.unique(mesh.facets[group])].max() < 1e-12
 
 
-def test_size_function_grades_the_flank() -> None:
-    """Element lengths along the involute in proportion to a size that doubles from flank start to tip, within 3 %."""
-    gear, start = gear_and_start("he")
-    low, high = start / 2, gear.tip_diameter / 2
-
-    def size_at(radius: NDArray[np.float64]) -> NDArray[np.float64]:
-        return 1 + (radius - low) / (high - low)
-
-    section = section_mesh(gear, SectorResolution(flank_start_diameter=start, size_at=size_at))
-    edges = section.points[section.edges["flank"]]
-    length = np.linalg.norm(edges[:, 2] - edges[:, 0], axis=1) + np.linalg.norm(edges[:, 1] - edges[:, 2], axis=1)
-    ratio = length / size_at(np.hypot(*edges[:, 2].T))
-    np.testing.assert_allclose(ratio, ratio.mean(), rtol=0.03)
-
-
-def test_clear_errors() -> None:
-    """A count not divisible by three, a flank start off the involute and an unknown shape are refused."""
+def test_unknown_cell_shape_is_refused() -> None:
+    """A prism is no cell shape of a sector; the message names those that are."""
     gear, _ = gear_and_start("he")
-    with pytest.raises(MeshError, match="multiple of 3"):
-        SectorResolution(profile_elements=28)
-    with pytest.raises(MeshError, match="on the involute"):
-        section_mesh(gear, SectorResolution(flank_start_diameter=100.0))
-    with pytest.raises(MeshError, match="prism"):
+    with pytest.raises(MeshError, match=r"one of quadrilateral, hexahedron.*'prism'"):
         sector_mesh(gear, COARSE, "prism")

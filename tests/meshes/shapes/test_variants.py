@@ -14,7 +14,7 @@ from evolvent_meshes.shapes.rings import ring_sphere
 from evolvent_meshes.shapes.variants import doubled, with_part
 
 
-def test_with_part() -> None:
+def test_part_of_a_facet_group_in_the_plane() -> None:
     """The top of 2 x 1 mm in 10 facets: |x| < 0.41 holds the four whose middles are at ±0.1 and ±0.3 mm."""
     mesh = with_part(rectangle(2.0, 1.0, 10, 2, origin=(-1.0, 0.0)), "top", "near", 0.41)
     x = mesh.points[mesh.facets["near"], 0].mean(axis=1)
@@ -24,7 +24,7 @@ def test_with_part() -> None:
         with_part(mesh, "top", "none", 0.05)
 
 
-def test_with_part_of_a_body() -> None:
+def test_part_of_a_facet_group_in_space() -> None:
     """The top of a box of 2 × 2 mm in 4 × 4 facets: within 0.4 mm of the z axis are the four middles at ±0.25 mm."""
     mesh = with_part(box((2.0, 2.0, 1.0), (4, 4, 2), origin=(-1.0, -1.0, 0.0)), "top", "near", 0.4)
     middles = mesh.points[mesh.facets["near"], :2].mean(axis=1)
@@ -33,7 +33,7 @@ def test_with_part_of_a_body() -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_doubled_box(order: int) -> None:
+def test_doubled_block_has_twice_the_size_and_outward_normals(order: int) -> None:
     """A quarter of a graded block becomes a half of twice the volume; outward normals stay outward, every node once."""
     quarter = graded_box(2.0, 1.0, 0.5, 0.6, order)
     half = doubled(quarter, "symmetry_x")
@@ -49,7 +49,7 @@ def test_doubled_box(order: int) -> None:
         np.testing.assert_allclose(surface.normals, np.broadcast_to(normal, surface.normals.shape), atol=1e-12)
 
 
-def test_doubled_curved() -> None:
+def test_doubled_sphere_has_outward_normals() -> None:
     """The sphere of a doubled quarter still points at the centre, also in the image."""
     half = doubled(ring_sphere(8.0, 2.0, 2.0, 0.5, 0.25, 0.6), "symmetry_x")
     surface = surface_of(half, "arc")
@@ -59,7 +59,7 @@ def test_doubled_curved() -> None:
     assert (surface.points[:, 0] < -1.0).any() and (surface.points[:, 0] > 1.0).any()
 
 
-def test_doubled_is_assembled_alike() -> None:
+def test_doubled_mesh_carries_twice_the_load() -> None:
     """A pressure on the doubled top gives the whole load, twice that of the quarter."""
     quarter = graded_box(2.0, 1.0, 0.5, 0.6)
     loads = [
@@ -70,7 +70,7 @@ def test_doubled_is_assembled_alike() -> None:
     np.testing.assert_allclose(loads[1], 2.0 * loads[0], atol=1e-9)
 
 
-def test_doubled_refuses() -> None:
+def test_doubling_in_another_plane_is_refused() -> None:
     """A group that is not in the plane."""
     with pytest.raises(MeshError, match="right"):
         doubled(graded_box(2.0, 1.0, 0.5, 0.6), "right")

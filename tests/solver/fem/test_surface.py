@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.fem.reference_facets import TURNED_OVER, reference_cell, subcell_rule
-from evolvent.fem.surface import Surface, hats, shape_functions, surface_of
+from evolvent.fem.lagrange import tabulate
+from evolvent.fem.reference_facets import reference_cell
+from evolvent.fem.surface import Surface, surface_of
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.surface_shapes import curve, lattice
@@ -20,39 +21,14 @@ def flat(u, v):
 
 
 @pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_hats_and_shape_functions_are_bases(shape, order):
-    """Both families are 1 at their own node, 0 at the others, sum to one; hats are not negative."""
-    nodes = reference_cell(shape, order).nodes
-    xi = np.random.default_rng(0).dirichlet(np.ones(3), 200)[:, : nodes.shape[1]]
-    ψ, N = hats(shape, order, xi), shape_functions(shape, order, xi)[0]
-    assert np.allclose(hats(shape, order, nodes), np.eye(len(nodes)), atol=1e-14)
-    assert np.allclose(shape_functions(shape, order, nodes)[0], np.eye(len(nodes)), atol=1e-14)
-    assert np.abs(ψ.sum(axis=1) - 1).max() < 1e-14
-    assert np.abs(N.sum(axis=1) - 1).max() < 1e-14
-    assert ψ.min() >= 0.0
-
-
-@pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_hats_are_linear_on_subfacets(shape, order):
-    """ψ of order 2 restricted to a sub-facet equals the order 1 shape functions of that sub-facet at its corners."""
-    cell = reference_cell(shape, order)
-    xi = np.random.default_rng(1).dirichlet(np.ones(3), 50)[:, : cell.nodes.shape[1]]
-    for corners in cell.subcells:
-        tensor = corners[[0, 1, 3, 2]] if shape == "quadrilateral" else corners
-        weight = shape_functions(shape, 1, xi)[0]
-        expected = weight @ hats(shape, order, tensor)
-        assert np.allclose(hats(shape, order, weight @ tensor), expected, atol=1e-14)
-
-
-@pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_evaluate_is_the_shape_functions(shape, order):
+def test_surface_is_evaluated_by_its_shape_functions(shape, order):
     """A surface's monomial evaluation of a random facet equals ΣN_k x_k and its derivatives by basix."""
     rng = np.random.default_rng(2)
     k, dt = reference_cell(shape, order).nodes.shape
     x, xi = rng.normal(size=(k, dt + 1)), rng.normal(size=(20, dt))
     surface = Surface(x, x, np.arange(k)[None], shape, order, np.arange(k))
     value, slopes = surface.evaluate(x, np.array([0]), xi[None])
-    N, dN = shape_functions(shape, order, xi)
+    N, dN = tabulate(shape, order, xi)
     assert np.allclose(value[0], N @ x, atol=1e-12)
     assert np.allclose(np.stack([s[0] for s in slopes], axis=1), dN @ x, atol=1e-12)
 
@@ -111,7 +87,7 @@ def test_circle_length_and_normals():
     assert errors[0] / errors[1] > 14
 
 
-def test_moved_turns_points_and_normals():
+def test_moved_surface_has_turned_points_and_normals():
     """A turn by 30° about z and a shift: points and normals follow, weights stay."""
     s = lattice(3, 3, "triangle", 2, lambda u, v: np.stack([u, v, 0.2 * u * v], axis=1))
     c, k = np.cos(np.pi / 6), 0.5
@@ -121,12 +97,6 @@ def test_moved_turns_points_and_normals():
     assert np.allclose(t.points, s.points @ turn.T + [1, 2, 3], atol=1e-14)
     assert np.allclose(t.normals, again.normals, atol=1e-14)
     assert np.allclose(t.weights(), s.weights(), rtol=1e-13)
-
-
-def test_subcell_rule_integrates_hats_exactly():
-    """∫ψ_j over the reference triangle of order 2: sub-facets of area 1/8; corners own 1/24, mid-sides 3/24."""
-    xi, w = subcell_rule("triangle", 2, 1)
-    assert np.allclose(w @ hats("triangle", 2, xi), np.array([1, 1, 1, 3, 3, 3]) / 24, atol=1e-15)
 
 
 # Taking a surface from a mesh: gmsh's hex27 and quad9 built here from the corners, as gmsh's manual numbers them.
@@ -174,15 +144,7 @@ def test_surface_of_plane_quadratic_triangles():
         assert s.weights().sum() == pytest.approx(np.sqrt(5))
 
 
-@pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_turning_a_facet_over_keeps_its_points(shape, order):
-    """The turned facet has the same nodes at mirrored reference points, and the opposite normal."""
-    nodes = reference_cell(shape, order).nodes
-    mirrored = 1.0 - nodes if nodes.shape[1] == 1 else nodes[:, ::-1]
-    assert np.allclose(nodes[TURNED_OVER[shape, order]], mirrored)
-
-
-def test_surface_of_says_what_is_wrong():
+def test_surface_of_unusable_groups_is_refused():
     """Unknown and empty groups and facets between two cells are refused, with the names that exist."""
     with pytest.raises(ValueError, match=r"groups none, skin, top, found 'flank'"):
         surface_of(brick(), "flank")
@@ -198,7 +160,7 @@ def test_surface_of_says_what_is_wrong():
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "hexahedron", "tetrahedron"])
-def test_with_volume_of_hats(shape: str, order: int) -> None:
+def test_field_with_the_volume_of_its_hats(shape: str, order: int) -> None:
     """A random field: ∫N·(changed) = ∫ψ·(field) over the whole surface to rounding; in order 1 nothing changes, and a
     constant never does."""
     plane = shape == "quadrilateral"

@@ -1,15 +1,12 @@
-"""A whole run: the same on any number of ranks, failing on all ranks alike, and what ranks share."""
+"""A whole run: the same on any number of ranks, and failing on all ranks alike."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
-from mpi4py import MPI
 
-from evolvent.fem.parallel import ranks
 from evolvent.results.archive.archive import read_arrays
 from evolvent.run.output import BALANCE_LIMIT
 from tests.conftest import Run
@@ -22,53 +19,6 @@ QUIET = (
 SHORT = (
     "--level", "quick", "--set", "contact.friction=[0.1, 0.2, 0.3]", "--set", "sweep.positions=4",
 )  # fmt: skip
-SHARE = """
-import numpy as np
-from mpi4py import MPI
-from evolvent.fem.parallel import ranks
-
-class Nodes:
-    '''The world, with two ranks a node.'''
-    def __getattr__(self, name):
-        return getattr(MPI.COMM_WORLD, name)
-    def Split_type(self, kind, key):
-        return MPI.COMM_WORLD.Split(MPI.COMM_WORLD.rank // 2, key)
-
-parallel.CHUNK = 1_000_003
-rank, size = MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
-for comm in (MPI.COMM_WORLD, Nodes()):
-    for root in range(size):
-        a = np.random.default_rng(root).standard_normal((700, 901))
-        value = {"a": a, "fortran": np.asfortranarray(a[:300]), "view": a[::2, ::3]}
-        value |= {"flags": a > 0, "no": a[:0], "s": "x"}
-        got = parallel.shared(comm, value if rank == root else None, root)
-        assert got["s"] == "x" and got["fortran"].flags.f_contiguous
-        for name in ("a", "fortran", "view", "flags", "no"):
-            assert np.array_equal(got[name], value[name]) and got[name].dtype == value[name].dtype, name
-        maps = open("/proc/self/maps").read()
-        assert ("evolvent-" in maps) == (size > 1) and not (size > 1 and got["a"].flags.writeable)
-        del got
-        assert "evolvent-" not in open("/proc/self/maps").read()
-print("fine")
-"""
-FAIL_ALIKE = r"""
-import sys
-from mpi4py import MPI
-from evolvent.fem.parallel import ranks
-
-class Stubborn(Exception):
-    def __init__(self, a, b):
-        super().__init__(f"{a}{b}")
-
-comm = MPI.COMM_WORLD
-def work():
-    if comm.rank == 1:
-        raise ValueError("one") if sys.argv[1] == "plain" else Stubborn("o", "ne")
-try:
-    parallel.together(comm, work)
-except (ValueError, RuntimeError) as error:
-    sys.stdout.write(f"rank {comm.rank}: {type(error).__name__} {error}; {error.__notes__[0].splitlines()[0]}\n")
-"""
 
 
 def positions(out: Path) -> list[dict[str, object]]:
@@ -169,33 +119,3 @@ def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Pat
 def test_positions_are_balanced(on_one_rank: list[dict[str, object]]) -> None:
     """Every position is well within the limit."""
     assert max(float(str(row["balance_error"])) for row in on_one_rank) < BALANCE_LIMIT
-
-
-@pytest.mark.parametrize("ranks", [1, 2, 3, 4])
-def test_shared(ranks: int, run_script: Run) -> None:
-    """Every kind of array arrives bit by bit from every root, on one node and on nodes of two ranks, in pieces; it is
-    read-only, in shared memory, and the memory is given back with the last array."""
-    done = run_script("-c", SHARE, ranks=ranks)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.count("fine") == ranks
-
-
-@pytest.mark.parametrize(("kind", "found"), [("plain", "ValueError one"), ("stubborn", "RuntimeError Stubborn: one")])
-def test_ranks_fail_together(kind: str, found: str, run_script: Run) -> None:
-    """One rank's exception is raised on all, with a note of where; also one that cannot be pickled."""
-    done = run_script("-c", FAIL_ALIKE, kind, ranks=3)
-    assert sorted(done.stdout.splitlines()) == [f"rank {rank}: {found}; on rank 1 of 3:" for rank in range(3)]
-
-
-def test_no_room_for_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A node without room is an error that says what to do, not a bus error later."""
-    monkeypatch.setattr(ranks, "MEMORY_FOLDERS", ("/nowhere", "/proc/self"))
-    with pytest.raises(OSError, match=r"wanted 5 MB for what the ranks of a node share.*--shm-size"):
-        ranks._memory_file(5_000_000)
-
-
-def test_one_rank_shares_nothing() -> None:
-    """On one rank `shared` and `together` cost nothing and copy nothing."""
-    value = np.arange(10)
-    assert ranks.shared(MPI.COMM_SELF, value, 0) is value
-    assert ranks.on_first(MPI.COMM_SELF, lambda: value) is value

@@ -22,7 +22,7 @@ from evolvent.fem.lagrange import gmsh_permutation, node_points, quadrature, tab
 from evolvent.fem.material import Material, traction_rows
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.fem.rigid_modes import rigid_modes
-from evolvent.fem.surface import Surface, cells_behind, hats
+from evolvent.fem.surface import Surface, adjacent_cells, hats
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -112,7 +112,7 @@ class _ContactCells:
     @staticmethod
     def of(mesh: MeshData, surface: Surface) -> _ContactCells:
         facets = surface.nodes[surface.facets]
-        behind = cells_behind(mesh.cells, facets, len(mesh.points))
+        behind = adjacent_cells(mesh.cells, facets, len(mesh.points))
         nodes = mesh.cells[behind][:, gmsh_permutation(mesh.shape, mesh.order)]
         slots = np.argmax(nodes[:, None, :] == facets[:, :, None], axis=2)
         return _ContactCells(mesh, surface, nodes, mesh.points[nodes][..., : mesh.dimension], slots)

@@ -13,7 +13,7 @@ from evolvent.contact.problem.definition import Nitsche, Problem
 from evolvent.contact.problem.pressure_carrier import carrying
 from evolvent.fem.body import Assembled, Body, assemble
 from evolvent.fem.condensation.schur_complement import Factor, NotPositiveDefinite, compliance, compliance_by_columns
-from evolvent.fem.surface import Surface, refuse_edges, surface_of
+from evolvent.fem.surface import Surface, check_smooth, surface_of
 from evolvent_meshes.arrays import Floats
 
 
@@ -92,7 +92,7 @@ def _prepared(body: Body, first: set[str], second: set[str], nitsche: Nitsche) -
     assembled, groups, θ = assemble(body), sorted(first | second), nitsche.theta
     surfaces = {g: surface_of(body.mesh, g) for g in groups}
     for group in sorted(first):
-        refuse_edges(surfaces[group], f"{body.name}, contact surface {group!r}")
+        check_smooth(surfaces[group], f"{body.name}, contact surface {group!r}")
     tractions = {g: nitsche_traction(body.mesh, body.material, surfaces[g], nitsche.safety) for g in sorted(first)}
     K = assembled.stiffness
     trace = {g: trace_functionals(surfaces[g], K.shape[0]) for g in groups}

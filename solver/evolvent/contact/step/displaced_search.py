@@ -42,7 +42,7 @@ from evolvent.contact.search.projection import locate
 from evolvent.contact.step.contact_result import ContactResult
 from evolvent.contact.step.small_strain import refuse_large
 from evolvent.contact.step.step_system import History, Position, Solution, Where
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.fem.rigid_modes import rigid_modes
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -133,7 +133,7 @@ def look(position: Position, index: int, result: ContactResult, places: Places) 
     first, second = (position.problem.bodies[body].material for body, _ in position.sides[index])
     pressed = np.flatnonzero(result.pressure > 0.0)
     width = result.width.width if len(pressed) else 0.0
-    depth = float(result.pressure.max(initial=0.0)) * 0.5 * width / joint_modulus(first, second)
+    depth = float(result.pressure.max(initial=0.0)) * 0.5 * width / contact_modulus(first, second)
     missed, wanted = _missed(position, index, meeting, displaced(meeting.placed, places), GAP * depth)
     if not len(pressed):
         return Seen(None, 0.0, 0.0, 0.0, missed, wanted)

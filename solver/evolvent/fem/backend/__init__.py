@@ -1,1 +1,1 @@
-"""dolfinx, its form compiler and PETSc, with all that depends on their versions."""
+"""dolfinx, its form compiler and PETSc: start-up, options, versions, compiled forms."""

@@ -1,9 +1,8 @@
-"""The only file that knows dolfinx's versions: 0.5.2 (Debian 12) and 0.9.0 (Debian 13), and on.
+"""Interface to dolfinx from version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on it.
 
-It asks what a function is called or which arguments it has, never for a version number. Everything here works on one
-body on one process (MPI.COMM_SELF): each body lives whole on the rank that owns it.
-
-Node numbers are always those of the caller's mesh (gmsh's); dolfinx renumbers, and the maps back are here.
+Differences are told by the names of functions and arguments, not by version numbers. Each body is meshed and assembled
+on one process (MPI.COMM_SELF). Node numbers are those of the caller's mesh, in which dolfinx numbers nodes anew: the
+maps back are here.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshError
 from evolvent_meshes.mesh.reference_cells import node_count
 from evolvent_meshes.mesh.soundness import check_cells
 
-with logging_kept():  # FFCx gives the root logger a handler, and warnings to it
+with logging_kept():  # FFCx adds a handler to the root logger and captures warnings
     import dolfinx
     import dolfinx.fem.petsc
     from dolfinx import cpp, fem
@@ -38,23 +37,24 @@ Mesh = Any  # dolfinx and UFL carry no usable type hints in 0.5.2
 Space = Any
 Form = Any
 
-JIT_SECONDS = 1  # how long FFCx may wait for another process's compilation; our lock leaves nothing to wait for
+JIT_SECONDS = 1  # [s] FFCx waits so long for the compilation of another process; the lock of `compiling` leaves none
 
 
 def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
-    """One body's dolfinx mesh on this process alone.
+    """The dolfinx mesh of one body, on this process alone.
 
-    points: (n, 3) [mm]; of a 2D shape only x and y are used.
-    cells: (n_c, k) node indices in gmsh's order, complete Lagrange cells (tri3/6, quad4/9, tet4/10, hex8/27).
-    shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron"; order: 1 or 2.
-    Raises MeshError for what does not fit, as `evolvent_meshes.mesh.soundness.check_cells` does.
+    points: (n, 3) [mm]; in 2D only x and y are used.
+    cells: (n_c, k) node indices of complete Lagrange cells in the order of gmsh (tri3/6, quad4/9, tet4/10, hex8/27).
+    shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
+    order: 1 or 2.
+    Raises MeshError for input that is inconsistent, see `evolvent_meshes.mesh.soundness.check_cells`.
     """
     check_cells(points, cells, shape, order, "mesh")
     dimension = CELL_DIMENSION[shape]
     permuted = np.ascontiguousarray(cells[:, gmsh_permutation(shape, node_count(shape, order))], dtype=np.int64)
     coordinates = np.ascontiguousarray(points[:, :dimension], dtype=np.float64)
     domain = _coordinate_domain(shape, order, dimension)
-    # The coordinate element's argument has had two names and two places in the call.
+    # the argument of the coordinate element has two names and two positions
     name = _first_parameter(dolfinx.mesh.create_mesh, "domain", "e")
     mesh = dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells=permuted, x=coordinates, **{name: domain})
     mesh.topology.create_connectivity(dimension - 1, dimension)
@@ -62,12 +62,12 @@ def create_mesh(points: Floats, cells: Ints, shape: str, order: int) -> Mesh:
 
 
 def gmsh_permutation(shape: str, count: int) -> Ints:
-    """perm (count,) such that cells[:, perm] has basix's node order where cells of `count` nodes have gmsh's."""
+    """perm (count,): cells[:, perm] are in the node order of basix where cells of `count` nodes are in that of gmsh."""
     return np.asarray(cpp.io.perm_gmsh(getattr(cpp.mesh.CellType, shape), count), dtype=np.int64)
 
 
 def vector_space(mesh: Mesh, order: int) -> Space:
-    """Continuous Lagrange displacements, one vector of the mesh's dimension a node."""
+    """Space of continuous Lagrange displacements, one vector of the mesh's dimension at each node."""
     dimension = mesh.geometry.dim
     with compiling(dolfinx.__version__):
         if hasattr(fem, "functionspace"):
@@ -77,26 +77,28 @@ def vector_space(mesh: Mesh, order: int) -> Space:
 
 
 def input_nodes(mesh: Mesh) -> Ints:
-    """(n_g,) the caller's node number of each of dolfinx's geometry nodes (rows of mesh.geometry.x)."""
+    """Node number of the caller (n_g,) for each geometry node of dolfinx (row of mesh.geometry.x)."""
     return np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
 
 
 def input_cells(mesh: Mesh) -> Ints:
-    """(n_c,) the caller's cell number of each of dolfinx's cells."""
+    """Cell number of the caller (n_c,) for each cell of dolfinx."""
     return np.asarray(mesh.topology.original_cell_index, dtype=np.int64)
 
 
 def cell_nodes(mesh: Mesh) -> Ints:
-    """(n_c, k) the caller's node numbers of dolfinx's cells, in basix's node order."""
+    """Node numbers of the caller (n_c, k) for the cells of dolfinx, in the node order of basix."""
     return input_nodes(mesh)[_geometry_dofmap(mesh)]
 
 
 def node_dofs(space: Space, mesh: Mesh, n_nodes: int | None = None) -> Ints:
-    """(n_nodes,) the block of `space` at each of the caller's nodes; -1 where there is none.
+    """Block (n_nodes,) of `space` at each node of the caller, -1 where there is none.
 
-    Degrees of freedom of node i are dimension * block + component. n_nodes: how many nodes the caller has, by default
-    up to the last one used. Nodes that no cell uses have no block, nor have the mid nodes of a second-order mesh in a
-    first-order space. Raises ValueError if the space has blocks where the mesh has no node.
+    The degrees of freedom of a node are dimension * block + component. Nodes of no cell have no block, nor have the
+    mid-side nodes of a second-order mesh in a first-order space.
+
+    n_nodes: number of the caller's nodes (default: up to the last one used).
+    Raises ValueError if the space has blocks where the mesh has no node.
     """
     blocks = _rows(space.dofmap.list, _n_cells(mesh))
     nodes = cell_nodes(mesh)
@@ -104,15 +106,16 @@ def node_dofs(space: Space, mesh: Mesh, n_nodes: int | None = None) -> Ints:
         raise ValueError(f"space: wanted at most the mesh's {nodes.shape[1]} nodes a cell, found {blocks.shape[1]}")
     count = int(nodes.max()) + 1 if n_nodes is None else n_nodes
     result = np.full(count, -1, dtype=np.int64)
-    # basix lists vertices first, then edges, then the interior: a lower order is a leading part of a higher one.
+    # basix numbers vertices, then edges, then the interior: the nodes of a lower order come first
     result[nodes[:, : blocks.shape[1]]] = blocks
     return result
 
 
 def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
-    """(n_f,) dolfinx's indices of facets given by the caller's nodes, corners first as gmsh orders them: (n_f, k).
+    """Facet numbers of dolfinx (n_f,).
 
-    Raises MeshError if one of them is no facet of any cell.
+    facets: (n_f, k) node numbers of the caller in the order of gmsh, corners first.
+    Raises MeshError if one of them is not a facet of any cell.
     """
     corners = _facet_corners(mesh)
     wanted = np.sort(facets[:, : corners.shape[1]], axis=1)
@@ -120,20 +123,21 @@ def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
     inverse = inverse.reshape(-1)  # NumPy 2.0 gave it a second axis
     of_row = np.full(len(both), -1, dtype=np.int32)
     of_row[inverse[: len(corners)]] = np.arange(len(corners), dtype=np.int32)
-    found = of_row[inverse[len(corners) :]]
-    if np.any(found < 0):
-        missing = facets[np.argmax(found < 0)]
+    indices = of_row[inverse[len(corners) :]]
+    if np.any(indices < 0):
+        missing = facets[np.argmax(indices < 0)]
         raise MeshError(
             f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none; mesh the "
             "boundary together with the volume"
         )
-    return found
+    return indices
 
 
 def facet_tags(mesh: Mesh, groups: list[Ints]) -> Any:
-    """Mesh tags for ufl.Measure("ds", subdomain_data=...): facets of groups[i], as in `facet_indices`, carry i + 1.
+    """Mesh tags for ufl.Measure("ds", subdomain_data=...): the facets of groups[i] have the tag i + 1.
 
-    A facet in two groups keeps the later one.
+    groups: facets (n_f, k) each, as for `facet_indices`; a facet of two groups has the tag of the later one.
+    Raises MeshError if one of them is not a facet of any cell.
     """
     tags = np.zeros(len(_facet_corners(mesh)), dtype=np.int32)
     for tag, group in enumerate(groups, start=1):
@@ -143,16 +147,16 @@ def facet_tags(mesh: Mesh, groups: list[Ints]) -> Any:
 
 
 def compile_form(form: Form) -> Form:
-    """A UFL form compiled by FFCx; safe when ranks or runs compile the same one at once, or one was killed at it.
+    """A UFL form compiled by FFCx; processes may compile the same form at once, or be killed while they do.
 
-    Raises CompileError, CacheError where it cannot be compiled or kept.
+    Raises CompileError and CacheError where it cannot be compiled or stored.
     """
     with compiling(dolfinx.__version__):
         return fem.form(form, **_compiler_options(fem.form))
 
 
 def assemble_csr(form: Form) -> sp.csr_matrix:
-    """The matrix (n_dofs, n_dofs) of a bilinear UFL form, no boundary conditions."""
+    """Matrix (n_dofs, n_dofs) of a bilinear UFL form without boundary conditions. Raises as `compile_form`."""
     matrix = dolfinx.fem.petsc.assemble_matrix(compile_form(form))
     matrix.assemble()
     indptr, indices, data = matrix.getValuesCSR()
@@ -162,39 +166,39 @@ def assemble_csr(form: Form) -> sp.csr_matrix:
 
 
 def assemble_array(form: Form) -> Floats:
-    """The vector (n_dofs,) of a linear UFL form."""
+    """Vector (n_dofs,) of a linear UFL form. Raises as `compile_form`."""
     vector = fem.assemble_vector(compile_form(form))
     return np.array(vector.array, dtype=np.float64)
 
 
 def assemble_number(form: Form) -> float:
-    """The value of a UFL functional."""
+    """Value of a UFL functional. Raises as `compile_form`."""
     return float(fem.assemble_scalar(compile_form(form)))
 
 
 def constant(mesh: Mesh, value: float | tuple[float, ...]) -> Any:
-    """A number or vector in a form that may change without compiling the form again."""
+    """A number or vector in a form, which may change without another compilation."""
     return fem.Constant(mesh, np.asarray(value, dtype=PETSc.ScalarType))
 
 
 def silence_logs() -> None:
-    """dolfinx, FFCx and UFL report errors only: their notes on compilation are no news to an engineer."""
+    """Let dolfinx, FFCx and UFL log errors only, not their compilations."""
     dolfinx.log.set_log_level(dolfinx.log.LogLevel.ERROR)
     for name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY", "dolfinx"):
         logging.getLogger(name).setLevel(logging.ERROR)
 
 
 def versions() -> dict[str, str]:
-    """What a result depends on: name -> version, "" where unknown."""
+    """Versions of the programs that a result depends on: name -> version, "" where unknown."""
     distributions = ("numpy", "scipy", "gmsh", "pyvista", "mpi4py")
-    found = {name: _distribution_version(name) for name in distributions}
+    packages = {name: _distribution_version(name) for name in distributions}
     return {
         "evolvent": _distribution_version("evolvent"),
         "python": platform.python_version(),
         "dolfinx": dolfinx.__version__,
         "petsc": ".".join(str(number) for number in PETSc.Sys.getVersion()),
         "mpi": MPI.Get_library_version().split(",")[0].strip("\x00\n "),
-        **found,
+        **packages,
     }
 
 
@@ -205,10 +209,8 @@ def _distribution_version(name: str) -> str:
         return ""
 
 
-
-
 def _coordinate_domain(shape: str, order: int, dimension: int) -> Any:
-    if hasattr(ufl, "VectorElement"):  # UFL had elements of its own until 2022
+    if hasattr(ufl, "VectorElement"):  # UFL until 2022, before basix.ufl
         cell = ufl.Cell(shape, geometric_dimension=dimension)
         scalar = ufl.FiniteElement("Lagrange", cell, order, variant="equispaced")
         return ufl.Mesh(ufl.VectorElement(scalar, dim=dimension))
@@ -221,7 +223,7 @@ def _coordinate_domain(shape: str, order: int, dimension: int) -> Any:
 
 
 def _first_parameter(function: Callable[..., Any], *names: str) -> str:
-    """Whichever of these parameter names the installed dolfinx uses."""
+    """The one of these parameter names that the installed dolfinx uses. Raises RuntimeError where there is none."""
     known = inspect.signature(function).parameters
     for name in names:
         if name in known:
@@ -233,7 +235,7 @@ def _first_parameter(function: Callable[..., Any], *names: str) -> str:
 
 
 def _rows(table: Any, n_cells: int) -> Ints:
-    """A dofmap as (n_cells, k): an array since 0.7, an adjacency list before."""
+    """A dofmap (n_cells, k): an array since dolfinx 0.7, an adjacency list before."""
     return np.asarray(getattr(table, "array", table), dtype=np.int64).reshape(n_cells, -1)
 
 
@@ -246,7 +248,7 @@ def _geometry_dofmap(mesh: Mesh) -> Ints:
 
 
 def _facet_corners(mesh: Mesh) -> Ints:
-    """(n_facets, corners) the caller's corner nodes of all of dolfinx's facets, each row sorted."""
+    """Corner nodes of the caller (n_facets, corners) for all facets of dolfinx, each row sorted."""
     topology = mesh.topology
     topology.create_connectivity(topology.dim - 1, 0)
     cell_vertices = _rows(topology.connectivity(topology.dim, 0), _n_cells(mesh))
@@ -257,23 +259,29 @@ def _facet_corners(mesh: Mesh) -> Ints:
 
 
 def _compiler_options(function: Callable[..., Any]) -> dict[str, Any]:
-    """Arguments of a function that compiles: the libraries' defaults, but for cache and patience. They are given in
-    full, for what is not given is read from files of other programs in the current folder and the home's .config."""
+    """Options of a function that compiles: the defaults of the libraries, with our cache folder and timeout.
+
+    All are given: FFCx and dolfinx read others from files in the current folder and in ~/.config, which belong to other
+    programs.
+    """
     jit = _defaults("dolfinx.jit", "DOLFINX_DEFAULT_JIT_OPTIONS", "DOLFINX_DEFAULT_JIT_PARAMETERS")
-    own = {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
+    ours = {"cache_dir": form_directory(dolfinx.__version__), "timeout": JIT_SECONDS}
     ffcx = _defaults("ffcx", "options.FFCX_DEFAULT_OPTIONS", "parameters.FFCX_DEFAULT_PARAMETERS")
     return {
-        _first_parameter(function, "jit_options", "jit_params"): jit | own,
+        _first_parameter(function, "jit_options", "jit_params"): jit | ours,
         _first_parameter(function, "form_compiler_options", "form_compiler_params"): ffcx,
     }
 
 
 def _defaults(package: str, *names: str) -> dict[str, Any]:
-    """Option -> default, from whichever table the installed version has: (value, help), or (type, value, help, ...)."""
+    """Option -> default, from the table of the installed version: (value, help) or (type, value, help, ...).
+
+    Raises RuntimeError where there is no such table.
+    """
     for name in names:
         module, _, table = f"{package}.{name}".rpartition(".")
-        if (spec := find_spec(module)) and hasattr(found := import_module(spec.name), table):
-            return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(found, table).items()}
+        if (spec := find_spec(module)) and hasattr(loaded := import_module(spec.name), table):
+            return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(loaded, table).items()}
     raise RuntimeError(
         f"{package}: wanted one of {', '.join(names)}, found none; "
         "evolvent.fem.backend.dolfinx_compat must learn this version"

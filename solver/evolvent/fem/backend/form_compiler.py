@@ -1,9 +1,9 @@
-"""Compiled forms: where FFCx keeps them, one process at a time, and without a word of the compiler's.
+"""Compilation of forms by FFCx: cache folder, one process at a time, no messages of the compiler.
 
-FFCx 0.4 (Debian 12) gives the root logger a handler when it is imported, later ones exchange its handlers while they
-compile, and setuptools, by which they do, sets that logger to INFO and adds handlers where there are none
-(`setuptools.logging.configure`): every command of the compiler would be shown. All of them hand Python's warnings to
-the logging, where nobody may listen. An application's own logging is left as it is.
+FFCx 0.4 (Debian 12) adds a handler to the root logger when it is imported; later versions exchange its handlers while
+they compile. Both compile by setuptools, which sets that logger to INFO and adds handlers where there are none
+(`setuptools.logging.configure`), so that every command of the compiler is shown. All of them redirect Python's warnings
+to the logging, where they are lost if it has no handler. Here the logging of an application stays as it was.
 """
 
 from __future__ import annotations
@@ -28,13 +28,15 @@ LEAST_ROOM = 1_000_000  # bytes; a form's library has a tenth of it
 
 
 class CompileError(EvolventError, OSError):
-    """A form could not be compiled, or not be kept."""
+    """A form could not be compiled or stored."""
 
 
 @contextmanager
 def logging_kept() -> Iterator[None]:
-    """The root logger has the level and the handlers afterwards that it had before, and warnings go where they went;
-    to the terminal where FFCx was imported earlier and handed them to a logging without handlers."""
+    """Context after which the root logger has its previous level and handlers, and warnings their previous target.
+
+    Where FFCx was imported before and redirected warnings to a logging without handlers, they are shown again.
+    """
     root = logging.getLogger()
     level, handlers, showing, earlier = root.level, list(root.handlers), warnings.showwarning, "ffcx" in sys.modules
     try:
@@ -52,15 +54,18 @@ def _warnings_are_heard() -> bool:
 
 
 def form_directory(version: str) -> Path:
-    """Of the forms that this version of dolfinx has compiled. Raises CacheError."""
+    """Folder of the forms compiled by this version of dolfinx. Raises CacheError."""
     return cache_directory(f"dolfinx-{version}")
 
 
 @contextmanager
 def compiling(version: str) -> Iterator[None]:
-    """Where forms are compiled: one process at a time, so that FFCx never waits for another (nor gives up waiting).
+    """Context in which forms are compiled, by one process at a time.
 
-    version: dolfinx's. Raises CacheError; CompileError where there is no room, no right to write or no compiler.
+    FFCx alone waits for the compilation of another process and gives up after a while.
+
+    version: of dolfinx.
+    Raises CacheError; CompileError where there is no room, no right to write or no compiler.
     """
     directory = form_directory(version)
     try:
@@ -75,7 +80,7 @@ def compiling(version: str) -> Iterator[None]:
 
 
 def _remove_half_written(directory: Path) -> None:
-    """Under our lock that is what a killed run, or one without room, has left."""
+    """Remove unfinished compilations. Under the lock they are left over from runs that were killed or had no room."""
     unfinished = [source for source in directory.glob("*.c") if not source.with_suffix(".c.cached").exists()]
     for path in (*unfinished, *directory.glob("*.c.~*"), *directory.glob("*.c.failed")):
         path.unlink()
@@ -83,7 +88,7 @@ def _remove_half_written(directory: Path) -> None:
 
 @contextmanager
 def _silent_compiler() -> Iterator[None]:
-    """distutils and setuptools log to the root logger itself; all that others have to say is let through."""
+    """Filter the messages of distutils and setuptools out of the root logger; all others pass."""
     root = logging.getLogger()
     level = root.level
 
@@ -99,7 +104,7 @@ def _silent_compiler() -> Iterator[None]:
 
 
 def _cause(error: BaseException | None, directory: Path) -> str:
-    """What went wrong with the folder or the compiler, and the remedy; empty for an error of another kind."""
+    """The cause of an error in the folder or the compiler, with its remedy; empty for an error of another kind."""
     remedy = "name another folder by XDG_CACHE_HOME"
     known: list[BaseException] = []
     while error is not None and error not in known:

@@ -1,11 +1,11 @@
-"""PETSc with options of our own: import PETSc from here, before dolfinx or anybody else starts it.
+"""PETSc, started with Evolvent's options: import PETSc from here, before dolfinx starts it.
 
-A .petscrc in the current folder or at home and the variable PETSC_OPTIONS belong to other programs; read here, they
-changed tolerances and with them results. EVOLVENT_PETSC_OPTIONS (`evolvent run --petsc-options "..."`) is read
-instead. A program that has started PETSc itself keeps its own options.
+A .petscrc in the current folder or the home directory and the variable PETSC_OPTIONS belong to other programs; here
+they would change tolerances and with them results. EVOLVENT_PETSC_OPTIONS (`evolvent run --petsc-options "..."`) is
+read instead. A program that has started PETSc before keeps its options.
 
-Each rank starts PETSc by itself, as all of its objects here live on one rank: started for all ranks it would wait for
-those that have no use for it, such as the others of `mpirun -n 2 evolvent plot`.
+Each rank starts PETSc on its own (MPI.COMM_SELF), as all PETSc objects here belong to one rank. A collective start
+would wait for ranks that do not use PETSc, such as the others of `mpirun -n 2 evolvent plot`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mpi4py import MPI
 
 OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 OURS = ("-skip_petscrc", "-no_signal_handler")
-"""No options file; signals are for Python, which keeps what is computed."""
+"""No options file; signals are handled by Python, which saves the results so far."""
 
 
 def _start() -> None:

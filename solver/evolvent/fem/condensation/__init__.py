@@ -1,1 +1,1 @@
-"""Elimination of a body onto the functionals that couple it with contact."""
+"""Static condensation of a body's stiffness onto the functionals that couple it with contact."""

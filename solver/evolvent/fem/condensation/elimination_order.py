@@ -1,8 +1,11 @@
-"""In which order a symmetric matrix is eliminated: cut in two by a separator, again and again, down to leaves.
+"""Elimination order of a sparse symmetric matrix by nested dissection of its graph.
 
-The separators are those of the matrix's graph by METIS (Karypis and Kumar 1998, doi 10.1137/S1064827595287997;
-METIS_ComputeVertexSeparator of metis.h). What PyPI's packages offer of METIS leaves separators out, so the library is
-called by ctypes, as MUMPS is.
+A vertex separator divides the graph into two parts without a common entry; each part is divided again, until it is
+small enough for a direct solver. The parts are numbered first and their separator last.
+
+Sources: nested dissection, George 1973, doi 10.1137/0710032; separators by METIS, Karypis and Kumar 1998,
+doi 10.1137/S1064827595287997 (METIS_ComputeVertexSeparator of metis.h). The METIS packages of PyPI leave this function
+out, so that the C library is called by ctypes.
 """
 
 from __future__ import annotations
@@ -19,143 +22,157 @@ from numpy.typing import NDArray
 from evolvent_meshes.arrays import Ints
 
 FIRST, SECOND, SEPARATOR = 0, 1, 2
+"""The two parts of a divided graph and the separator between them."""
 
 
 @dataclass(frozen=True)
-class Part:
-    """Rows begin to end of the new order, the separator's last: `parts` tile begin to separator, and no entry joins two
-    of them. A leaf has no parts and no separator."""
+class SeparatorTree:
+    """A contiguous range of rows in elimination order: the children's rows, then the separator between them.
+
+    begin: first row.
+    separator: first row of the separator; the children tile the rows from `begin` to it.
+    end: one past the last row.
+    children: the parts that the separator divides; no matrix entry couples two of them. Empty for a leaf.
+    """
 
     begin: int
     separator: int
     end: int
-    parts: tuple[Part, ...] = ()
+    children: tuple[SeparatorTree, ...] = ()
 
     @property
     def is_leaf(self) -> bool:
-        """Whether MUMPS takes all its rows."""
-        return not self.parts and self.separator == self.end
+        """Whether the range is not divided and has no separator: MUMPS eliminates all of its rows."""
+        return not self.children and self.separator == self.end
 
 
 @dataclass(frozen=True)
-class Vertices:
-    """Rows with the same neighbours, as the displacements of a node have, taken together.
+class CompressedGraph:
+    """Graph of a matrix in which rows with the same neighbours, such as the displacements of a node, are one vertex.
 
-    graph: (v, v) without loops, the one to cut. coupled: (v, v) entries beyond it that a cut must not leave either,
-    None where there are none. weights: (v,) how many rows each vertex stands for.
+    graph: (v, v) pattern without diagonal that METIS divides.
+    coupling: (v, v) further entries of the matrix, which no division may leave between two parts; None: there are none.
+    weights: (v,) rows of the matrix that each vertex stands for.
     """
 
     graph: sp.csr_matrix
-    coupled: sp.csr_matrix | None
+    coupling: sp.csr_matrix | None
     weights: Ints
 
-    def of(self, chosen: Ints) -> Vertices:
-        """Some vertices (sorted), and what joins them."""
-        coupled = None if self.coupled is None else self.coupled[chosen][:, chosen]
-        return Vertices(self.graph[chosen][:, chosen], coupled, self.weights[chosen])
+    def subgraph(self, vertices: Ints) -> CompressedGraph:
+        """The graph of some vertices (sorted indices) and the edges between them."""
+        coupling = None if self.coupling is None else self.coupling[vertices][:, vertices]
+        return CompressedGraph(self.graph[vertices][:, vertices], coupling, self.weights[vertices])
 
 
-def planned(matrix: sp.spmatrix, graph: sp.spmatrix | None, leaf: int) -> tuple[Ints, Part]:
-    """The new order (n,) of the rows of a symmetric matrix (n × n), and its parts, leaves of at most `leaf` rows.
+def dissect(matrix: sp.spmatrix, graph: sp.spmatrix | None, leaf: int) -> tuple[Ints, SeparatorTree]:
+    """Elimination order (n,) of the rows of a symmetric matrix (n × n), and its separator tree.
 
-    Cuts follow `graph` (n × n), which connects no more than the matrix does (None: the matrix itself); what the matrix
-    still couples of two parts is taken into the separator, from one of them only. Raises RuntimeError where METIS is
-    not installed or fails.
+    graph: (n × n) the pattern to divide, a subset of the matrix's own; None: the matrix's. Entries of the matrix that
+        couple two parts of the graph are resolved by moving one of the two vertices into the separator.
+    leaf: most rows of a part that is not divided further.
+    Raises RuntimeError where METIS is not installed or fails.
     """
-    vertices, place = gathered(matrix.tocsr(), None if graph is None else graph.tocsr())
-    order, whole = _planned(vertices, np.arange(len(vertices.weights)), leaf, 0)
+    compressed, vertex = compress(matrix.tocsr(), None if graph is None else graph.tocsr())
+    order, tree = _dissect(compressed, np.arange(len(compressed.weights)), leaf, 0)
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
-    return np.argsort(rank[place], kind="stable"), whole
+    return np.argsort(rank[vertex], kind="stable"), tree
 
 
-def _planned(vertices: Vertices, numbers: Ints, leaf: int, begin: int) -> tuple[Ints, Part]:
-    """The order of `numbers`, the names of the vertices, and the part that starts at row `begin`."""
-    end = begin + int(vertices.weights.sum())
+def _dissect(compressed: CompressedGraph, numbers: Ints, leaf: int, begin: int) -> tuple[Ints, SeparatorTree]:
+    """Elimination order of the vertices called `numbers` (v,), and their tree, whose rows start at `begin`."""
+    end = begin + int(compressed.weights.sum())
     if end - begin <= leaf:
-        return numbers, Part(begin, end, end)
-    side, orders, parts = bisect(vertices), [], []
-    at = begin
-    for chosen in (np.flatnonzero(side == FIRST), np.flatnonzero(side == SECOND)):
-        if len(chosen):
-            order, part = _planned(vertices.of(chosen), numbers[chosen], leaf, at)
+        return numbers, SeparatorTree(begin, end, end)
+    side, orders, children = bisect(compressed), [], []
+    start = begin
+    for vertices in (np.flatnonzero(side == FIRST), np.flatnonzero(side == SECOND)):
+        if len(vertices):
+            order, child = _dissect(compressed.subgraph(vertices), numbers[vertices], leaf, start)
             orders.append(order)
-            parts.append(part)
-            at = part.end
-    return np.concatenate([*orders, numbers[side == SEPARATOR]]), Part(begin, at, end, tuple(parts))
+            children.append(child)
+            start = child.end
+    return np.concatenate([*orders, numbers[side == SEPARATOR]]), SeparatorTree(begin, start, end, tuple(children))
 
 
-def bisect(vertices: Vertices) -> Ints:
-    """FIRST, SECOND or SEPARATOR for each vertex (v,); neither the graph nor the coupling joins FIRST and SECOND.
+def bisect(compressed: CompressedGraph) -> Ints:
+    """FIRST, SECOND or SEPARATOR for each vertex (v,); neither graph nor coupling joins FIRST and SECOND.
 
-    METIS keeps each part below about 60 %. All is SEPARATOR where nothing separates, as in a full graph.
+    METIS keeps each part below about 60 % of the rows. All vertices are SEPARATOR where nothing separates them, as in a
+    full graph. Raises RuntimeError where METIS is not installed or fails.
     """
-    side = _metis(vertices.graph, vertices.weights)
+    side = _vertex_separator(compressed.graph, compressed.weights)
     if not (np.any(side == FIRST) and np.any(side == SECOND)):
         side[:] = SEPARATOR
-    elif vertices.coupled is not None:
-        touching = [_touching(vertices.coupled, side, *ends) for ends in ((FIRST, SECOND), (SECOND, FIRST))]
-        side[min(touching, key=lambda some: int(vertices.weights[some].sum()))] = SEPARATOR
+    elif compressed.coupling is not None:
+        coupled = [_coupled(compressed.coupling, side, *parts) for parts in ((FIRST, SECOND), (SECOND, FIRST))]
+        side[min(coupled, key=lambda vertices: int(compressed.weights[vertices].sum()))] = SEPARATOR
     return side
 
 
-def _touching(coupled: sp.csr_matrix, side: Ints, here: int, there: int) -> Ints:
-    """The vertices of one part that are coupled with the other."""
-    return np.flatnonzero((side == here) & (coupled @ (side == there).astype(np.float32) > 0.0))
+def _coupled(coupling: sp.csr_matrix, side: Ints, part: int, other: int) -> Ints:
+    """The vertices of one part that are coupled with the other one."""
+    return np.flatnonzero((side == part) & (coupling @ (side == other).astype(np.float32) > 0.0))
 
 
-def gathered(matrix: sp.csr_matrix, graph: sp.csr_matrix | None) -> tuple[Vertices, Ints]:
-    """The vertices of a matrix (n × n) and the one of each row (n,)."""
+def compress(matrix: sp.csr_matrix, graph: sp.csr_matrix | None) -> tuple[CompressedGraph, Ints]:
+    """The compressed graph of a matrix (n × n), and the vertex of each row (n,); graph: as for `dissect`."""
     patterns = [matrix] if graph is None else [graph, matrix]
-    _, first, place = np.unique(_marks(patterns), return_index=True, return_inverse=True)
+    _, first, vertex = np.unique(_row_hashes(patterns), return_index=True, return_inverse=True)
     quotients = [pattern[first][:, first] for pattern in patterns]
-    coupled = None if graph is None else _beyond(quotients[0], quotients[1])
-    return Vertices(_without_loops(quotients[0]), coupled, np.bincount(place.ravel())), place.ravel()
+    coupling = None if graph is None else _further_entries(quotients[0], quotients[1])
+    return CompressedGraph(_without_diagonal(quotients[0]), coupling, np.bincount(vertex.ravel())), vertex.ravel()
 
 
-def _marks(patterns: list[sp.csr_matrix]) -> NDArray[np.uint64]:
-    """A number (n,) for each row, the same for rows with the same neighbours in all patterns, and for no others but by
-    one chance in 2^64 a pair: sums of random integers."""
+def _row_hashes(patterns: list[sp.csr_matrix]) -> NDArray[np.uint64]:
+    """Hashes (n,) of the rows' patterns: sums of a random integer for each column.
+
+    Rows with the same columns in all patterns have the same hash; others share one with a chance of 2^-64 a pair.
+    """
     rng, size = np.random.default_rng(1), patterns[0].shape[0]
-    found = rng.integers(0, 2**64, size, dtype=np.uint64)  # of a row without neighbours
+    hashes = rng.integers(0, 2**64, size, dtype=np.uint64)  # of rows without entries
     sums = np.zeros(size, dtype=np.uint64)
     for pattern in patterns:
-        marks = rng.integers(0, 2**64, size, dtype=np.uint64)
+        columns = rng.integers(0, 2**64, size, dtype=np.uint64)
         filled = np.flatnonzero(np.diff(pattern.indptr))
-        sums[filled] += np.add.reduceat(marks[pattern.indices], pattern.indptr[filled])
-        found[filled] = sums[filled]
-    return found
+        sums[filled] += np.add.reduceat(columns[pattern.indices], pattern.indptr[filled])
+        hashes[filled] = sums[filled]
+    return hashes
 
 
-def _beyond(graph: sp.csr_matrix, matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """What a matrix joins and a graph does not, which has no more in any row."""
+def _further_entries(graph: sp.csr_matrix, matrix: sp.csr_matrix) -> sp.csr_matrix:
+    """The entries of a matrix that its subset `graph` has not."""
     more = (np.diff(matrix.indptr) > np.diff(graph.indptr)).astype(np.float32)
     ones = [sp.csr_matrix((np.ones(len(p.indices), dtype=np.float32), p.indices, p.indptr), p.shape)
             for p in (matrix, graph)]  # fmt: skip
-    found = sp.diags(more) @ ones[0] - sp.diags(more) @ ones[1]
-    found.eliminate_zeros()
-    return found.tocsr()
+    difference = sp.diags(more) @ ones[0] - sp.diags(more) @ ones[1]
+    difference.eliminate_zeros()
+    return difference.tocsr()
 
 
-def _without_loops(graph: sp.csr_matrix) -> sp.csr_matrix:
+def _without_diagonal(graph: sp.csr_matrix) -> sp.csr_matrix:
     entries = graph.tocoo()
     apart = entries.row != entries.col
     ones = np.ones(np.count_nonzero(apart), dtype=np.float32)
     return sp.csr_matrix((ones, (entries.row[apart], entries.col[apart])), shape=graph.shape)
 
 
-def _metis(graph: sp.csr_matrix, weights: Ints) -> Ints:
+def _vertex_separator(graph: sp.csr_matrix, weights: Ints) -> Ints:
+    """FIRST, SECOND or SEPARATOR for each vertex (v,), by METIS with its default options, a fixed seed among them.
+
+    No options are passed, as their numbers differ between releases.
+    """
     count, size = ctypes.c_int32(graph.shape[0]), ctypes.c_int32()
     arrays = [array.astype(np.int32) for array in (graph.indptr, graph.indices, weights)]
-    part = np.zeros(graph.shape[0], dtype=np.int32)
-    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (*arrays, part)]
-    # no options: their numbers differ between releases, and the defaults, a fixed seed among them, are what is wanted
+    side = np.zeros(graph.shape[0], dtype=np.int32)
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (*arrays, side)]
     status = _library().METIS_ComputeVertexSeparator(
         ctypes.byref(count), *pointers[:3], None, ctypes.byref(size), pointers[3]
     )
     if status != 1:
         raise RuntimeError(f"METIS could not cut a graph of {graph.shape[0]} vertices, status {status}: report this")
-    return part.astype(np.int64)
+    return side.astype(np.int64)
 
 
 @cache

@@ -1,7 +1,7 @@
 """MUMPS through PETSc on one process: Cholesky factor and dense Schur complement of a sparse symmetric matrix.
 
-petsc4py has no call for the Schur complement, the PETSc C library does: it is reached with ctypes through petsc4py's
-own extension module (whose symbols include those of the libpetsc it is linked to, so that no path has to be known).
+petsc4py has no call for the Schur complement, the PETSc C library has. It is reached by ctypes through petsc4py's
+extension module, whose symbols include those of the libpetsc that it is linked to: no path has to be known.
 Sources: PETSc manual pages MatFactorSetSchurIS, MatFactorGetSchurComplement; MUMPS users' guide 5.5, ICNTL(14, 27,
 31), INFOG(1, 2, 12, 16).
 """
@@ -25,11 +25,11 @@ _NOT_POSITIVE_DEFINITE = (-10, -40)
 
 
 class NotPositiveDefinite(InputError):
-    """A stiffness that had to be symmetric positive definite is not; the message says what to look at."""
+    """A stiffness that has to be positive definite is not; the message says what to check."""
 
 
 def not_positive_definite(rows: int, negative: int) -> NotPositiveDefinite:
-    """The error for a block of `rows` rows in which at least `negative` pivots were negative or zero."""
+    """The error of a block of `rows` rows with at least `negative` negative or zero pivots."""
     return NotPositiveDefinite(
         f"a positive definite stiffness is wanted, found {negative} or more negative or zero pivots in {rows} of its "
         "rows: check that the body is held in every direction, that no cell is inverted, and that Nitsche's γ is "
@@ -38,32 +38,33 @@ def not_positive_definite(rows: int, negative: int) -> NotPositiveDefinite:
 
 
 class OutOfMemory(EvolventError, MemoryError):
-    """MUMPS could not get the memory it needs; the message holds INFOG(1), INFOG(2) and the size of the problem."""
+    """MUMPS could not allocate its memory; the message gives INFOG(1), INFOG(2) and the size of the problem."""
 
 
 @dataclass(frozen=True)
 class FactorSettings:
-    """Settings of one factorisation.
+    """Settings of one factorisation by MUMPS.
 
-    `workspace` lists the head room above MUMPS' own estimate, per cent (ICNTL(14)): the next one is tried when one was
-    too small. `block` is the number of right-hand sides that are solved together (ICNTL(27)).
+    workspace: allowances above MUMPS' memory estimate [%] (ICNTL(14)), tried one after the other.
+    block: right-hand sides solved together (ICNTL(27)).
     """
 
     workspace: tuple[int, ...] = (20, 60, 200)
     block: int = 128
 
 
-STANDARD = FactorSettings()
+DEFAULT_FACTOR = FactorSettings()
 
 
 class SparseCholesky:
-    """LLᵀ of a sparse symmetric positive definite matrix, given by its upper triangle (n × n).
+    """Cholesky factor LLᵀ of a sparse symmetric positive definite matrix.
 
+    upper: its upper triangle (n × n).
     Raises NotPositiveDefinite and OutOfMemory.
     """
 
-    def __init__(self, upper: sp.spmatrix, settings: FactorSettings = STANDARD) -> None:
-        # MUMPS points into the matrix, and reads it in iterative refinement
+    def __init__(self, upper: sp.spmatrix, settings: FactorSettings = DEFAULT_FACTOR) -> None:
+        # kept as long as the factor: MUMPS points into the matrix, and reads it in iterative refinement
         matrix = symmetric_matrix(upper)
         self._factor = _factorise(matrix, 0, settings)
         weakref.finalize(self, _destroy, self._factor, matrix).atexit = False
@@ -79,19 +80,20 @@ class SparseCholesky:
         return solution
 
 
-def schur_complement(upper: sp.spmatrix, size: int, settings: FactorSettings = STANDARD) -> Floats:
-    """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (size × size, C order, **upper triangle**) of the last `size` rows of a symmetric A.
+def schur_complement(upper: sp.spmatrix, size: int, settings: FactorSettings = DEFAULT_FACTOR) -> Floats:
+    """Schur complement S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (size × size, C order) of the last `size` rows of a symmetric A.
 
-    `upper` is the upper triangle of A; A₁₁ must be positive definite, A₂₂ need not be and may be empty. S is the
-    memory that MUMPS wrote to, without a copy (what is below the diagonal is undefined); the factor is never stored.
+    Only the upper triangle of S is defined: it is the memory that MUMPS wrote to, without a copy. The factor is not
+    stored.
 
+    upper: upper triangle of A (n × n); A₁₁ must be positive definite, A₂₂ may be indefinite or empty.
     Raises NotPositiveDefinite and OutOfMemory.
     """
     matrix = symmetric_matrix(upper)
     factor = _factorise(matrix, size, settings)
     schur, status, data = ctypes.c_void_p(), ctypes.c_int(), ctypes.POINTER(ctypes.c_double)()
     _call("MatFactorGetSchurComplement", _handle(factor), ctypes.byref(schur), ctypes.byref(status))
-    # the dense matrix outlives the factor, and with it all that MUMPS holds
+    # the factor is destroyed, and with it the memory of MUMPS; the dense matrix stays
     _call("PetscObjectReference", schur)
     _call("MatDenseGetArray", schur, ctypes.byref(data))
     _destroy(factor, matrix)
@@ -121,7 +123,7 @@ def fill_symmetric(matrix: Floats, tile: int = 512) -> None:
 
 
 def library() -> ctypes.CDLL:
-    """The PETSc C library that petsc4py runs on.
+    """The PETSc C library that petsc4py is linked to.
 
     Raises RuntimeError where PETSc has complex or single-precision scalars or 64-bit indices.
     """
@@ -145,7 +147,7 @@ def _handle(obj: PETSc.Object) -> ctypes.c_void_p:
 
 
 def _destroy(*objects: PETSc.Object) -> None:
-    """Free at once: petsc4py itself only delays what goes out of scope (PetscObjectDelayedDestroy), gigabytes here."""
+    """Free gigabytes at once: petsc4py delays the destruction of objects that go out of scope."""
     for obj in objects:
         obj.destroy()
 

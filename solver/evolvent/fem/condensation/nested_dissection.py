@@ -1,10 +1,11 @@
 """Dense Schur complement of a large sparse symmetric matrix by nested dissection, MUMPS on the leaves.
 
 MUMPS alone orders a Schur complement by minimum degree (Debian builds it without METIS, and PETSc passes no ordering
-on to its Cholesky), and holds three copies of the result. Here the domain is cut to pieces first, and the separators
-are eliminated by dense LAPACK. How long each part takes is measured in docs/benchmark.md.
+on to its Cholesky), and holds three copies of the result. Here the matrix is divided first, and the separators are
+eliminated by dense LAPACK, front by front. Run times: docs/benchmark.md.
 
-Source: George 1973, doi 10.1137/0710032 (nested dissection); the separators are METIS' (`separator`).
+Sources: nested dissection, George 1973, doi 10.1137/0710032; frontal matrices, Duff and Reid 1983,
+doi 10.1145/356044.356047.
 """
 
 from __future__ import annotations
@@ -19,19 +20,24 @@ from scipy.linalg.blas import dtrsm
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from evolvent.fem.condensation import mumps
-from evolvent.fem.condensation.elimination_order import Part, planned
-from evolvent.fem.condensation.packed_triangle import Triangle
+from evolvent.fem.condensation.elimination_order import SeparatorTree, dissect
+from evolvent.fem.condensation.packed_triangle import PackedTriangle
 from evolvent.fem.parallel.cores import Threads
-from evolvent.fem.parallel.memory import Stack, return_free_memory, untouched_square
+from evolvent.fem.parallel.memory import Stack, lazy_zeros, return_free_memory
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 
 @dataclass(frozen=True)
 class DissectionSettings:
-    """Parts of at most `leaf` rows go to MUMPS. Raises ValueError unless leaf >= 1."""
+    """Settings of an elimination by nested dissection.
+
+    leaf: most rows of a part that MUMPS eliminates undivided.
+    factor: settings of MUMPS.
+    Raises ValueError unless leaf >= 1.
+    """
 
     leaf: int = 4000
-    factor: mumps.FactorSettings = mumps.STANDARD
+    factor: mumps.FactorSettings = mumps.DEFAULT_FACTOR
 
     def __post_init__(self) -> None:
         if self.leaf < 1:
@@ -41,48 +47,55 @@ class DissectionSettings:
             )
 
 
-STANDARD = DissectionSettings()
+DEFAULT_DISSECTION = DissectionSettings()
 
 
 @dataclass(frozen=True)
-class Planned:
-    """A symmetric matrix in the order of its elimination.
+class OrderedMatrix:
+    """A symmetric matrix whose n rows to eliminate stand in elimination order, before m retained ones.
 
-    rows: (n × n + m) those to eliminate, the m retained columns last. corner: (m × m) of the retained rows. whole: the
-    plan.
+    rows: (n × n + m) the rows to eliminate; the retained columns last.
+    corner: (m × m) the retained rows and columns.
+    tree: separator tree of the rows to eliminate.
+    factor: settings of MUMPS.
     """
 
     rows: sp.csr_matrix
     corner: sp.coo_matrix
-    whole: Part
+    tree: SeparatorTree
     factor: mumps.FactorSettings
 
     @staticmethod
     def of(
-        rows: sp.csr_matrix, corner: sp.coo_matrix, settings: DissectionSettings = STANDARD,
+        rows: sp.csr_matrix, corner: sp.coo_matrix, settings: DissectionSettings = DEFAULT_DISSECTION,
         graph: sp.spmatrix | None = None,
-    ) -> Planned:  # fmt: skip
-        """Of a symmetric A, [A₁₁ A₁₂] (n × n + m) the rows to eliminate and A₂₂ (m × m) the corner, both triangles.
+    ) -> OrderedMatrix:  # fmt: skip
+        """The symmetric matrix A = [A₁₁ A₁₂; A₂₁ A₂₂] in elimination order.
 
-        A₁₁ must be positive definite, A₂₂ need not be. `graph` has the pattern that the cuts follow, of the shape of
-        A₁₁ and connecting no more than it does (default: A₁₁): cuts of a mesh are thin, those of a matrix in which some
-        rows couple widely are not.
+        rows: [A₁₁ A₁₂] (n × n + m); A₁₁ must be positive definite.
+        corner: A₂₂ (m × m), both triangles; it may be indefinite or empty.
+        graph: (n × n) the pattern to divide, a subset of A₁₁'s (default: A₁₁'s). Separators of a mesh are thin, those
+            of a matrix in which some rows couple widely are not.
+        Raises RuntimeError where METIS is not installed or fails.
         """
         count = rows.shape[0]
-        order, whole = planned(rows[:, :count], graph, settings.leaf)
+        order, tree = dissect(rows[:, :count], graph, settings.leaf)
         corner.sum_duplicates()
-        return Planned(_reordered(rows, order), corner, whole, settings.factor)
+        return OrderedMatrix(_reordered(rows, order), corner, tree, settings.factor)
 
     def schur_complement(self, threads: Threads = nullcontext) -> Floats:
-        """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order). threads: in which separators are eliminated. Raises
-        NotPositiveDefinite and OutOfMemory."""
+        """S = A₂₂ − A₂₁A₁₁⁻¹A₁₂ (m × m, C order).
+
+        threads: makes the context in which separators are eliminated.
+        Raises NotPositiveDefinite and OutOfMemory.
+        """
         return_free_memory()
         (count, columns), corner = self.rows.shape, self.corner
-        result = untouched_square(columns - count)  # half of it stays so until the end
+        result = lazy_zeros(columns - count)  # half of it is not written to before the end
         retained = np.arange(count, columns)
         elimination = _Elimination(self.rows, self.factor, Stack(), threads)
-        elimination.subtract(self.whole, retained, Triangle.within(result))
-        del elimination  # with its stack
+        elimination.subtract(self.tree, retained, PackedTriangle.view(result))
+        del elimination  # frees its stack
         return_free_memory()
         result[corner.row, corner.col] += corner.data
         mumps.fill_symmetric(result)
@@ -90,7 +103,7 @@ class Planned:
 
 
 def _reordered(matrix: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
-    """Rows (n × n + m) in the order (n,), and their first n columns alike; indices are not sorted."""
+    """Rows and first n columns of a matrix (n × n + m) in the given order (n,); indices are not sorted."""
     rank = np.arange(matrix.shape[1], dtype=matrix.indices.dtype)
     rank[order] = np.arange(len(order))
     taken = matrix[order]
@@ -99,47 +112,53 @@ def _reordered(matrix: sp.csr_matrix, order: Ints) -> sp.csr_matrix:
 
 @dataclass(frozen=True)
 class _Elimination:
-    """The rows to eliminate in the order of the plan (n × n + m), how leaves are factored, where the fronts are, and
-    in what they are eliminated."""
+    """The elimination of an ordered matrix.
+
+    matrix: (n × n + m) the rows to eliminate, in elimination order.
+    factor: settings of MUMPS, for the leaves.
+    stack: memory of the fronts.
+    threads: makes the context in which separators are eliminated.
+    """
 
     matrix: sp.csr_matrix
     factor: mumps.FactorSettings
     stack: Stack
     threads: Threads
 
-    def subtract(self, part: Part, outer: Ints, oo: Triangle) -> None:
-        """oo −= A_oi A_ii⁻¹ A_io of a part's rows i and `outer` rows of A."""
-        with self.stack.given_up_after():
-            front = _Front.of(self.matrix, slice(part.separator, part.end), outer, oo, self.stack)
-            for inner in (part,) if part.is_leaf else part.parts:
-                self._absorb(front, inner)
+    def subtract(self, tree: SeparatorTree, outer: Ints, oo: PackedTriangle) -> None:
+        """oo −= A_oi A_ii⁻¹ A_io, where i are the rows of the tree and o the rows `outer`."""
+        with self.stack.released_at_exit():
+            front = _Front.of(self.matrix, slice(tree.separator, tree.end), outer, oo, self.stack)
+            for child in (tree,) if tree.is_leaf else tree.children:
+                self._assemble(front, child)
             with self.threads():
                 front.eliminate()
 
-    def _absorb(self, front: _Front, inner: Part) -> None:
-        """Eliminates a part within a front."""
-        places = np.flatnonzero(self._touched(inner)[front.variables])
+    def _assemble(self, front: _Front, child: SeparatorTree) -> None:
+        """Eliminate a child, and add its update to the front."""
+        places = np.flatnonzero(self._coupled_columns(child)[front.variables])
         outer = front.variables[places]
-        if inner.is_leaf:
-            front.add(Triangle.within(self._leaf(inner, outer)), places)
+        if child.is_leaf:
+            front.add(PackedTriangle.view(self._leaf_update(child, outer)), places)
         else:
-            with self.stack.given_up_after():
-                update = Triangle.zeros(len(outer), self.stack.empty)
-                self.subtract(inner, outer, update)
+            with self.stack.released_at_exit():
+                update = PackedTriangle.zeros(len(outer), self.stack.empty)
+                self.subtract(child, outer, update)
                 front.add(update, places)
 
-    def _touched(self, part: Part) -> Bools:
-        """(n + m,) bool: the columns in which a part's rows have an entry."""
-        touched = np.zeros(self.matrix.shape[1], dtype=bool)
-        ends = self.matrix.indptr[part.begin], self.matrix.indptr[part.end]
-        touched[self.matrix.indices[slice(*ends)]] = True
-        return touched
+    def _coupled_columns(self, tree: SeparatorTree) -> Bools:
+        """(n + m,) the columns in which the rows of a tree have an entry."""
+        coupled = np.zeros(self.matrix.shape[1], dtype=bool)
+        ends = self.matrix.indptr[tree.begin], self.matrix.indptr[tree.end]
+        coupled[self.matrix.indices[slice(*ends)]] = True
+        return coupled
 
-    def _leaf(self, part: Part, outer: Ints) -> Floats:
+    def _leaf_update(self, leaf: SeparatorTree, outer: Ints) -> Floats:
+        """−A_oi A_ii⁻¹ A_io (upper triangle), where i are the rows of the leaf and o the rows `outer`."""
         if not len(outer):
             return np.zeros((0, 0))
-        rows = self.matrix[part.begin : part.end]
-        within, across = rows[:, part.begin : part.end], rows[:, outer]
+        rows = self.matrix[leaf.begin : leaf.end]
+        within, across = rows[:, leaf.begin : leaf.end], rows[:, outer]
         # MUMPS' minimum degree breaks ties in the order it is given: a third fewer operations
         order = reverse_cuthill_mckee(within, symmetric_mode=True)
         within, across = within[order][:, order], across[order]
@@ -152,30 +171,38 @@ class _Elimination:
 
 @dataclass
 class _Front:
-    """A separator and what is retained around it: dense blocks ss (upper triangle), so and oo."""
+    """Frontal matrix of a separator: dense blocks of its s rows and of the o rows outside that they couple with.
+
+    variables: (s + o,) row numbers, those of the separator first.
+    ss: (s × s) upper triangle.
+    so: (s × o).
+    oo: (o × o).
+    """
 
     variables: Ints
     ss: Floats
     so: Floats
-    oo: Triangle
+    oo: PackedTriangle
 
     @staticmethod
-    def of(matrix: sp.csr_matrix, separator: slice, outer: Ints, oo: Triangle, stack: Stack) -> _Front:
+    def of(matrix: sp.csr_matrix, separator: slice, outer: Ints, oo: PackedTriangle, stack: Stack) -> _Front:
         rows, size = matrix[separator], separator.stop - separator.start
         ss = rows[:, separator].toarray(out=stack.empty(size, size))
         so = rows[:, outer].toarray(out=stack.empty(size, len(outer)))
         return _Front(np.concatenate([np.arange(separator.start, separator.stop), outer]), ss, so, oo)
 
-    def add(self, update: Triangle, places: Ints) -> None:
-        """Add the update of an eliminated part at the places (sorted) of the variables that it touches."""
+    def add(self, update: PackedTriangle, places: Ints) -> None:
+        """Add the update of an eliminated child at the places (sorted) of the variables that it couples with."""
         count = len(self.ss)
         inside, outside = np.split(places, [int(np.searchsorted(places, count))])
-        update.add_first(self.ss, self.so, inside, outside - count)
-        update.add_last(self.oo, outside - count)
+        update.add_leading(self.ss, self.so, inside, outside - count)
+        update.add_trailing(self.oo, outside - count)
 
     def eliminate(self) -> None:
-        """oo −= soᵀ ss⁻¹ so, with ss and so used up: what is C order here is Fortran's, transposed, so nothing is
-        copied."""
+        """oo −= soᵀ ss⁻¹ so; overwrites ss and so. Raises NotPositiveDefinite.
+
+        LAPACK works on the transposed arrays, which are in Fortran order, so that nothing is copied.
+        """
         if not len(self.ss):
             return
         try:

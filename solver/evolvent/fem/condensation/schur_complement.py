@@ -1,14 +1,15 @@
-"""Condensation of a body's stiffness: what its surface and its cut faces feel of the bulk, computed once and exactly.
+"""Static condensation of a body's stiffness onto its surface functionals and its cut faces, computed once and exactly.
 
 With K (n × n) symmetric positive definite on the free degrees of freedom and functionals P (m × n), for instance the
 displacements of surface nodes, the compliance
 
     C = P K⁻¹ Pᵀ = −( Schur complement of [K Pᵀ; P 0] onto its second block )
 
-comes from one partial factorisation instead of m solves. This is elimination, not approximation. A load vector L is
-served by one more row Lᵀ of P: its column of C is then the response P K⁻¹ L.
+comes from one partial factorisation instead of m solves. This is elimination, not approximation. The response P K⁻¹ L
+to a load vector L is the column of C of a further row Lᵀ of P.
 
-θ ≠ 1 in Nitsche's form makes the functionals of test and trial functions differ, not K: `compliance_by_columns`.
+With θ ≠ 1 in Nitsche's form the functionals of test and trial functions differ, and K does not:
+`compliance_by_columns`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory, SparseCholesky
-from evolvent.fem.condensation.nested_dissection import STANDARD, DissectionSettings, Planned
+from evolvent.fem.condensation.nested_dissection import DEFAULT_DISSECTION, DissectionSettings, OrderedMatrix
 from evolvent.fem.parallel.cores import Threads
 from evolvent_meshes.arrays import Floats, Ints
 
@@ -38,30 +39,31 @@ __all__ = [
 
 def compliance(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, free: Ints | None = None,
-    settings: DissectionSettings = STANDARD, graph: sp.spmatrix | None = None,
+    settings: DissectionSettings = DEFAULT_DISSECTION, graph: sp.spmatrix | None = None,
 ) -> Floats:  # fmt: skip
-    """C = P K⁻¹ Pᵀ (m × m, symmetric, one array; mm/N for displacements).
+    """Compliance C = P K⁻¹ Pᵀ (m × m, symmetric; mm/N for displacements). Peak memory above K and P: about twice C.
 
-    `stiffness` K (n × n), `functionals` P (m × n); `free` picks the degrees of freedom that are not fixed (default:
-    all). `graph` (n × n) has the pattern that cuts follow, see `dissection.Planned`. Peak memory above K and
-    P is about twice C.
-
+    stiffness: K (n × n) [N/mm].
+    functionals: P (m × n).
+    free: degrees of freedom that are not fixed (default: all).
+    graph: (n × n) the pattern that nested dissection divides, see `OrderedMatrix.of` (default: K's).
     Raises NotPositiveDefinite and OutOfMemory.
     """
     count, kept = functionals.shape[0], np.arange(stiffness.shape[0]) if free is None else free
     nothing = sp.coo_matrix((count, count))
-    result = _planned(stiffness, functionals, kept, kept[:0], nothing, settings, graph).schur_complement()
+    result = _ordered(stiffness, functionals, kept, kept[:0], nothing, settings, graph).schur_complement()
     return np.negative(result, out=result)
 
 
 class Factor:
-    """Cholesky factor of K on its free degrees of freedom; `solve` is for load responses and displacement fields.
+    """Cholesky factor of K (n × n) on its free degrees of freedom, for load responses and displacement fields.
 
+    free: degrees of freedom that are not fixed (default: all).
     Raises NotPositiveDefinite and OutOfMemory.
     """
 
     def __init__(
-        self, stiffness: sp.spmatrix, free: Ints | None = None, settings: DissectionSettings = STANDARD
+        self, stiffness: sp.spmatrix, free: Ints | None = None, settings: DissectionSettings = DEFAULT_DISSECTION
     ) -> None:
         self._free: Ints | slice = slice(None) if free is None else free
         kept = stiffness if free is None else _restricted(stiffness, free, free)
@@ -78,9 +80,13 @@ class Factor:
 def compliance_by_columns(
     factor: Factor, left: sp.spmatrix, right: sp.spmatrix | None = None, block: int = 512
 ) -> Floats:
-    """P_left K⁻¹ P_rightᵀ (m_l × m_r) by solves in blocks of columns; `right` defaults to `left`.
+    """P_left K⁻¹ P_rightᵀ (m_l × m_r) by solves in blocks of columns.
 
-    The slow way (about 12 ms a column at 80,000 rows), for unsymmetric pairs of functionals and as a check.
+    Slow (about 12 ms a column at 80,000 rows): for unsymmetric pairs of functionals and as a check.
+
+    left: P_left (m_l × n).
+    right: P_right (m_r × n) (default: P_left).
+    block: columns solved together.
     """
     test = left.tocsr()
     trial = test if right is None else right.tocsr()
@@ -93,12 +99,14 @@ def compliance_by_columns(
 
 @dataclass(frozen=True)
 class SectorCondensation:
-    """A sector seen through its two cut faces and its functionals, in its own frame.
+    """A sector condensed onto its two cut faces and its functionals, in the sector's frame.
 
-    y = C f + T u_c and S u_c = Tᵀ f + g: functionals y (m), forces f (m), displacements u_c and forces g of the cut
-    faces (2c: the low face, then the high one).
+    y = C f + T u_c and S u_c = Tᵀ f + g, with functionals y (m) and their forces f (m), displacements u_c and forces g
+    of the cut faces (2c, the low face first).
 
-    `stiffness` S (2c × 2c, N/mm), `transfer` T (m × 2c), `compliance` C with both cut faces clamped (m × m, mm/N).
+    stiffness: S (2c × 2c) [N/mm].
+    transfer: T (m × 2c).
+    compliance: C (m × m), both cut faces clamped [mm/N].
     """
 
     stiffness: Floats
@@ -108,40 +116,59 @@ class SectorCondensation:
 
 @dataclass(frozen=True)
 class SectorSystem:
-    """[K Pᵀ; P 0] of a sector, ready for elimination: interior rows first, then the 2c = `cut` of the cut faces, then
-    the m = `surface` functionals."""
+    """[K Pᵀ; P 0] of a sector in elimination order: interior rows, cut faces, functionals.
 
-    matrix: Planned
+    matrix: the interior rows are eliminated, the others retained.
+    cut: 2c, degrees of freedom of both cut faces.
+    surface: m, functionals.
+    """
+
+    matrix: OrderedMatrix
     cut: int
     surface: int
 
     @staticmethod
     def of(
         stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None,
-        free: Ints | None = None, settings: DissectionSettings = STANDARD,
+        free: Ints | None = None, settings: DissectionSettings = DEFAULT_DISSECTION,
     ) -> SectorSystem:  # fmt: skip
-        """From K (n × n), P (m × n), the dofs `low`, `high` (c each) of the cut faces, the pattern (n × n) that cuts
-        follow (default: K's) and the dofs that are not fixed (default: all; the faces' are not). Raises ValueError
-        where the faces do not match."""
+        """The system of a sector.
+
+        stiffness: K (n × n) [N/mm].
+        functionals: P (m × n).
+        low, high: (c,) degrees of freedom of the cut faces in matching order, none of them fixed.
+        graph: (n × n) the pattern that nested dissection divides (default: K's).
+        free: degrees of freedom that are not fixed (default: all).
+        Raises ValueError where the faces do not match.
+        """
         interior, cut = _split(stiffness.shape[0], low, high, free)
         across = functionals.tocsc()[:, cut]
         corner = sp.bmat([[_restricted(stiffness, cut, cut), across.T], [across, None]], format="coo")
-        planned = _planned(stiffness, functionals, interior, cut, corner, settings, graph)
-        return SectorSystem(planned, len(cut), functionals.shape[0])
+        matrix = _ordered(stiffness, functionals, interior, cut, corner, settings, graph)
+        return SectorSystem(matrix, len(cut), functionals.shape[0])
 
     def condensed(self, threads: Threads = nullcontext) -> SectorCondensation:
-        """Onto the cut faces and the functionals. Raises NotPositiveDefinite and OutOfMemory."""
+        """The sector condensed onto cut faces and functionals. Raises NotPositiveDefinite and OutOfMemory.
+
+        threads: makes the context in which separators are eliminated.
+        """
         schur = self.matrix.schur_complement(threads)
         faces, surface = slice(0, self.cut), slice(self.cut, None)
         return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), -schur[surface, surface])
 
 
 class SectorRecovery:
-    """Displacement field of a whole sector from what acts on its surface and the displacements of its cut faces."""
+    """Displacement field of a sector from the forces of its functionals and the displacements of its cut faces.
+
+    stiffness: K (n × n) [N/mm].
+    functionals: P (m × n).
+    low, high: (c,) degrees of freedom of the cut faces.
+    Raises NotPositiveDefinite and OutOfMemory, ValueError where the faces do not match.
+    """
 
     def __init__(
         self, stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints,
-        settings: DissectionSettings = STANDARD,
+        settings: DissectionSettings = DEFAULT_DISSECTION,
     ) -> None:  # fmt: skip
         self._interior, self._cut = _split(stiffness.shape[0], low, high)
         self._loads = functionals.tocsc()[:, self._interior].T.tocsr()
@@ -149,7 +176,7 @@ class SectorRecovery:
         self._factor = Factor(stiffness, self._interior, settings)
 
     def displacement(self, forces: Floats, cut: Floats) -> Floats:
-        """Field u (n) of the sector in its own frame: forces f (m), cut-face displacements u_c (2c)."""
+        """Field u (n,) [mm] in the sector's frame; forces: f (m,) [N], cut: u_c (2c,) [mm]."""
         field = np.empty(len(self._interior) + len(self._cut))
         field[self._cut] = cut
         load = np.zeros(len(field))
@@ -159,6 +186,7 @@ class SectorRecovery:
 
 
 def _split(size: int, low: Ints, high: Ints, free: Ints | None = None) -> tuple[Ints, Ints]:
+    """Interior degrees of freedom, and those of both cut faces. Raises ValueError where the faces do not match."""
     cut = np.concatenate([low, high])
     if len(low) != len(high) or len(np.unique(cut)) != len(cut):
         raise ValueError(
@@ -171,21 +199,23 @@ def _split(size: int, low: Ints, high: Ints, free: Ints | None = None) -> tuple[
     return np.flatnonzero(interior), cut
 
 
-def _planned(
+def _ordered(
     stiffness: sp.spmatrix, functionals: sp.spmatrix, interior: Ints, cut: Ints, corner: sp.coo_matrix,
     settings: DissectionSettings, graph: sp.spmatrix | None,
-) -> Planned:  # fmt: skip
-    """[K Pᵀ] of the interior rows, its columns the interior, the cut faces and the functionals."""
+) -> OrderedMatrix:  # fmt: skip
+    """[K Pᵀ; P 0]: rows of the interior to eliminate, cut faces and functionals retained."""
     size, count = stiffness.shape[0], functionals.shape[0]
     columns = np.concatenate([interior, cut, size + np.arange(count)])
     rows = _restricted(_beside(stiffness.tocsr(), functionals.T.tocsr()), interior, columns)
     inner = None if graph is None else _restricted(graph, interior, interior)
-    return Planned.of(rows, corner, settings, inner)
+    return OrderedMatrix.of(rows, corner, settings, inner)
 
 
 def _restricted(matrix: sp.spmatrix, rows: Ints, columns: Ints) -> sp.csr_matrix:
-    """Some rows and columns of a matrix, in any order; SciPy's own matrix[rows][:, columns] takes several times longer.
-    Indices are not sorted."""
+    """Some rows and columns of a matrix, in any order; column indices are not sorted.
+
+    SciPy's matrix[rows][:, columns] takes several times longer.
+    """
     taken = matrix.tocsr()[rows]
     place = np.full(matrix.shape[1], -1, dtype=taken.indices.dtype)
     place[columns] = np.arange(len(columns))
@@ -196,7 +226,7 @@ def _restricted(matrix: sp.spmatrix, rows: Ints, columns: Ints) -> sp.csr_matrix
 
 
 def _beside(left: sp.csr_matrix, right: sp.csr_matrix) -> sp.csr_matrix:
-    """[left right], a sum of two wide matrices: SciPy's `hstack` makes lists of coordinates on the way."""
+    """[left right] as the sum of two wide matrices; SciPy's `hstack` converts both to coordinate lists."""
     shape = left.shape[0], left.shape[1] + right.shape[1]
     moved = right.indices + right.indices.dtype.type(left.shape[1])
     wide = sp.csr_matrix((left.data, left.indices, left.indptr), shape=shape)

@@ -1,1 +1,1 @@
-"""Ranks, cores and memory."""
+"""MPI ranks, processor cores and memory."""

@@ -1,7 +1,7 @@
-"""Cores of ranks that wait, lent to those of the same node that work.
+"""Cores of waiting ranks, used by the working ranks of the same node.
 
-Gears of different sizes are condensed on one rank each, and who is done waits for the other; positions are alike. The
-largest products of the one who works then run on all these cores.
+Gears of different sizes are condensed on one rank each, so that one rank waits for the other; so it is with positions.
+The largest products of a working rank run on the cores of those that wait.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from threadpoolctl import threadpool_limits
 from evolvent.fem.parallel.ranks import node_memory
 
 Threads = Callable[[], AbstractContextManager[None]]
-"""Makes the context in which BLAS may use more cores than the rank's own, if it may now."""
+"""Makes the context in which BLAS uses the cores of waiting ranks too, as many as there are at its start."""
 
 
 class Cores:
-    """Of the ranks of a node. All ranks must make one together; where there is one rank it never changes a thing."""
+    """The cores of the ranks of a node. Construction is collective; on a single rank it has no effect."""
 
     def __init__(self, comm: MPI.Comm) -> None:
         node = comm.Split_type(MPI.COMM_TYPE_SHARED)
@@ -30,13 +30,13 @@ class Cores:
 
     @property
     def count(self) -> int:
-        """How many this rank may use at present: those that wait are shared out among those that work."""
+        """Cores that this rank may use at present: its own and its share of those of waiting ranks."""
         waiting = sum(self._waits)
         return 1 + waiting // max(1, self._size - waiting)
 
     @contextmanager
     def lent(self) -> Iterator[None]:
-        """While this rank waits."""
+        """Context in which this rank waits, and its core may be used by others."""
         self._waits[self._rank] = self._size > 1
         try:
             yield
@@ -45,15 +45,15 @@ class Cores:
 
     @contextmanager
     def used(self) -> Iterator[None]:
-        """See `Threads`. How many cores there are is asked once, at the begin."""
+        """Context in which BLAS uses `count` cores; see `Threads`."""
         count = self.count
         if count == 1:
             yield
             return
-        own = os.sched_getaffinity(0)
-        os.sched_setaffinity(0, range(os.cpu_count() or 1))  # mpirun ties each rank to one core
+        affinity = os.sched_getaffinity(0)
+        os.sched_setaffinity(0, range(os.cpu_count() or 1))  # mpirun binds each rank to one core
         try:
             with threadpool_limits(limits=count, user_api="blas"):
                 yield
         finally:
-            os.sched_setaffinity(0, own)
+            os.sched_setaffinity(0, affinity)

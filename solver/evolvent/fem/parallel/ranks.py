@@ -1,9 +1,9 @@
-"""What ranks do together: fail alike, wait without taking a core from those that work, share a large object.
+"""Collective operations of ranks: raise the same error, wait without a busy core, share a large object.
 
-Gears are condensed on one rank and used by all. `shared` hands an object over with its arrays in memory that all ranks
-of a node map: one copy a node, whatever the number of ranks, and none of MPI's and pickle's limits of 2 GB. The memory
-is a nameless file, not an MPI window: it is given back with the last array (freeing a window is collective), and a
-node without room for it is an error on all ranks (Open MPI's windows hang where /dev/shm is as small as in Docker).
+Gears are condensed on one rank and used by all. `shared` broadcasts an object whose arrays lie in memory that all ranks
+of a node map: one copy a node, and no limit of 2 GB as MPI and pickle have. The memory is an unlinked file, not an MPI
+window: it is freed with the last array (freeing a window is collective), and a node without room for it is an error on
+all ranks (Open MPI's windows hang where /dev/shm is as small as in Docker).
 """
 
 from __future__ import annotations
@@ -27,22 +27,23 @@ Context = AbstractContextManager[None]
 SMALL = 1 << 12  # [bytes] arrays below stay in the pickle
 CHUNK = 1 << 28  # [bytes] sent at once between nodes; MPI counts in 32-bit integers
 ALIGNMENT = 64  # [bytes] of each array: a cache line
-SPARE_ROOM = 1.3  # of a board that had to grow: what follows may be larger still
-PATIENCE = 0.002  # [s] between two looks whether the others have come
+SPARE_ROOM = 1.3  # of memory that had to grow: the next object may be larger still
+POLLING = 0.002  # [s] between two tests of a barrier
 MEMORY_FOLDERS = ("/dev/shm", tempfile.gettempdir())  # memory where it is large enough, else a file in the page cache
 
 
 def wait_for_all(comm: MPI.Comm) -> None:
-    """A barrier that sleeps: MPI's own keeps a core busy, which a working rank may need."""
+    """A barrier that sleeps; MPI's barrier keeps a core busy that a working rank may need."""
     request = comm.Ibarrier()
     while not request.Test():
-        time.sleep(PATIENCE)
+        time.sleep(POLLING)
 
 
 def together(comm: MPI.Comm, work: Callable[[], T], waiting: Callable[[], Context] = nullcontext) -> T:
-    """The result of this rank's own `work`. All ranks must call it. waiting: makes the context to wait for others in.
+    """The result of `work` on this rank. Collective: all ranks must call it.
 
-    Raises on every rank the exception of the lowest rank on which `work` failed, with a note of where.
+    waiting: makes the context in which this rank waits for the others.
+    Raises on every rank the exception of the lowest rank on which `work` failed, with a note that names the rank.
     """
     if comm.size == 1:
         return work()
@@ -62,7 +63,7 @@ def together(comm: MPI.Comm, work: Callable[[], T], waiting: Callable[[], Contex
 
 
 def on_first(comm: MPI.Comm, work: Callable[[], T]) -> T:
-    """The result of `work`, done on rank 0 alone, on all ranks. Raises its exception on all of them."""
+    """The result of `work` of rank 0, on all ranks. Collective. Raises its exception on all ranks."""
     if comm.size == 1:
         return work()
     result = together(comm, lambda: work() if comm.rank == 0 else None)
@@ -73,21 +74,23 @@ def on_first(comm: MPI.Comm, work: Callable[[], T]) -> T:
 def shared(comm: MPI.Comm, value: T | None, root: int) -> T:
     """`value` of rank `root` on all ranks; with several ranks its arrays are read-only and exist once a node.
 
-    All ranks must call it. The memory is given back when the last array is gone. Raises OSError where a node has no
-    room for it.
+    Collective. The memory is freed with the last array. Raises OSError where a node has no room for it.
     """
     if comm.size == 1:
         assert value is not None
         return value
-    board = Board(comm, root)
-    shown = board.show(value)
-    board.close()
-    return shown
+    broadcast = SharedBroadcast(comm, root)
+    received = broadcast.send(value)
+    broadcast.close()
+    return received
 
 
-class Board:
-    """Where one rank shows all others one object after another in the same memory: 140 MB took 0.09 s the first time,
-    as their pages were new, and 0.007 s each other time. All ranks must make it, and call its methods, together."""
+class SharedBroadcast:
+    """Broadcasts one object after another from one rank to all, through the same shared memory.
+
+    140 MB took 0.09 s the first time, as the pages were new, and 0.007 s each other time. Construction and all methods
+    are collective.
+    """
 
     def __init__(self, comm: MPI.Comm, root: int) -> None:
         key = 0 if comm.rank == root else comm.rank + 1  # the root leads its node, and that node leads the others
@@ -96,9 +99,11 @@ class Board:
         self._leaders = comm.Split(0 if self._node.rank == 0 else MPI.UNDEFINED, key)
         self._memory = memoryview(b"")
 
-    def show(self, value: T | None) -> T:
-        """The root's `value` on all ranks, its arrays read-only and once a node, until the next one is shown. Raises
-        OSError where a node has no room for it."""
+    def send(self, value: T | None) -> T:
+        """The root's `value` on all ranks; its arrays are read-only, once a node, and valid until the next call.
+
+        Raises OSError where a node has no room for it.
+        """
         parts = _parts(value) if self._comm.rank == self._root else []
         sizes: list[int] = self._comm.bcast([part.nbytes for part in parts], root=self._root)
         *starts, total = np.cumsum([0] + [-(-size // ALIGNMENT) * ALIGNMENT for size in sizes]).tolist()
@@ -116,14 +121,14 @@ class Board:
         return restored
 
     def close(self) -> None:
-        """Gives its communicators back; the memory goes with the last array."""
+        """Free the communicators; the memory is freed with the last array."""
         if self._node.rank == 0:
             self._leaders.Free()
         self._node.Free()
 
 
 def _parts(value: object) -> list[memoryview]:
-    """The pickle of a value, and the large arrays that it leaves out."""
+    """The pickle of a value, and the buffers of the large arrays, which are not in the pickle."""
     arrays: list[memoryview] = []
 
     def stays_inside(buffer: pickle.PickleBuffer) -> bool:
@@ -137,7 +142,7 @@ def _parts(value: object) -> list[memoryview]:
 
 
 def node_memory(comm: MPI.Comm, node: MPI.Comm, size: int) -> memoryview:
-    """`size` bytes that all ranks of each node see. Raises OSError on all ranks."""
+    """`size` bytes that all ranks of a node share. Collective. Raises OSError on all ranks."""
     path = together(comm, lambda: _memory_file(size) if node.rank == 0 else "")
     path = node.bcast(path, root=0)
     try:
@@ -173,7 +178,7 @@ def _mapped(path: str, size: int) -> mmap.mmap:
 
 
 def _send(leaders: MPI.Comm, memory: memoryview) -> None:
-    """Rank 0's memory to the other nodes'."""
+    """Broadcast the memory of rank 0's node to the other nodes."""
     if leaders.size == 1:
         return
     for start in range(0, memory.nbytes, CHUNK):
@@ -181,7 +186,7 @@ def _send(leaders: MPI.Comm, memory: memoryview) -> None:
 
 
 def _portable(error: Exception) -> Exception:
-    """The exception, or one with its message where it can't be sent to other ranks."""
+    """The exception, or a RuntimeError with its message and notes where it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
         return error

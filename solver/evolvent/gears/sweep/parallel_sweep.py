@@ -17,7 +17,7 @@ from mpi4py import MPI
 
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.cores import Cores
-from evolvent.fem.parallel.ranks import Board, together
+from evolvent.fem.parallel.ranks import SharedBroadcast, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, joined, sweep_pitch
 from evolvent.gears.sweep.position import SharedPosition, shared_position
@@ -33,7 +33,7 @@ def sweep_on_ranks(
     if comm.size == 1:
         yield from sweep_pitch(model, pitch, frictions, state, begin)
         return
-    boards = tuple(Board(comm, root) for root in range(PREPARING))
+    boards = tuple(SharedBroadcast(comm, root) for root in range(PREPARING))
     # not closed where something failed: who is alone with it would wait for the others
     with suppress(GeneratorExit):
         yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
@@ -62,7 +62,7 @@ class _Crew:
     frictions: Sequence[float]
     comm: MPI.Comm
     cores: Cores
-    boards: tuple[Board, ...]
+    boards: tuple[SharedBroadcast, ...]
 
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
@@ -110,6 +110,6 @@ class _Crew:
         found = self.comm.bcast(bare, root)
         if found is None:
             return None
-        compliance = self.boards[root].show(matrix)
+        compliance = self.boards[root].send(matrix)
         system = replace(found.system, compliance=compliance)
         return replace(found, contact=replace(found.contact, bodies=self.model.bodies), system=system)

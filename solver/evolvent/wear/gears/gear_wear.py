@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from mpi4py import MPI
 
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.gear_model import GearModel
@@ -233,7 +233,7 @@ class GearWear:
         points = ContactPoints.joined([position.contact for position in positions])
         mean = float(points.weights @ points.pressure**2) / float(points.weights @ points.pressure)
         wavelength = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
-        modulus = joint_modulus(*(body.material for body in self.model.bodies))
+        modulus = contact_modulus(*(body.material for body in self.model.bodies))
         inner = [grid.inner_nodes(self.model.pair, gear) for gear, grid in zip(Member, self.grids)]
         fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
         return mean * wavelength / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf

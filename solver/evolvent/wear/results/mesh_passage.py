@@ -19,7 +19,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from evolvent.contact.hertz import line_half_width, line_peak_pressure
-from evolvent.fem.material import joint_modulus
+from evolvent.fem.material import contact_modulus
 from evolvent.gears.sweep.position import PositionResult
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_field
@@ -127,7 +127,7 @@ class DepthProfile:
         radius = pair.worn[gear].diameters[inner] / 2.0
         ξ = roll_distance_at(run.pair, gear, radius)
         load, ζ = line_load(run, ξ), np.abs(run.pair.specific_sliding(ξ)[gear])
-        R, modulus = run.pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
+        R, modulus = run.pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())
         product = line_peak_pressure(load, R, modulus) * 2.0 * line_half_width(load, R, modulus) * ζ
         computed = coefficient * passage_depths(pair)[gear][inner]
         return DepthProfile(radius, computed, coefficient * load * ζ, coefficient * product)
@@ -157,7 +157,8 @@ def pitch_point_depth(run: RunData, gear: Member, coefficient: float) -> float:
     (K/H)(1 + 1/u)(r_b²/r_b1 ρ²)·⅔ p0 b². coefficient: K/H [mm²/N].
     """
     pair, zero = run.pair, np.zeros(1)
-    load, R, modulus = line_load(run, zero), pair.relative_curvature_radius(zero), joint_modulus(*run.scene.materials())
+    load, R = line_load(run, zero), pair.relative_curvature_radius(zero)
+    modulus = contact_modulus(*run.scene.materials())
     p0, b = line_peak_pressure(load, R, modulus), line_half_width(load, R, modulus)
     lever = (pair.gears[gear].base_radius / pair.pitch_point_roll_lengths[gear]) ** 2 / pair.pinion.base_radius
     return float(coefficient * (1.0 + 1.0 / pair.ratio) * lever * 2.0 / 3.0 * p0[0] * b[0] ** 2)
@@ -189,7 +190,7 @@ class PointPassage:
         interpolated linearly in the rotation at the same distance from the contact line, as for wear."""
         pair, base = run.pair, run.pair.pinion.base_radius
         ξ = roll_distance_at(pair, Member.PINION, radius)
-        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), joint_modulus(*run.scene.materials())
+        load, R, modulus = line_load(run, ξ), pair.relative_curvature_radius(ξ), contact_modulus(*run.scene.materials())
         b = float(line_half_width(load, R, modulus))
         half = b / (pair.pitch_point_roll_lengths[0] + float(ξ))  # of the rotation: the line moves by ρ a radian
         rotation = float(ξ) / base + OBSERVATION * half * np.linspace(-1.0, 1.0, count)

@@ -195,7 +195,7 @@ def _compile_in_a_child(directory, queue):
     queue.put(dolfinx_compat.assemble_number(3 * x[0] * x[1] ** 3 * ufl.dx))
 
 
-def test_killed_compilation_and_two_at_once(tmp_path):
+def test_forms_compile_after_a_kill_and_in_two_processes(tmp_path):
     """∫ 3 x y³ over the unit square is 3/8 in two processes at once, though a killed run left half a form behind.
 
     FFCx alone would wait 10 s for the dead compiler and give up.

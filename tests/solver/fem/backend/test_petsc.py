@@ -28,7 +28,7 @@ print(sorted(PETSc.Options().getAll().items()))
 
 
 @pytest.mark.parametrize("place", ["file", "environment"])
-def test_options_of_others_are_not_read(place: str, tmp_path: Path) -> None:
+def test_petsc_options_of_others_are_not_read(place: str, tmp_path: Path) -> None:
     """A .petscrc in the current folder, which is also home, and PETSC_OPTIONS: none of them gets in."""
     (tmp_path / ".petscrc").write_text(FOREIGN if place == "file" else "", encoding="utf-8")
     found = options(tmp_path, **({"PETSC_OPTIONS": FOREIGN} if place == "environment" else {}))
@@ -36,7 +36,7 @@ def test_options_of_others_are_not_read(place: str, tmp_path: Path) -> None:
     assert "skip_petscrc" in found
 
 
-def test_options_on_purpose(tmp_path: Path) -> None:
+def test_petsc_options_of_evolvent_are_read(tmp_path: Path) -> None:
     """EVOLVENT_PETSC_OPTIONS, which --petsc-options sets, is read."""
     found = options(tmp_path, EVOLVENT_PETSC_OPTIONS="-mat_view :a.txt")
     assert "('mat_view', ':a.txt')" in found
@@ -51,7 +51,7 @@ print(repr(float(abs(assemble(Body(rectangle(1.0, 1.0, 2, 2))).stiffness).sum())
 """
 
 
-def test_compilers_options_of_others_are_not_read(tmp_path: Path) -> None:
+def test_ffcx_options_of_others_are_not_read(tmp_path: Path) -> None:
     """Files that tell FFCx to drop table values below 0.3 and the compiler to stop at an error, in the current folder
     and in the home's .config: a stiffness is what it is without."""
     ffcx, jit = '{"epsilon": 0.3, "table_atol": 0.3}', '{"cffi_extra_compile_args": ["-Dnonsense(", "-Werror"]}'

@@ -1,4 +1,4 @@
-"""The order of an elimination: what cuts must do to a graph, whatever METIS does inside."""
+"""Elimination order: properties that separators must have, whichever METIS finds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,15 @@ import pytest
 import scipy.sparse as sp
 
 from evolvent.fem.condensation import elimination_order
-from evolvent.fem.condensation.elimination_order import FIRST, SECOND, SEPARATOR, Part, bisect, gathered, planned
+from evolvent.fem.condensation.elimination_order import (
+    FIRST,
+    SECOND,
+    SEPARATOR,
+    SeparatorTree,
+    bisect,
+    compress,
+    dissect,
+)
 
 
 def grid(n: int, m: int, dofs: int = 1) -> sp.csr_matrix:
@@ -22,14 +30,14 @@ def grid(n: int, m: int, dofs: int = 1) -> sp.csr_matrix:
 
 def cut(matrix: sp.csr_matrix, graph: sp.csr_matrix | None = None) -> np.ndarray:
     """FIRST, SECOND or SEPARATOR for each row."""
-    vertices, place = gathered(matrix, graph)
+    vertices, place = compress(matrix, graph)
     return bisect(vertices)[place]
 
 
-def leaves(part: Part) -> Iterator[Part]:
-    if not part.parts:
+def leaves(part: SeparatorTree) -> Iterator[SeparatorTree]:
+    if not part.children:
         yield part
-    for inner in part.parts:
+    for inner in part.children:
         yield from leaves(inner)
 
 
@@ -46,7 +54,7 @@ def test_strip_is_cut_across(dofs: int) -> None:
 def test_rows_of_a_node_are_one_vertex() -> None:
     """Rows with the same neighbours, however they are numbered: 12 × 9 vertices of three rows."""
     order = np.random.default_rng(0).permutation(12 * 9 * 3)
-    vertices, place = gathered(grid(12, 9, 3)[order][:, order].tocsr(), None)
+    vertices, place = compress(grid(12, 9, 3)[order][:, order].tocsr(), None)
     assert (vertices.weights == 3).all()
     assert len(vertices.weights) == 12 * 9
     own = np.empty(len(order), dtype=int)
@@ -57,14 +65,14 @@ def test_rows_of_a_node_are_one_vertex() -> None:
 
 def test_nothing_separates_a_full_graph() -> None:
     """Everything is in the separator, so that the recursion comes to an end."""
-    assert (bisect(gathered(sp.csr_matrix(np.diag(np.arange(1.0, 7.0)) + 1.0), None)[0]) == SEPARATOR).all()
+    assert (bisect(compress(sp.csr_matrix(np.diag(np.arange(1.0, 7.0)) + 1.0), None)[0]) == SEPARATOR).all()
     full = sp.csr_matrix(np.ones((6, 6)) + np.eye(6))
-    order, whole = planned(full, None, 2)
+    order, whole = dissect(full, None, 2)
     assert np.array_equal(np.sort(order), np.arange(6))
-    assert whole == Part(0, 0, 6)
+    assert whole == SeparatorTree(0, 0, 6)
 
 
-def test_loose_rows_are_shared_out() -> None:
+def test_rows_without_neighbours_are_divided() -> None:
     """Rows without neighbours, with or without a diagonal: two parts, nothing between them."""
     for graph in (sp.eye(10, format="csr"), sp.csr_matrix((10, 10))):
         side = cut(graph)
@@ -73,7 +81,7 @@ def test_loose_rows_are_shared_out() -> None:
 
 
 @pytest.mark.parametrize("sizes", [(9, 2, 3, 2), (2, 3, 9, 2), (4, 4, 4)])
-def test_pieces_are_halved(sizes: tuple[int, ...]) -> None:
+def test_disconnected_graphs_are_divided_between_pieces(sizes: tuple[int, ...]) -> None:
     """A graph in pieces, the largest no more than 70 % of it, is cut between pieces or across one, wherever in the
     numbering they are: at most one row in the separator, and at least 30 % of the rows on either side."""
     pieces = sp.block_diag([sp.diags([1.0, 1.0, 1.0], [-1, 0, 1], shape=(n, n)) for n in sizes], format="csr")
@@ -99,34 +107,34 @@ def test_wide_coupling_joins_the_separator() -> None:
     assert sorted(beside[beside != 0] * np.sign(beside.sum())) == [1, 2, 3]
 
 
-def test_plan_tiles_the_rows() -> None:
-    """Parts begin where the one before ends, hold no more than a leaf's rows or are cut, and no entry of the matrix in
-    the new order joins two of them."""
+def test_separator_tree_tiles_the_rows() -> None:
+    """Children begin where the one before ends, a range of rows is divided or no larger than a leaf, and no entry of
+    the matrix in elimination order joins two children."""
     matrix = grid(30, 30, 2)
-    order, whole = planned(matrix, None, 100)
+    order, whole = dissect(matrix, None, 100)
     assert np.array_equal(np.sort(order), np.arange(matrix.shape[0]))
     new = matrix[order][:, order]
     assert max(leaf.end - leaf.begin for leaf in leaves(whole)) <= 100
 
-    def check(part: Part) -> None:
-        if not part.parts:
+    def check(part: SeparatorTree) -> None:
+        if not part.children:
             return
-        assert [part.begin, *(p.end for p in part.parts)] == [*(p.begin for p in part.parts), part.separator]
-        first, second = part.parts
+        assert [part.begin, *(p.end for p in part.children)] == [*(p.begin for p in part.children), part.separator]
+        first, second = part.children
         assert new[first.begin : first.end, second.begin : second.end].nnz == 0
-        for inner in part.parts:
+        for inner in part.children:
             check(inner)
 
     check(whole)
     assert len(list(leaves(whole))) >= 16
 
 
-def test_same_plan_every_time() -> None:
+def test_elimination_order_is_reproducible() -> None:
     """Runs repeat bit for bit, so the seeds are fixed."""
-    assert np.array_equal(planned(grid(30, 30), None, 50)[0], planned(grid(30, 30), None, 50)[0])
+    assert np.array_equal(dissect(grid(30, 30), None, 50)[0], dissect(grid(30, 30), None, 50)[0])
 
 
-def test_without_metis(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_metis_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """The message says what to install."""
     elimination_order._library.cache_clear()
     monkeypatch.setattr(elimination_order, "find_library", lambda _: None)

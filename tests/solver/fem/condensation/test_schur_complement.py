@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from evolvent.fem.condensation.mumps import fill_symmetric
 from evolvent.fem.condensation.nested_dissection import DissectionSettings
 from evolvent.fem.condensation.schur_complement import (
     Factor,
@@ -17,17 +16,7 @@ from evolvent.fem.condensation.schur_complement import (
     compliance,
     compliance_by_columns,
 )
-from tests.support.q1_elasticity import dofs_of, grid_cells, stiffness
-
-
-def block(counts: tuple[int, int, int]) -> tuple[sp.csr_matrix, np.ndarray, sp.csr_matrix]:
-    """K of a block with unit cells, free dofs (bottom z = 0 held), and displacement + traction-like functionals."""
-    numbers, cells = grid_cells(counts)
-    points = np.indices(numbers.shape).reshape(3, -1).T.astype(float)
-    matrix = stiffness(points, cells)
-    top = dofs_of(numbers[:, :, -1], 3)
-    pick = sp.csr_matrix((np.ones(len(top)), (np.arange(len(top)), top)), shape=(len(top), matrix.shape[0]))
-    return matrix, dofs_of(numbers[:, :, 1:], 3), (pick - 1e-6 * matrix[top]).tocsr()
+from tests.support.q1_elasticity import block, grid_cells, stiffness
 
 
 def test_compliance_equals_dense_algebra() -> None:
@@ -50,64 +39,7 @@ def test_compliance_equals_columns_at_size() -> None:
     assert np.abs(found[:, ::7] - columns).max() < 1e-12 * np.abs(columns).max()
 
 
-@pytest.mark.parametrize("leaf", [600, 60])
-def test_dissection_changes_nothing(leaf: int) -> None:
-    """Cut into parts of at most 600 or 60 rows, the compliance is that of one factorisation, to rounding."""
-    matrix, free, functionals = block((9, 6, 6))
-    exact = compliance(matrix, functionals, free=free)
-    found = compliance(matrix, functionals, free=free, settings=DissectionSettings(leaf=leaf))
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-    assert np.array_equal(found, found.T)
-
-
-def test_dissection_of_separate_bodies() -> None:
-    """Two bodies without a common dof, one without functionals: block diagonal compliance, zero coupling."""
-    matrix, free, functionals = block((4, 4, 3))
-    one, p = matrix[free][:, free], functionals[:, free]
-    both = sp.block_diag([one, one, 2.0 * one], format="csr")
-    q = sp.bmat([[p, None, sp.csr_matrix(p.shape)], [None, p, None]], format="csr")
-    found = compliance(both, q, settings=DissectionSettings(leaf=100))
-    exact = compliance(one, p)
-    size = len(exact)
-    assert np.abs(found[:size, :size] - exact).max() < 1e-13 * np.abs(exact).max()
-    assert np.abs(found[size:, size:] - exact).max() < 1e-13 * np.abs(exact).max()
-    assert not found[:size, size:].any()
-
-
-def test_dissection_of_many_pieces() -> None:
-    """600 chains of three rows, as large as a leaf: the recursion halves them (one piece a level would be too deep for
-    Python). C of three chains' ends is that of one end, (2 − 1/(2 − 1/2))⁻¹ = 3/4, on the diagonal."""
-    chain = sp.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(3, 3))
-    many = sp.block_diag([chain] * 600, format="csr")
-    seen = sp.csr_matrix((np.ones(3), ([0, 1, 2], [0, 900, 1799])), shape=(3, 1800))
-    found = compliance(many, seen, settings=DissectionSettings(leaf=3))
-    assert np.abs(found - 0.75 * np.eye(3)).max() < 1e-14
-
-
-def test_impossible_leaf_is_refused() -> None:
-    """Without a row in a leaf there would be no end."""
-    with pytest.raises(ValueError, match="a leaf of at least one row, found 0"):
-        DissectionSettings(leaf=0)
-
-
-def widely_coupled() -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
-    """A slab along x of 16 × 4 × 4 cells with a coupling over four cells on its top (as Nitsche's constant term), the
-    slab alone, and functionals of the top."""
-    mesh, free, functionals = block((16, 4, 4))
-    mesh, face = mesh[free][:, free].tocsr(), functionals[:, free]
-    return (mesh + 1e-3 * face.T @ face @ face.T @ face).tocsr(), mesh, face
-
-
-def test_graph_changes_nothing() -> None:
-    """Cuts along another graph than the matrix's own, thinner in places: C stays the one of dense algebra."""
-    coupled, mesh, face = widely_coupled()
-    found = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
-    p = face.toarray()
-    exact = p @ np.linalg.solve(coupled.toarray(), p.T)
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-
-
-def test_unsymmetric_functionals() -> None:
+def test_compliance_of_unsymmetric_functionals() -> None:
     """P_left ≠ P_right (θ ≠ 1): rows of P_left K⁻¹ P_rightᵀ, exact by dense algebra."""
     matrix, free, functionals = block((3, 3, 2))
     dense = matrix[free][:, free].tocsr()
@@ -118,7 +50,7 @@ def test_unsymmetric_functionals() -> None:
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
 
 
-def test_result_outlives_the_factor() -> None:
+def test_compliance_outlives_the_factor() -> None:
     """The compliance is MUMPS' own memory: it stays valid when all else is gone and other factors come and go."""
     matrix, free, functionals = block((5, 5, 3))
     found = compliance(matrix, functionals, free=free)
@@ -130,7 +62,7 @@ def test_result_outlives_the_factor() -> None:
     assert np.array_equal(view, kept[3:, 2:])
 
 
-def test_uniaxial_stretch() -> None:
+def test_factor_solves_a_stretched_bar() -> None:
     """A bar held at one end (rollers), pulled with p at the other: u = pL/E at its top (ν-free directions held)."""
     numbers, cells = grid_cells((2, 2, 5))
     points = np.indices(numbers.shape).reshape(3, -1).T.astype(float)
@@ -159,7 +91,7 @@ def test_indefinite_stiffness_is_refused(shift: float) -> None:
             compliance(bad, functionals[:, free], settings=DissectionSettings(leaf=leaf))
 
 
-def test_cut_faces_must_match() -> None:
+def test_cut_faces_that_do_not_match_are_refused() -> None:
     """Faces of different size, or with a common dof, are refused."""
     matrix, free, functionals = block((2, 2, 2))
     kept, p = matrix[free][:, free], functionals[:, free]
@@ -167,11 +99,3 @@ def test_cut_faces_must_match() -> None:
         SectorSystem.of(kept, p, np.array([0, 1, 2]), np.array([6, 7]))
     with pytest.raises(ValueError, match="3 different"):
         SectorSystem.of(kept, p, np.array([0, 1]), np.array([1, 7]))
-
-
-def test_mirrored_triangle() -> None:
-    """The lower triangle becomes the upper one, also where the last tile is cut off."""
-    matrix = np.triu(np.arange(49.0).reshape(7, 7))
-    exact = matrix + np.triu(matrix, 1).T
-    fill_symmetric(matrix, tile=3)
-    assert np.array_equal(matrix, exact)

@@ -51,7 +51,7 @@ sys.stdout.write("fine\\n")
 
 
 @pytest.mark.parametrize("ranks", [2, 3])
-def test_who_waits_lends(ranks: int, run_script: Run) -> None:
+def test_waiting_ranks_lend_their_cores(ranks: int, run_script: Run) -> None:
     """One rank after the other works while the others wait: it has all cores then, BLAS threads in number, every
     processor to run on; and its own again afterwards."""
     done = run_script("-c", LEND, ranks=ranks)
@@ -59,7 +59,7 @@ def test_who_waits_lends(ranks: int, run_script: Run) -> None:
     assert done.stdout.count("fine") == ranks
 
 
-def test_alone_nothing_changes() -> None:
+def test_cores_of_a_single_rank_are_unchanged() -> None:
     """On one rank there is nobody to borrow from: BLAS keeps the threads that the user gave it."""
     cores, before = Cores(MPI.COMM_SELF), threadpool_info()
     with cores.lent(), cores.used():

@@ -8,7 +8,7 @@ import os
 import numpy as np
 import pytest
 
-from evolvent.fem.parallel.memory import Stack, untouched_square
+from evolvent.fem.parallel.memory import Stack, lazy_zeros
 from tests.conftest import Run
 
 KEPT = """
@@ -30,13 +30,13 @@ print(kept - before, resident() - before)
 """
 
 
-def test_what_is_given_up_is_used_again() -> None:
+def test_released_memory_is_reused() -> None:
     """Three arrays, two of them within a block: the next one made lies where the first of these was, and neither
     touches the one below."""
     stack = Stack()
     below = stack.empty(3, 5)
     below[:] = 1.0
-    with stack.given_up_after():
+    with stack.released_at_exit():
         first = stack.empty(100, 10)
         second = stack.empty(7, 7)
         first[:], second[:] = 2.0, 3.0
@@ -47,13 +47,13 @@ def test_what_is_given_up_is_used_again() -> None:
     assert np.all(below == 1.0)
 
 
-def test_given_up_after_an_error() -> None:
+def test_memory_is_released_after_an_error() -> None:
     """An error within a block gives up what was made in it."""
     stack = Stack()
     made = []
 
     def fails() -> None:
-        with stack.given_up_after():
+        with stack.released_at_exit():
             made.append(stack.empty(2, 2))
             raise RuntimeError
 
@@ -62,7 +62,7 @@ def test_given_up_after_an_error() -> None:
     assert stack.empty(2, 2).ctypes.data == made[0].ctypes.data
 
 
-def test_more_than_the_machine_has() -> None:
+def test_array_larger_than_the_machine_is_refused() -> None:
     """An array larger than all memory is refused with both sizes, not by the kernel."""
     columns = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 8
     with pytest.raises(MemoryError, match="take a coarser mesh"):
@@ -79,8 +79,8 @@ def test_freed_arrays_stay_until_returned(run_script: Run) -> None:
     assert kept > 60e6 and returned < 10e6
 
 
-def test_untouched_square_is_zero() -> None:
+def test_lazy_zeros_is_zero() -> None:
     """(n × n) zeros that can be written to; n = 0 too."""
-    square = untouched_square(3)
+    square = lazy_zeros(3)
     square[1, 2] = 5.0
-    assert square.sum() == 5.0 and untouched_square(0).shape == (0, 0)
+    assert square.sum() == 5.0 and lazy_zeros(0).shape == (0, 0)

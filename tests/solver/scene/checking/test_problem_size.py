@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from evolvent.cli import main
-from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.scene.checking import problem_size
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_size, sector_sizes
@@ -197,27 +196,6 @@ def test_check_says_what_does_not_fit(machine: Callable[[float], None]) -> None:
     assert "Too large for this machine" in text and "--level quick" in text
     machine(50e3)
     assert "Too large" not in overview(yang("mesh.level=standard"))
-
-
-def test_control_groups(tmp_path: Path) -> None:
-    """The smallest limit of the process's groups and of those above, of both versions; "max" and no files: none."""
-    physical = machine_megabytes(tmp_path)
-    assert physical > 100.0
-    own, groups = tmp_path / "proc/self", tmp_path / "sys/fs/cgroup"
-    own.mkdir(parents=True)
-
-    def limit(name: str, text: str) -> None:
-        (groups / name).parent.mkdir(parents=True, exist_ok=True)
-        (groups / name).write_text(text)
-
-    (own / "cgroup").write_text("4:memory:/docker/a1\n1:cpu:/docker/a1\n0::/user/me\n")
-    limit("user/me/memory.max", "max\n")
-    limit("memory/memory.limit_in_bytes", "9223372036854771712\n")
-    assert machine_megabytes(tmp_path) == physical
-    limit("user/memory.max", "64000000\n")
-    assert machine_megabytes(tmp_path) == 64.0
-    limit("memory/docker/a1/memory.limit_in_bytes", "32000000\n")
-    assert machine_megabytes(tmp_path) == 32.0
 
 
 HUGE = [

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.axisymmetric import pressed_on_plane, sphere_section
-from evolvent import Contact, ContactResult, Placement, Position, Problem, Step, solve
-from evolvent.contact.problem.condensed_body import prepare
+from evolvent import Contact, ContactResult, Placement, Position, Problem, Step, Sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, contact_modulus
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
@@ -92,48 +91,50 @@ def exact(share: float) -> Found:
     return Found.fitted(force, r, pressure)
 
 
-def along_axis(share: float) -> Found:
+def along_axis(run: Sweep, share: float) -> Found:
     """With the pressure along the axis, on the pairs where the spheres touch."""
-    problem, step = stated(share, WAYS[0])
-    prepared = prepare(problem)
-    first, second = Position(problem, prepared, step).meetings[0].placed
-    touching = AlongAxis(problem, prepared, step, ((first.points, second.points),))
+    step = step_of(share, WAYS[0])
+    first, second = Position(run.problem, run.prepared, step).meetings[0].placed
+    touching = AlongAxis(run.problem, run.prepared, step, ((first.points, second.points),))
     return Found.of(touching.solve(None)[0].contacts[0])
 
 
-def pressed(share: float, way: str) -> Found:
+def pressed(run: Sweep, share: float, way: str) -> Found:
     """share: a/R of the approach."""
-    return Found.of(solve(*stated(share, way)).contacts[0])
+    return Found.of(run.solve(step_of(share, way)).contacts[0])
 
 
-def by_force(share: float, force: float) -> tuple[Found, float]:
+def by_force(run: Sweep, share: float, force: float) -> tuple[Found, float]:
     """Pressed by a force [N] on the whole contact, and the approach [mm]; share: a/R of the mesh."""
-    problem, step = stated(share, WAYS[0])
-    upper, lower = problem.bodies
-    loaded = replace(upper, rigid=Rigid("top", (Freedom("z", load=-0.25 * force),)))
-    solution = solve(replace(problem, bodies=(loaded, lower)), step)
+    down = Freedom("z", load=-0.25 * force)
+    solution = run.solve(replace(step_of(share, WAYS[0]), freedoms=((0, down),)))
     return Found.of(solution.contacts[0]), -float(solution.motions[0][0])
 
 
-def stated(share: float, way: str) -> tuple[Problem, Step]:
-    """share: a/R of the approach."""
+def stated(share: float) -> Problem:
+    """share: a/R of the approach, for which the mesh is made."""
     a = share * RADIUS
-    approach, placed = 2.0 * a**2 / RADIUS, way == WAYS[1]
     mesh = ring_sphere(RADIUS, SIDE, SIDE, a, a / CELLS, 1.25 * a, growth=1.7)
     symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
-    down = Freedom("z", displacement=0.0 if placed else -approach)
-    upper = Body(mesh, supports=symmetry, rigid=Rigid("top", (down,)), name="upper")
+    upper = Body(mesh, supports=symmetry, rigid=Rigid("top", (Freedom("z", displacement=0.0),)), name="upper")
     lower = Body(mesh, supports=(*symmetry, Fixed("top")), name="lower")
+    return Problem((upper, lower), (Contact((0, "arc"), (1, "arc"), reach=4.0 * a**2 / RADIUS),))
+
+
+def step_of(share: float, way: str) -> Step:
+    """The approach of 2a²/R by a prescribed motion from where the spheres touch, or by placing them in overlap."""
+    approach, placed = 2.0 * (share * RADIUS) ** 2 / RADIUS, way == WAYS[1]
     above = Placement(np.eye(3), np.array([0.0, 0.0, -approach if placed else 0.0]))
-    problem = Problem((upper, lower), (Contact((0, "arc"), (1, "arc"), reach=2.0 * approach),))
-    return problem, Step(placements=(above, Placement(TURNED, np.zeros(3))))
+    down = Freedom("z", displacement=0.0 if placed else -approach)
+    return Step(freedoms=((0, down),), placements=(above, Placement(TURNED, np.zeros(3))))
 
 
 def measure() -> Rung:
     """Solves three sizes in all ways."""
-    found = {share: (*(pressed(share, way) for way in WAYS), exact(share)) for share in SHARES}
-    forced = {share: by_force(share, moved.force) for share, (moved, *_) in found.items()}
-    along, largest = along_axis(SHARES[-1]), found[SHARES[-1]]
+    runs = {share: Sweep(stated(share)) for share in SHARES}  # condensed once for all ways
+    found = {share: (*(pressed(run, share, way) for way in WAYS), exact(share)) for share, run in runs.items()}
+    forced = {share: by_force(runs[share], share, moved.force) for share, (moved, *_) in found.items()}
+    along, largest = along_axis(runs[SHARES[-1]], SHARES[-1]), found[SHARES[-1]]
     return Rung(
         "half_spheres",
         "Two half-spheres, pressed in three ways",

@@ -31,6 +31,7 @@ face_width_mm = 8
 bore_diameter_mm = 44
 [mesh]
 level = "quick"
+order = 1
 elements_per_contact_width = 0.5
 [load]
 torque_Nm = 120
@@ -47,7 +48,7 @@ def spur_scene(*settings: str) -> Scene:
 
 
 def helical_scene(*settings: str) -> Scene:
-    """A narrow helical pair with half an element across the contact: for algebra, not for stress."""
+    """A narrow helical pair, first-order cells and half of one across the contact: for algebra, not for stress."""
     return scene_from_text(HELICAL, [*QUIET, *settings])
 
 

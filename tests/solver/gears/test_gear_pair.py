@@ -258,7 +258,7 @@ def test_start_of_the_search_does_not_matter(spur: GearModel) -> None:
 
 @pytest.fixture(scope="module")
 def helical() -> GearModel:
-    return model_of(helical_scene())
+    return model_of(helical_scene("mesh.order=2"))
 
 
 def test_helical_pair(helical: GearModel) -> None:

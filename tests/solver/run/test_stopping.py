@@ -5,13 +5,16 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from evidence.stress.faults import differs, run, started
+from evidence.stress.faults import GLANCE, differs, run, started
 from evolvent.run.stopping import Stopped, stoppable
 from tests.support.checkout import ROOT
+
+PLAIN = ("--set", "output.error_bars=false")
 
 
 def output_of(process: subprocess.Popen[str], seconds: float) -> tuple[str, str]:
@@ -25,9 +28,9 @@ def output_of(process: subprocess.Popen[str], seconds: float) -> tuple[str, str]
 
 def ask(out: Path, number: signal.Signals) -> subprocess.CompletedProcess[str]:
     """A run that is sent a signal once it has kept two positions."""
-    with started(out) as process:
+    with started(out, *PLAIN) as process:
         while process.poll() is None and not (out / "results" / "position_0001.npz").exists():
-            pass
+            time.sleep(GLANCE)
         process.send_signal(number)
         output, errors = output_of(process, 60.0)
     return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
@@ -46,9 +49,9 @@ def test_asked_to_end(number: signal.Signals, tmp_path: Path) -> None:
     assert "Traceback" not in done.stderr
     assert line in (out / "run.log").read_text(encoding="utf-8")
     assert not (out / "summary.json").exists()
-    assert run(out, "--resume").returncode == 0
+    assert run(out, *PLAIN, "--resume").returncode == 0
     if number == signal.SIGTERM:
-        assert run(whole).returncode == 0
+        assert run(whole, *PLAIN).returncode == 0
         assert differs(out, whole) < 1e-7
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -57,24 +58,43 @@ def assert_same(one: Path, other: Path, tolerance: float) -> None:
             assert np.abs(a - b).max() < tolerance * b.max()
 
 
+@pytest.fixture(scope="module")
+def worn_pair(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of He's pair worn to 400,000 cycles on one rank, without friction; only to be read."""
+    out = tmp_path_factory.mktemp("worn") / "out"
+    computed(run_script, out, *SHORT, *WEAR)
+    return out
+
+
+@pytest.fixture(scope="module")
+def followed(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with meshes that follow the wear; only to be read."""
+    out = tmp_path_factory.mktemp("followed") / "out"
+    computed(run_script, out, *SHORT, *WEAR, "--set", "wear.refresh_um=0.2")
+    return out
+
+
+@pytest.mark.mpi
 @pytest.mark.parametrize("friction", ["0.0", "0.1"])
-def test_ranks_agree(friction: str, run_script: Run, tmp_path: Path) -> None:
+def test_ranks_agree(friction: str, worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """He's pair without and with friction, K/H three times as large on the wheel, on 1, 2 and 4 ranks: the same blocks
     and depths within 1e-8."""
     settings = (*SHORT, *WEAR, "--set", f"contact.friction={friction}")
-    for ranks in (1, 2, 4):
-        computed(run_script, tmp_path / str(ranks), *settings, ranks=ranks)
+    alone = worn_pair if friction == "0.0" else tmp_path / "1"
+    if alone != worn_pair:
+        computed(run_script, alone, *settings)
     for ranks in (2, 4):
-        assert_same(tmp_path / str(ranks), tmp_path / "1", 1e-8)
+        computed(run_script, tmp_path / str(ranks), *settings, ranks=ranks)
+        assert_same(tmp_path / str(ranks), alone, 1e-8)
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
-def test_stopped_and_resumed(how: str, run_script: Run, tmp_path: Path) -> None:
+def test_stopped_and_resumed(how: str, followed: Path, run_script: Run, tmp_path: Path) -> None:
     """Killed while the fourth block is written, or the disk full at the second; resumed on two ranks, the meshes
     following the wear in between: the same as never stopped within 1e-8. Resumed once more nothing is left to do."""
-    whole, halves = tmp_path / "whole", tmp_path / "halves"
+    whole, halves = followed, tmp_path / "halves"
     settings = (*SHORT, *WEAR, "--set", "wear.refresh_um=0.2")
-    computed(run_script, whole, *settings)
     assert computed(run_script, halves, *settings, how=how) != Exit.DONE
     kept = read_checkpoint(Archive(halves, load_scene(halves / "scene.toml")))
     assert kept is not None and 1 <= len(kept.rows) < len(blocks(whole))
@@ -87,28 +107,26 @@ def test_stopped_and_resumed(how: str, run_script: Run, tmp_path: Path) -> None:
     assert "resumed after 400000 of 400000 cycles" in (halves / "run.log").read_text(encoding="utf-8")
 
 
-def test_another_scenes_study_is_not_resumed(run_script: Run, tmp_path: Path) -> None:
+def test_another_scenes_study_is_not_resumed(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """With another K/H: status 2, and what was there stays."""
-    computed(run_script, tmp_path, *SHORT, *WEAR)
-    before = blocks(tmp_path)
+    out = shutil.copytree(worn_pair, tmp_path / "out")
     more = (*SHORT, *WEAR, "--set", "wear.wheel_mm2_per_N=4e-10", "--resume")
-    assert computed(run_script, tmp_path, *more, how="as-is") == Exit.BAD_INPUT
-    assert blocks(tmp_path) == pytest.approx(before)
+    assert computed(run_script, out, *more, how="as-is") == Exit.BAD_INPUT
+    assert blocks(out) == pytest.approx(blocks(worn_pair))
 
 
-def test_worn_pair_is_a_scene(run_script: Run, tmp_path: Path) -> None:
+def test_worn_pair_is_a_scene(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """The worn pair solved from its own scene: the same transmission error within 3e-4 of the wear, on a finer mesh
     within 2 % of it; and less its mean it is not what it was at the beginning. Its folder is a run to which nothing is
     left to add."""
-    computed(run_script, tmp_path, *SHORT, *WEAR)
-    worn = tmp_path / "worn_400000"
+    worn = worn_pair / "worn_400000"
     own = load_scene(worn / "scene.toml")
     assert Archive(worn, own).read_sweep(own.gear_pair())[-1].closes
     computed(run_script, tmp_path / "again", scene=str(worn / "scene.toml"))
     computed(run_script, tmp_path / "finer", "--level", "standard", scene=str(worn / "scene.toml"))
     found = {name: errors(folder) for name, folder in (
-        ("worn", worn), ("again", tmp_path / "again"), ("finer", tmp_path / "finer"), ("new", tmp_path))}  # fmt: skip
-    wear = 1e3 * max(depth.max() for depth in depths(tmp_path, "400000"))
+        ("worn", worn), ("again", tmp_path / "again"), ("finer", tmp_path / "finer"), ("new", worn_pair))}  # fmt: skip
+    wear = 1e3 * max(depth.max() for depth in depths(worn_pair, "400000"))
     assert np.abs(found["again"] - found["worn"]).max() < 3e-4 * wear
     assert np.abs(found["finer"] - found["worn"]).max() < 2e-2 * wear
     assert np.ptp(found["worn"] - found["new"]) > 0.1 * wear
@@ -120,15 +138,14 @@ def errors(out: Path) -> np.ndarray:
     return np.array([position["transmission_error_um"] for position in summary["positions"]])
 
 
-def test_measured_flanks_wear_on(run_script: Run, tmp_path: Path) -> None:
+def test_measured_flanks_wear_on(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """Worn to 100,000 cycles and, from the charts that it left, on to 400,000, against one study: depths within the
     errors of the blocks."""
-    computed(run_script, tmp_path / "one", *SHORT, *WEAR)
-    scene = tmp_path / "one" / "worn_100000" / "scene.toml"
+    scene = worn_pair / "worn_100000" / "scene.toml"
     more = ("--set", "wear.cycles=3e5", "--set", "wear.pinion_mm2_per_N=1e-10", "--set", "wear.wheel_mm2_per_N=3e-10")
     computed(run_script, tmp_path / "two", *more, scene=str(scene))
     study = read_worn(tmp_path / "two")
-    for gear, (a, b) in enumerate(zip(depths(tmp_path / "one", "400000"), depths(tmp_path / "two", "300000"))):
+    for gear, (a, b) in enumerate(zip(depths(worn_pair, "400000"), depths(tmp_path / "two", "300000"))):
         assert np.abs(a - b).sum() < 0.05 * a.sum()
         assert study.pairs[-1].worn[gear].depth.max() < b.max()  # what was there before is not the study's
 

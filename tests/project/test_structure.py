@@ -74,7 +74,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears",
         "gears.contact", "gears.sweep", "wear",
     ),
-    "wear.results": ("meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear", "wear.gears"),
+    "wear.results": (
+        "meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear", "wear.gears",
+    ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "scene", "scene.schema", "scene.meshing", "gears", "gears.sweep",
         "results.*", "wear.*",

@@ -29,7 +29,7 @@ def cache_directory(name: str) -> Path:
     try:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         return _writable(base / "evolvent" / name)
-    except (OSError, RuntimeError):  # no home directory, or one that cannot be written, as in a container run as another user
+    except (OSError, RuntimeError):  # no home directory, or one that may not be written to
         pass
     try:
         return _writable(_temporary() / name)

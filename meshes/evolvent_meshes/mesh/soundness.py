@@ -1,4 +1,4 @@
-"""What the solver asks of a mesh: types, indices, points that are numbers, and cells that are not folded."""
+"""Checks of a mesh before it is used: types, indices, finite points, groups, cells without folds."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, MeshData
 from evolvent_meshes.mesh.quality import least_determinants
 from evolvent_meshes.mesh.reference_cells import corner_count, node_count
 
-FLAT = 1e-9  # of a plane mesh's size: how far its nodes may lie from a plane of constant z
+FLAT = 1e-9  # largest extent in z of a 2D mesh over that in x and y
 
 
 def check_mesh(mesh: MeshData, name: str) -> None:
-    """Raises MeshError, which begins with `name`, for what the solver would stumble over or get wrong results from."""
+    """Raises MeshError for a mesh that the solver cannot use or that gives wrong results.
+
+    name: of the body, first in the message.
+    """
     if not isinstance(mesh, MeshData):
         raise MeshError(f"{name}: wanted a MeshData, found {shown(mesh)}; read a gmsh file with read_msh(path)")
     check_cells(mesh.points, mesh.cells, mesh.shape, mesh.order, name)
@@ -37,7 +40,10 @@ def check_mesh(mesh: MeshData, name: str) -> None:
 
 
 def check_cells(points: Any, cells: Any, shape: Any, order: Any, name: str) -> None:
-    """Raises MeshError unless these are finite points (n, 3) and complete Lagrange cells on them."""
+    """Raises MeshError unless these are finite points (n, 3) and complete Lagrange cells on them.
+
+    name: of the body, first in the message.
+    """
     if not isinstance(shape, str) or shape not in CELL_DIMENSION:
         raise MeshError(
             f"{name}: wanted cells of shape {', '.join(CELL_DIMENSION)}, found {shown(shape)}; mesh with these"
@@ -96,7 +102,7 @@ def _check_distinct(mesh: MeshData, name: str) -> None:
 
 
 def _check_folds(mesh: MeshData, name: str) -> None:
-    """A cell that is folded or flat has no stiffness that means anything."""
+    """Raises MeshError for cells that are folded, flat or numbered clockwise; their stiffness would be wrong."""
     least = least_determinants(mesh)
     bad = least <= 0.0
     if not bad.any():

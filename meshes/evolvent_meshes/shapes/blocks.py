@@ -19,7 +19,7 @@ from evolvent_meshes.mesh.structured_grid import (
     facets_where,
     graded_ends,
     lattice_cells,
-    mirrored,
+    mirrored_line,
     split_to_simplices,
     subdivided,
     tensor_points,
@@ -73,7 +73,7 @@ def graded_rectangle(
 
     Cells of `size` over |x| <= fine and down to `fine_depth` (default fine/2), each next one `growth` times larger.
     """
-    x = mirrored(graded_ends(width / 2, size, fine, growth))
+    x = mirrored_line(graded_ends(width / 2, size, fine, growth))
     y = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     return _tensor_block((x, y), order, shape, {"left": 0, "right": 0, "bottom": 1, "top": 1})
 
@@ -158,7 +158,7 @@ def cylinder_2d(
     (the arc over |x| <= contact, default 2 fine, at most up to 45° from the lowest point), and of a half disc top (the
     flat cut at y = radius).
     """
-    bottom = subdivided(mirrored(graded_ends(np.pi / 4, size / radius, fine / radius, growth)), order)
+    bottom = subdivided(mirrored_line(graded_ends(np.pi / 4, size / radius, fine / radius, growth)), order)
     depth = subdivided(graded_ends((1 - _CORE) * radius, size, fine / 2, growth), order)
     points, cells = _disc(radius, bottom, depth, order, half)
     facets = boundary_facets("quadrilateral", order, cells)

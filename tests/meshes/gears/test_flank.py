@@ -207,10 +207,10 @@ def test_contact_lines_agree_with_the_length_and_the_contact_ratio(pair: GearPai
     angles = np.linspace(0.0, 2.0 * math.pi / pair.pinion.z, 401)[:-1] + 1e-7
     cosine = math.cos(pair.pinion.base_helix_angle)
     lines = [contact_lines(pair, phi) for phi in angles]
-    for phi, found in zip(angles, lines, strict=True):
-        total = sum(line.z[1] - line.z[0] for line in found) / cosine
+    for phi, touching in zip(angles, lines, strict=True):
+        total = sum(line.z[1] - line.z[0] for line in touching) / cosine
         assert total == pytest.approx(pair.contact_line_length(phi))
-    mean_count = np.mean([len(found) for found in lines])
+    mean_count = np.mean([len(touching) for touching in lines])
     assert mean_count == pytest.approx(pair.total_contact_ratio, abs=0.01)
 
 

@@ -101,7 +101,7 @@ def unusable(out: Path, error: OSError | ValueError, option: str = "--out") -> I
         reason = "a file" if out.exists() else "a link that leads nowhere"
     return InputError(
         f"{option}: found {str(out)[:200]!r} ({reason}); allowed: a directory that can be made and written to by user "
-        f"{os.geteuid()}; remedy: name another one, or mend its access"
+        f"{os.geteuid()}; remedy: name another one, or change its permissions"
     )
 
 
@@ -118,8 +118,8 @@ def require_writable(path: Path) -> None:
 def write_error(path: Path, size: int, error: OSError) -> WriteError:
     """The error of a file of `size` bytes that could not be written."""
     return WriteError(
-        f"{path}: wanted to write {size / 1e6:.3g} MB, found {error.strerror or error}; make room or mend the access, "
-        "then try again (a run goes on with --resume: what it computed before is kept)"
+        f"{path}: wanted to write {size / 1e6:.3g} MB, found {error.strerror or error}; make room or "
+        "change the permissions, then try again (a run goes on with --resume: what it computed before is kept)"
     )
 
 

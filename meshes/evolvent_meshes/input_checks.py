@@ -12,7 +12,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
 
 T = TypeVar("T")
-LONGEST = 80  # characters of a value in a message
+SHOWN_LENGTH = 80  # characters of a value in a message
 LARGEST = 1e30  # numbers beyond have no physical meaning in any unit, and their squares overflow
 
 
@@ -38,7 +38,7 @@ def shown(value: object) -> str:
     if isinstance(value, np.ndarray) and value.size > 6:
         return f"an array of shape {value.shape} and type {value.dtype}"
     text = " ".join(repr(value).split())
-    text = text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    text = text if len(text) <= SHOWN_LENGTH else text[: SHOWN_LENGTH - 3] + "..."
     return text if isinstance(value, str | Real | None | list | tuple | np.ndarray) else f"{kind_of(value)} {text}"
 
 

@@ -201,7 +201,7 @@ def nominal_angles(pair: GearPair, rotation: ArrayLike) -> tuple[Floats, Floats]
     return first, np.asarray(math.pi - pair.wheel.half_angle(diameter_2) - phi / pair.ratio)
 
 
-def contact_points(pair: GearPair, roll_distance: ArrayLike, z: ArrayLike) -> Floats:
+def action_plane_points(pair: GearPair, roll_distance: ArrayLike, z: ArrayLike) -> Floats:
     """Points (…, 3) [mm] of the plane of action at roll distances ξ and z (…) [mm], fixed frame, aligned axes."""
     xi, height = np.broadcast_arrays(np.asarray(roll_distance, dtype=float), np.asarray(z, dtype=float))
     angle, pitch = pair.operating_pressure_angle, pair.working_pitch_diameters[0] / 2.0

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 
-def involute(angle: float) -> float:
+def involute_function(angle: float) -> float:
     """Involute function inv α = tan α − α [4.3.9], angle in rad."""
     return math.tan(angle) - angle
 
@@ -136,14 +136,14 @@ class GearGeometry:
     @cached_property
     def base_half_angle(self) -> float:
         """ψ_b = ψ + inv α_t, tooth thickness half angle at the base circle [4.7.2]."""
-        return self.tooth_half_angle + involute(self.transverse_pressure_angle)
+        return self.tooth_half_angle + involute_function(self.transverse_pressure_angle)
 
     def half_angle(self, diameter: float) -> float:
         """ψ_y, tooth thickness half angle at a diameter d_y ≥ d_b: polar angle of the flank θ > 0 at mid-face [4.7.2].
 
         Negative beyond the diameter at which the tooth is pointed.
         """
-        return self.base_half_angle - involute(math.acos(min(1.0, self.base_diameter / diameter)))
+        return self.base_half_angle - involute_function(math.acos(min(1.0, self.base_diameter / diameter)))
 
     def transverse_thickness(self, diameter: float) -> float:
         """s_yt = d_y ψ_y, transverse tooth thickness at a diameter d_y [4.7.1]."""

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.errors import require
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import involute
+from evolvent_meshes.gears.gear_geometry import involute_function
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,9 @@ class PairGeometry:
         """
         gear, shift = self.pinion, self.pinion.profile_shift + self.wheel.profile_shift
         rise = 2.0 * math.tan(gear.normal_pressure_angle) * shift / (self.pinion.z + self.wheel.z)
-        target = involute(gear.transverse_pressure_angle) + rise
+        target = involute_function(gear.transverse_pressure_angle) + rise
         require(target >= 0.0, "profile_shift", shift, "a sum that leaves a tight mesh", "Raise the profile shifts.")
-        return float(brentq(lambda angle: involute(angle) - target, 0.0, 1.5, xtol=1e-15))
+        return float(brentq(lambda angle: involute_function(angle) - target, 0.0, 1.5, xtol=1e-15))
 
     @property
     def tight_centre_distance(self) -> float:

@@ -144,7 +144,7 @@ class Profile:
         angle = self.sector_angle + np.asarray(t, dtype=float) * (self.root_angle - self.sector_angle)
         return polar(np.full_like(angle, self.radii[0]), angle)
 
-    def flank(self, t: ArrayLike) -> Floats:
+    def involute_arc(self, t: ArrayLike) -> Floats:
         """Points (…, 2) of the involute at t ∈ [0, 1] (…), by arc length from the form circle to the tip corner."""
         start, end = self.roll_lengths
         squares = start**2 + np.asarray(t, dtype=float) * (end**2 - start**2)  # arc length is ρ² / 2r_b
@@ -157,7 +157,7 @@ class Profile:
 
     def segment(self, name: str, t: ArrayLike) -> Floats:
         """Points (…, 2) of one of SEGMENTS at t ∈ [0, 1] (…), by arc length in the direction of the half profile."""
-        curves = dict(zip(SEGMENTS, (self.root_arc, self.fillet, self.flank, self.tip_arc), strict=True))
+        curves = dict(zip(SEGMENTS, (self.root_arc, self.fillet, self.involute_arc, self.tip_arc), strict=True))
         return curves[name](t)
 
     @property

@@ -76,8 +76,8 @@ def read_msh(path: Path | str) -> MeshData:
             gmsh.merge(str(alias))
         except Exception as error:
             raise MeshError(
-                f"mesh file {path}: wanted a whole mesh in gmsh's format, found what gmsh cannot read; write it by "
-                "gmsh.write, or export it as MSH 4.1 or 2.2"
+                f"mesh file {path}: wanted a complete mesh in gmsh's format, found one that gmsh cannot read; "
+                "write it by gmsh.write, or export it as MSH 4.1 or 2.2"
             ) from error
         try:
             return from_gmsh()

@@ -75,7 +75,7 @@ class MeshData:
         Raises MeshError in 3D.
         """
         if self.dimension == 3:
-            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; number the cells of a 3D mesh anew")
+            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; renumber the nodes of its cells")
         return replace(self, cells=np.ascontiguousarray(self.cells[:, REVERSED_CELL[self.shape, self.order]]))
 
 

@@ -27,7 +27,7 @@ def check_mesh(mesh: MeshData, name: str) -> None:
     if len(loose):
         raise MeshError(
             f"{name}: wanted every point in a cell, found {len(loose)} points in none, the first is point {loose[0]}; "
-            "leave them out and number the others anew"
+            "remove them and renumber the others"
         )
     _check_groups(mesh, name)
     if mesh.dimension == 2 and np.ptp(mesh.points[:, 2]) > FLAT * np.ptp(mesh.points[:, :2]):
@@ -57,8 +57,8 @@ def check_cells(points: Any, cells: Any, shape: Any, order: Any, name: str) -> N
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise MeshError(
-            f"{name}: wanted finite coordinates, found {len(bad)} points of {len(points)} that are none, the first is "
-            f"point {bad[0]}; mend the file"
+            f"{name}: wanted finite coordinates, found {len(bad)} points of {len(points)} that are not, the first is "
+            f"point {bad[0]}; correct the file"
         )
     refuse_huge(f"{name}, points", points)
     _check_indices(f"{name}: cells", cells, node_count(shape, order), f"{shape} cells of order {order}", len(points))
@@ -116,6 +116,6 @@ def _check_folds(mesh: MeshData, name: str) -> None:
     x, y, z = mesh.points[mesh.cells[worst]].mean(axis=0)
     raise MeshError(
         f"{name}: wanted cells with a Jacobian above zero everywhere, found {np.count_nonzero(bad)} of {len(bad)} "
-        f"cells folded or flat, the worst is cell {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) mm; mend the mesh there, or "
-        "number these cells the other way round if only that is wrong"
+        f"cells folded or flat, the worst is cell {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) mm; correct the mesh there, "
+        "or number these cells the other way round if only that is wrong"
     )

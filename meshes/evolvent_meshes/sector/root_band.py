@@ -9,7 +9,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.profile import Profile, mirror, polar
 from evolvent_meshes.sector.section_blocks import TABLE, Piece, graded_fractions, grid_piece, half_steps
 
-LONGEST = 2.0
+FIRST_CELL_ASPECT = 2.0
 """Largest length of the band's first cell over its width; beyond, the cells that join three layers are too slanted."""
 
 
@@ -76,7 +76,7 @@ class RootBand:
         speed = np.linalg.norm(np.gradient(middle_line, arc, axis=0), axis=1)
         length = cumulative_trapezoid(speed, arc, initial=0)
         half = length[np.argmax(turned >= 0.5 * turned.max())]
-        above = half * graded_fractions(half, LONGEST * self.widths[0], self.neck)
+        above = half * graded_fractions(half, FIRST_CELL_ASPECT * self.widths[0], self.neck)
         below = np.linspace(half, length[-1], self.cells - self.neck + 1)
         wanted = np.concatenate([above, below[1:]])
         return np.interp(wanted, length, arc)

@@ -63,7 +63,7 @@ class SectorResolution:
     neck_elements: of the two before, those above the middle of the fillet.
     core_elements: coarse columns of the tooth between transitions and back band.
     rim_elements: from the root band to the bore.
-    back_alike: whether the back flank is as fine as the loaded one, to measure the effect of a coarse one.
+    fine_back: whether the back flank is as fine as the loaded one, to measure the effect of a coarse one.
     Raises MeshError for counts and sizes that do not make a mesh.
     """
 
@@ -79,7 +79,7 @@ class SectorResolution:
     neck_elements: int = 3
     core_elements: int = 2
     rim_elements: int = 4
-    back_alike: bool = False
+    fine_back: bool = False
 
     def __post_init__(self) -> None:
         if self.profile_elements % 3 or len(self.layer_depths) != 3:
@@ -125,15 +125,15 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     start = _flank_start(profile, resolution)
     radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at)
     band = sum(resolution.layer_depths)
-    alike = resolution.back_alike
-    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, alike)
+    fine_back = resolution.fine_back
+    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, fine_back)
     at_cut = max(band, 0.3 * gear.normal_module)
     widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
     neck = resolution.neck_elements
     loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)
-    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - alike], at_cut), mirrored=True)
-    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(alike))]
-    pieces += [mirrored_piece(_strip_end(loaded, resolution))] if alike else []
+    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - fine_back], at_cut), mirrored=True)
+    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(fine_back))]
+    pieces += [mirrored_piece(_strip_end(loaded, resolution))] if fine_back else []
     pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, rows.inner, resolution)]
     points, cells = _joined(pieces)
     edges = _named_edges(profile, start, points[:, :2], boundary_facets("quadrilateral", 2, cells))
@@ -169,7 +169,7 @@ def _tooth(rows: ToothRows, resolution: SectorResolution) -> list[Piece]:
     coarse = grid_piece(rows.points(*np.meshgrid(coarse_rows, columns, indexing="ij")))
     transition = [three_to_one(partial(_transition_point, rows, first)) for first in range(0, n, 3)]
     fine = [strip, *transition]
-    return [*fine, coarse, *(map(mirrored_piece, fine) if rows.alike else [])]
+    return [*fine, coarse, *(map(mirrored_piece, fine) if rows.fine_back else [])]
 
 
 def _transition_point(rows: ToothRows, first: int, u: Floats, v: Floats) -> Floats:

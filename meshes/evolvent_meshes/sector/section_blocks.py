@@ -93,7 +93,7 @@ class ToothRows:
     band: depth of the thin layers together [mm].
     tip_share: largest share of the tooth's thickness that the thin layers take.
     columns: columns behind the thin layers; the first is the transitions.
-    alike: whether the back flank has thin layers and transitions as well; the transitions are then the last column.
+    fine_back: whether the back flank has thin layers and transitions as well; the transitions are then the last column.
     """
 
     profile: Profile
@@ -101,7 +101,7 @@ class ToothRows:
     band: float
     tip_share: float
     columns: int
-    alike: bool = False
+    fine_back: bool = False
 
     @property
     def start(self) -> float:
@@ -111,17 +111,17 @@ class ToothRows:
     @property
     def inner(self) -> int:
         """Number of columns between the bands of both flanks."""
-        return self.columns if self.alike else self.columns - 1
+        return self.columns if self.fine_back else self.columns - 1
 
     @property
     def coarse(self) -> int:
         """Number of coarse columns."""
-        return self.columns - 1 - self.alike
+        return self.columns - 1 - self.fine_back
 
     @property
     def sides(self) -> int:
         """Number of flanks with thin layers."""
-        return 1 + self.alike
+        return 1 + self.fine_back
 
     def strip_width(self, radius: Floats) -> Floats:
         """Arc length [mm] of the thin layers along rows at radii [mm]; their depth is measured normal to the flank."""
@@ -149,7 +149,7 @@ class ToothRows:
         arc += self.column_width(radius) * np.clip(column - 2, 0, self.coarse)
         arc += self.transition_width(radius) * np.maximum(column - 2 - self.coarse, 0)
         points = polar(radius, self.profile.angle(radius) - arc / radius)
-        last = (np.asarray(column) == 1 + self.columns) & (not self.alike)
+        last = (np.asarray(column) == 1 + self.columns) & (not self.fine_back)
         return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
 
 

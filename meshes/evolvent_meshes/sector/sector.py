@@ -36,6 +36,13 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
     The nodes of cut_high are those of cut_low turned by 2π/z.
 
     Raises MeshError for an unknown shape, a flank start off the involute, or cells of bad quality.
+
+    >>> gear = GearParameters.from_rack(
+    ...     z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=60.0
+    ... )
+    >>> mesh = sector_mesh(gear, SectorResolution(profile_elements=12, face_elements=4))
+    >>> mesh.shape, len(mesh.facets["flank"])
+    ('hexahedron', 48)
     """
     if shape not in MINIMUM_QUALITY:
         raise MeshError(f"sector: wanted one of {', '.join(MINIMUM_QUALITY)}, found shape {shape!r}")

@@ -127,7 +127,7 @@ def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
     if np.any(indices < 0):
         missing = facets[np.argmax(indices < 0)]
         raise MeshError(
-            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none; mesh the "
+            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()} of no facet; mesh the "
             "boundary together with the volume"
         )
     return indices
@@ -230,7 +230,7 @@ def _first_parameter(function: Callable[..., Any], *names: str) -> str:
             return name
     raise RuntimeError(
         f"dolfinx {dolfinx.__version__}: {function.__name__} wanted with one of the arguments {', '.join(names)}, "
-        f"found {', '.join(known)}; solver/evolvent/fem/backend/dolfinx_compat.py must learn this version"
+        f"found {', '.join(known)}; evolvent.fem.backend.dolfinx_compat has to be adapted to this version"
     )
 
 
@@ -284,5 +284,5 @@ def _defaults(package: str, *names: str) -> dict[str, Any]:
             return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(loaded, table).items()}
     raise RuntimeError(
         f"{package}: wanted one of {', '.join(names)}, found none; "
-        "evolvent.fem.backend.dolfinx_compat must learn this version"
+        "evolvent.fem.backend.dolfinx_compat has to be adapted to this version"
     )

@@ -160,7 +160,7 @@ def test_unknown_facet_is_refused(block):
     mesh = dolfinx_compat.create_mesh(points, cells, shape, order)
     wrong = facets[:1].copy()
     wrong[0, 0] = np.argmax(points[:, 0])
-    with pytest.raises(ValueError, match="which are none"):
+    with pytest.raises(ValueError, match="of no facet"):
         dolfinx_compat.facet_indices(mesh, wrong)
 
 

@@ -1,4 +1,8 @@
-"""Checks of values given by a user; their errors say what was wanted, what was found and what to do."""
+"""Checks of values given by a user; their errors say what was wanted, what was found and what to do.
+
+Parameters that the functions share: `what`, the name of the input; `value`, what was given; `wanted`, `remedy`, words
+for the message.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""Interface to dolfinx from version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on it.
+"""Interface to dolfinx, version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on the version.
 
-Differences are told by the names of functions and arguments, not by version numbers. Each body is meshed and assembled
-on one process (MPI.COMM_SELF). Node numbers are those of the caller's mesh, in which dolfinx numbers nodes anew: the
-maps back are here.
+Versions are distinguished by the names of functions and arguments, not by numbers. Each body is meshed and assembled on
+one process (MPI.COMM_SELF). dolfinx renumbers nodes and cells; the functions here take and give the caller's numbers.
 """
 
 from __future__ import annotations

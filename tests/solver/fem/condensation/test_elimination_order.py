@@ -34,11 +34,12 @@ def cut(matrix: sp.csr_matrix, graph: sp.csr_matrix | None = None) -> np.ndarray
     return bisect(vertices)[place]
 
 
-def leaves(part: SeparatorTree) -> Iterator[SeparatorTree]:
-    if not part.children:
-        yield part
-    for inner in part.children:
-        yield from leaves(inner)
+def leaves(tree: SeparatorTree) -> Iterator[SeparatorTree]:
+    """The ranges of rows that are not divided."""
+    if not tree.children:
+        yield tree
+    for child in tree.children:
+        yield from leaves(child)
 
 
 @pytest.mark.parametrize("dofs", [1, 3])
@@ -64,7 +65,7 @@ def test_rows_of_a_node_are_one_vertex() -> None:
 
 
 def test_nothing_separates_a_full_graph() -> None:
-    """Everything is in the separator, so that the recursion comes to an end."""
+    """All rows are in the separator, so that the recursion ends."""
     assert (bisect(compress(sp.csr_matrix(np.diag(np.arange(1.0, 7.0)) + 1.0), None)[0]) == SEPARATOR).all()
     full = sp.csr_matrix(np.ones((6, 6)) + np.eye(6))
     order, tree = dissect(full, None, 2)
@@ -130,7 +131,7 @@ def test_separator_tree_tiles_the_rows() -> None:
 
 
 def test_elimination_order_is_reproducible() -> None:
-    """Runs repeat bit for bit, so the seeds are fixed."""
+    """Seeds are fixed: the same graph has the same order twice."""
     assert np.array_equal(dissect(grid(30, 30), None, 50)[0], dissect(grid(30, 30), None, 50)[0])
 
 

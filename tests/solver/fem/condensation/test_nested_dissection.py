@@ -60,7 +60,7 @@ def widely_coupled() -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
 
 
 def test_compliance_does_not_depend_on_the_dissected_graph() -> None:
-    """Cuts along another graph than the matrix's own, thinner in places: C stays the one of dense algebra."""
+    """Dissection along another graph than the matrix's, with fewer entries: C equals that of dense algebra."""
     coupled, mesh, face = widely_coupled()
     C = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
     p = face.toarray()

@@ -51,7 +51,7 @@ def test_compliance_of_unsymmetric_functionals() -> None:
 
 
 def test_compliance_outlives_the_factor() -> None:
-    """The compliance is MUMPS' own memory: it stays valid when all else is gone and other factors come and go."""
+    """The compliance is memory of MUMPS: it stays valid when the factor and the matrices are freed and others made."""
     matrix, free, functionals = block((5, 5, 3))
     C = compliance(matrix, functionals, free=free)
     view, kept = C[3:, 2:], C.copy()

@@ -27,9 +27,10 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 
 MICROMETRE = 1e-3
+"""[mm]."""
 
 
-def frame(angle: Floats) -> tuple[Floats, Floats]:
+def transverse_frame(angle: Floats) -> tuple[Floats, Floats]:
     """Unit vectors e(γ) and t(γ) (…, 3) of the transverse plane, at angles γ (…) [rad]."""
     cosine, sine, zero = np.cos(angle), np.sin(angle), np.zeros_like(angle)
     return np.stack([cosine, sine, zero], axis=-1), np.stack([-sine, cosine, zero], axis=-1)
@@ -57,7 +58,8 @@ class Flank:
 
     def _broadcast(self, roll_length: ArrayLike, z: ArrayLike) -> tuple[Floats, Floats, Floats, Floats]:
         rho, height = np.broadcast_arrays(np.asarray(roll_length, dtype=float), np.asarray(z, dtype=float))
-        radial, tangent = frame(self.gear.base_half_angle - rho / self.gear.base_radius + self.gear.twist * height)
+        angle = self.gear.base_half_angle - rho / self.gear.base_radius + self.gear.twist * height
+        radial, tangent = transverse_frame(angle)
         return rho, height, radial, tangent
 
     def point(self, roll_length: ArrayLike, z: ArrayLike) -> Floats:

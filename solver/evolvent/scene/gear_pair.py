@@ -11,7 +11,7 @@ from evolvent.scene.schema.errors import NOTHING, Problem, shown
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications, involute
+from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
 from evolvent_meshes.gears.pair import GearPair
 
 ADDENDUM, DEDENDUM, RACK_TIP_RADIUS = 1.0, 1.25, 0.38
@@ -116,8 +116,8 @@ def working_angle(normal: float, transverse: float, shift_per_tooth: float) -> f
 
     normal α_n and transverse α_t pressure angle [rad]. Raises ValueError if no angle from 0 to 60° satisfies that.
     """
-    wanted, steepest = involute(transverse) + 2 * math.tan(normal) * shift_per_tooth, math.radians(60)
-    return float(brentq(lambda angle: involute(angle) - wanted, 0.0, steepest, xtol=1e-15))
+    wanted, steepest = involute_function(transverse) + 2 * math.tan(normal) * shift_per_tooth, math.radians(60)
+    return float(brentq(lambda angle: involute_function(angle) - wanted, 0.0, steepest, xtol=1e-15))
 
 
 def working_angle_of(pinion: GearParameters, wheel: GearParameters) -> float:

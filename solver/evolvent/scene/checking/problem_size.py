@@ -57,7 +57,7 @@ def sector_size(resolution: SectorResolution, order: int, plane: bool) -> Sector
     A section without holes has corners − edges + cells = 1, and its edges count 4 cells and the outline's twice.
     """
     own = resolution
-    alike, rows = own.back_alike, own.profile_elements // 3
+    alike, rows = own.fine_back, own.profile_elements // 3
     inner = own.core_elements + 1 + alike  # columns between the bands of both sides
     below = own.fillet_elements + own.back_elements - 2 * own.neck_elements + inner  # columns of the rim
     tooth = rows * (13 * (1 + alike) + own.core_elements + 1 - alike)  # 3 × 3 thin cells, 4 that join, then coarse ones

@@ -14,7 +14,7 @@ from evolvent.scene.skips import is_plane, skips
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.sector.root_band import LONGEST
+from evolvent_meshes.sector.root_band import FIRST_CELL_ASPECT
 from evolvent_meshes.sector.section import SectorResolution
 
 ELEMENTS_PER_WIDTH = {"quick": 1.7, "standard": 3.0, "fine": 6.0}
@@ -106,7 +106,7 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
     """The back flank like the loaded one, and three times as many elements in all the rest."""
     return replace(
         resolution,
-        back_alike=True,
+        fine_back=True,
         core_elements=3 * resolution.core_elements,
         rim_elements=3 * resolution.rim_elements,
         fillet_elements=3 * resolution.fillet_elements,
@@ -117,7 +117,7 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
 
 def _neck_elements(depth: float) -> int:
     """Cells n that reach down the neck, the first 2 and the last at most 2ⁿ depths [modules] of the layers long."""
-    return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (LONGEST * depth))))
+    return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (FIRST_CELL_ASPECT * depth))))
 
 
 class _ContactWidth:

@@ -72,7 +72,7 @@ def _beside_hertz(run: RunData, index: int) -> Named:
     yield "off_hertz_largest_xi_mm", float(ξ[middle][worst])
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near_pitch_line_median_MPa", float(np.median(peak[near]))
-    yield "largest_xi_mm", largest_peak(run, index).ξ
+    yield "largest_xi_mm", largest_peak(run, index).roll_distance
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Named:

@@ -15,10 +15,10 @@ import numpy as np
 from evolvent.results.contact_slices import Slices
 from evolvent.results.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
 from evolvent.results.run_data import RunData, SolvedPosition
-from evolvent.results.tip_zones import AT_THE_END
+from evolvent.results.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Floats, Ints
 
-BESIDE = 3.0 * AT_THE_END
+BESIDE = 3.0 * AT_LIMIT
 """Roll distance [mm] from the end of a tip-edge zone within which a spur pair's position stands at it."""
 
 
@@ -115,15 +115,15 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     angle, position, tooth, *values = columns
     radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
     curve = Engagement(run.frictions[index], angle, position, tooth, *values)
-    there = [np.abs(radius * angle - peak.ξ) <= BESIDE for peak in entered]
+    there = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in entered]
     return replace(
         curve,
         at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
         zone_ends=tuple(
-            TurnPeak(peak.ξ / radius, peak.pressure, True, int((peak.ξ / radius - run.angles[0]) // run.pitch))
-            for peak in entered
+            TurnPeak(angle, peak.pressure, True, int((angle - run.angles[0]) // run.pitch))
+            for peak in entered for angle in [peak.roll_distance / radius]
         ),
-    )
+    )  # fmt: skip
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:

@@ -185,7 +185,8 @@ def _diameters(axes: Axes, run: RunData) -> None:
 
 def _see_map(run: RunData, index: int) -> str:
     top = largest_peak(run, index)
-    side = "below the pitch line, towards the root" if top.ξ < 0 else "above the pitch line, towards the tip"
-    where = f"at ξ = {signed(top.ξ, 2)} mm, {side}" if np.isfinite(top.ξ) else "nowhere"
+    ξ = top.roll_distance
+    side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
+    where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
     see = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
     return see + "; dashed: contact lines of rigid flanks."

@@ -80,7 +80,8 @@ def _largest(axes: Axes, run: RunData, index: int) -> None:
     face = {"markerfacecolor": "white" if top.at_zone_end else INK}
     label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")
     size = bar if np.isfinite(bar) else None
-    axes.errorbar(top.ξ, top.pressure, yerr=size, color=INK, capsize=4.0, linewidth=1.2, label=label, **(HOLLOW | face))
+    line = {"color": INK, "capsize": 4.0, "linewidth": 1.2}
+    axes.errorbar(top.roll_distance, top.pressure, yerr=size, label=label, **(line | HOLLOW | face))
 
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:

@@ -72,7 +72,7 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
 
 
 def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> np.ndarray:
-    """Whether heights z (n,) [mm] lie in layers in which a tooth pair bears on a tip edge, limits included: (n,) bool."""
+    """Whether heights z (n,) [mm] lie in (closed) layers in which a tooth pair bears on a tip edge: (n,) bool."""
     layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
     away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
     return np.asarray((away <= HEIGHT_TOLERANCE).any(axis=1))
@@ -99,7 +99,7 @@ def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: floa
 
 
 def fitted_peak(s: Floats, p: Floats, w: Floats, load: float) -> tuple[float, float]:
-    """Peak p0 [MPa] and half-width b [mm] of the half-ellipse with the same line load and second moment as the pressure.
+    """Peak p0 [MPa] and half-width b [mm] of the half-ellipse that has the pressure's line load and second moment.
 
     s, p, w: (n,) coordinate across the contact line [mm], pressure [MPa], weight of the quadrature points; load: F in
     N/mm. b = 2√(M_2/F), p0 = 2F/πb with M_2 the second moment about the centre of pressure: integrals of the contact

@@ -74,7 +74,7 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
     curve over ξ there.
     """
     cuts = [each[index].cut for each in run.positions]
-    z, line = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ"))
+    z, line = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "roll_distance"))
     peak = np.concatenate([pooled_peaks(cut) for cut in cuts])
     reach = 0.75 * run.pair.pinion.base_radius * run.pitch / len(run.positions)
     heights, known = np.unique(z), np.isfinite(peak)

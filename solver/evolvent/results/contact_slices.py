@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -41,6 +41,11 @@ class Slices:
     """(n,) Hertz' p0 for the slice's line load and the exact curvatures [MPa]."""
     edge: np.ndarray
     """(n,) bool, whether the slice bears on a tip edge."""
+
+    @staticmethod
+    def joined(parts: Sequence[Slices]) -> Slices:
+        """The slices of several positions in one."""
+        return Slices(*(np.concatenate([getattr(cut, each.name) for cut in parts]) for each in fields(Slices)))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -130,9 +130,7 @@ def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[Lin
     """Of a spur pair; a helical line's own slices enter the zones one by one, see `line_peak`."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
-    cuts = [each[index].cut for each in run.positions]
-    whole = Slices(*(np.concatenate([getattr(cut, each.name) for cut in cuts]) for each in fields(Slices)))
-    return zone_end_peaks(run.pair, whole, inner)
+    return zone_end_peaks(run.pair, Slices.joined([each[index].cut for each in run.positions]), inner)
 
 
 def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:

@@ -9,7 +9,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.results.contact_slices import on_tip_edge
+from evolvent.results.contact_slices import Slices, on_tip_edge
 from evolvent.results.drawing.style import ABOVE, INK, PRESSURE_MAP, foot, sheet
 from evolvent.results.engagement import largest_peak
 from evolvent.results.fields.flank_field import flank_field, flank_patch
@@ -74,7 +74,8 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
     curve over ξ there.
     """
     cuts = [each[index].cut for each in run.positions]
-    z, line = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "roll_distance"))
+    whole = Slices.joined(cuts)
+    z, line = whole.z, whole.roll_distance
     peak = np.concatenate([pooled_peaks(cut) for cut in cuts])
     reach = 0.75 * run.pair.pinion.base_radius * run.pitch / len(run.positions)
     heights, known = np.unique(z), np.isfinite(peak)

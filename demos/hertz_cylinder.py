@@ -235,8 +235,8 @@ def _stress(axis: Axes, shown: Solution) -> None:
     from matplotlib.collections import PolyCollection
 
     corners, values = [], []
-    for index, prepared in enumerate(shown.prepared):
-        body = prepared.assembled.body
+    for index, condensed in enumerate(shown.condensed):
+        body = condensed.assembled.body
         u = shown.displacement(index)
         position = body.mesh.points[:, :2] + u
         corners.append(position[body.mesh.cells[:, :4]])

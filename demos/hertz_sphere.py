@@ -206,8 +206,8 @@ def _section(axis: Axes, solution: Solution) -> None:
     from matplotlib.collections import PolyCollection
 
     corners, values = [], []
-    for index, prepared in enumerate(solution.prepared):
-        body = prepared.assembled.body
+    for index, condensed in enumerate(solution.condensed):
+        body = condensed.assembled.body
         u = solution.displacement(index)
         facets = body.mesh.facets["symmetry_y"]
         behind = _cells_of(body.mesh, facets)

@@ -143,7 +143,7 @@ def _blocks(axis: Axes, solution: Solution, scale: float = 300.0) -> None:
     from matplotlib.collections import PolyCollection
 
     for index, colour in ((0, "#9ecae1"), (1, "#fdd0a2")):
-        mesh = solution.prepared[index].assembled.body.mesh
+        mesh = solution.condensed[index].assembled.body.mesh
         place = mesh.points[:, :2] + scale * solution.displacement(index)
         corners = place[mesh.cells[:, : 3 if mesh.shape == "triangle" else 4]]
         axis.add_collection(PolyCollection(list(corners), facecolors=colour, edgecolors="0.35", linewidths=0.7))

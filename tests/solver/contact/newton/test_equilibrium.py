@@ -12,19 +12,19 @@ from evolvent import (
     Freedom,
     Material,
     NotConverged,
-    Position,
     Problem,
     Rigid,
     Step,
-    prepare,
+    StepSystem,
+    condense_bodies,
     solve,
 )
 from evolvent.contact.newton.equilibrium import (
     TOLERANCE,
-    Start,
+    ContactEquations,
+    InitialGuess,
     _accuracy,
     _assumed_contact,
-    _Contact,
     frictional,
     frictionless,
     normal_part,
@@ -60,8 +60,8 @@ def ball(friction: float = FRICTION) -> Problem:
     return Problem(bodies, (Contact((0, "arc"), (1, "top"), friction, reach=0.1),))
 
 
-def _position(problem: Problem) -> Position:
-    return Position(problem, prepare(problem), Step())
+def _position(problem: Problem) -> StepSystem:
+    return StepSystem(problem, condense_bodies(problem), Step())
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
@@ -76,7 +76,7 @@ def test_tangent(make, law):
         "coulomb": lambda t: coulomb(t, FRICTION),
         "starting guess": lambda t: starting_guess(t, FRICTION, np.zeros((len(t), t.shape[1] - 1))),
     }
-    problem = _Contact(system, laws[law], position.slip(None))
+    problem = ContactEquations(system, laws[law], position.slip(None))
     step, compared = 2e-4, 0
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -112,7 +112,7 @@ def test_work_is_the_slope_of_the_energy(make):
     relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
     and Newton's step begins with a negative one."""
     system = normal_part(_position(make()).system())
-    problem = _Contact(system, lambda t: coulomb(t, 0.0))
+    problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
     solution = frictionless(system)
     op = system.operator
 
@@ -133,7 +133,7 @@ def test_work_is_the_slope_of_the_energy(make):
         assert slopes[0] < 0.0 and np.all(np.diff(slopes) >= 0.0)
 
 
-def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:
+def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
     M = problem.system.operator.tangent(problem.state(x)[2])
     H = problem.system.motion / problem.system.lever
     contact = np.hstack([np.eye(len(H)) + M @ problem.system.compliance, -(M @ H)])
@@ -177,10 +177,10 @@ def test_action_is_reaction(make, friction):
     problem = Problem(problem.bodies, tuple(Contact(c.first, c.second, friction, c.reach) for c in problem.contacts))
     solution = solve(problem)
     total, moment = [], []
-    for prepared, forces in zip(solution.prepared, solution.nodal_forces, strict=True):
-        d = prepared.assembled.d
-        nodal = (prepared.forces.T @ forces).reshape(-1, d)
-        points = prepared.assembled.body.mesh.points
+    for condensed, forces in zip(solution.condensed, solution.nodal_forces, strict=True):
+        d = condensed.assembled.d
+        nodal = (condensed.test_functionals.T @ forces).reshape(-1, d)
+        points = condensed.assembled.body.mesh.points
         total.append(nodal.sum(axis=0))
         moment.append(np.cross(points, np.pad(nodal, ((0, 0), (0, 3 - d)))).sum(axis=0))
     contact = solution.contacts[0]
@@ -217,7 +217,7 @@ def test_bad_guess_is_no_failure():
     unknown, start = np.zeros((len(system.operator.weights), 1)), frictionless(normal_part(system))
     wanted = frictional(system, FRICTION, slip, unknown, start)
     for apart in (-1.0, 1.0):
-        guess = Start(np.zeros_like(wanted.force), wanted.motion + apart)
+        guess = InitialGuess(np.zeros_like(wanted.force), wanted.motion + apart)
         found = frictional(system, FRICTION, slip, unknown, start, guess)
         assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
 

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from evolvent import NotConverged
 from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.newton_steps import NewtonSteps
-from evolvent.contact.newton.reduced_tangent import KeptColumns
+from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
 
 N, K = 60, 3
@@ -51,13 +51,13 @@ def error(tangent: Tangent, found: np.ndarray, right: np.ndarray) -> float:
 def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
     """In which precision each factor was made, and of how many columns."""
     made: list[tuple[str, int]] = []
-    original = KeptColumns.of
+    original = ReducedTangent.of
 
     def counted(M, A, H, columns):
         made.append((A.dtype.name, len(columns)))
         return original(M, A, H, columns)
 
-    monkeypatch.setattr(KeptColumns, "of", staticmethod(counted))
+    monkeypatch.setattr(ReducedTangent, "of", staticmethod(counted))
     return made
 
 

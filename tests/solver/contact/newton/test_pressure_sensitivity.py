@@ -9,7 +9,7 @@ import pytest
 
 from evolvent import NotConverged
 from evolvent.contact.newton.equilibrium import frictionless
-from evolvent.contact.newton.pressure_sensitivity import PressureResponse
+from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.gears.sweep.position import shared_position
 from tests.support.gear_cases import model_of, spur_scene
 
@@ -28,7 +28,7 @@ def test_response_is_the_derivative() -> None:
         for sign in (-1.0, 1.0)
     )
     slope = (upper.traction[:, 0] - lower.traction[:, 0]) / (2.0 * STEP)
-    found = PressureResponse(shared.system, smooth)(opening)
+    found = PressureSensitivity(shared.system, smooth)(opening)
     pressed = np.minimum(lower.traction[:, 0], upper.traction[:, 0]) > 0.0
     assert pressed.sum() > 20
     assert np.linalg.norm((found - slope)[pressed]) < 1e-4 * np.linalg.norm(slope[pressed])
@@ -40,7 +40,7 @@ def test_the_load_stays() -> None:
     model = model_of(spur_scene())
     shared = shared_position(model, np.radians(1.0), (0.0, 0.0), [0.0], None)
     operator = shared.system.operator
-    change = PressureResponse(shared.system, shared.smooth)(np.linspace(0.0, 1e-3, len(operator.weights)))
+    change = PressureSensitivity(shared.system, shared.smooth)(np.linspace(0.0, 1e-3, len(operator.weights)))
     moment = shared.system.motion.T @ operator.forces(change[:, None]).ravel()
     size = np.abs(shared.system.motion).T @ np.abs(operator.forces(change[:, None]).ravel())
     assert abs(moment[0]) < 1e-10 * size[0]
@@ -52,4 +52,4 @@ def test_nothing_touches() -> None:
     shared = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
     apart = replace(shared.smooth, traction=np.zeros_like(shared.smooth.traction))
     with pytest.raises(NotConverged, match="no node in contact"):
-        PressureResponse(shared.system, apart)
+        PressureSensitivity(shared.system, apart)

@@ -14,7 +14,20 @@ import scipy.sparse as sp
 import ufl
 from dolfinx import fem
 
-from evolvent import Body, Contact, Fixed, Freedom, Material, MeshData, Nitsche, Position, Problem, Rigid, Step, prepare
+from evolvent import (
+    Body,
+    Contact,
+    Fixed,
+    Freedom,
+    Material,
+    MeshData,
+    Nitsche,
+    Problem,
+    Rigid,
+    Step,
+    StepSystem,
+    condense_bodies,
+)
 from evolvent.contact.nitsche.contact_operator import sandwiched
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction
@@ -39,14 +52,14 @@ def merged(request):
     return Merged(upper, lower, (STEEL, ALUMINIUM))
 
 
-def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) -> Position:
+def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) -> StepSystem:
     down = "yz"[merged.d - 2]
     bodies = (
         Body(merged.upper, STEEL, rigid=Rigid("top", (Freedom(down, load=-1000.0),))),
         Body(merged.lower, ALUMINIUM, supports=(Fixed("bottom"),)),
     )
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), friction, reach=0.5),), Nitsche(theta=theta))
-    return Position(problem, prepare(problem), Step())
+    return StepSystem(problem, condense_bodies(problem), Step())
 
 
 def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
@@ -162,7 +175,7 @@ def test_residual_and_tangent(merged, θ):
     a(u,v) − θ∫F(u)·ΓF(v) + ∫(λn + τ)·([v] − θF(v)) with UFL's integrals and UFL's derivative."""
     position = _position(merged, theta=θ)
     system = FullContact(position, lambda t: coulomb(t, FRICTION), None)
-    values = position.prepared[0].tractions["bottom"].stabiliser
+    values = position.condensed[0].tractions["bottom"].stabiliser
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
     energy = ufl.inner(merged.stress(u), ufl.sym(ufl.grad(v))) * ufl.Measure("dx", domain=merged.mesh)
     K = merged.matrix(energy) - θ * _constant_term(merged, values)
@@ -199,9 +212,9 @@ def test_sandwiched():
         assert sandwiched(N[:0], D[:0]).shape == wanted.shape and sandwiched(N[:0], D[:0]).nnz == 0
 
 
-def _unknowns(position: Position, size: int) -> np.ndarray:
+def _unknowns(position: StepSystem, size: int) -> np.ndarray:
     """(nodal displacements of both bodies) from (free degrees of freedom, the upper body's rigid motion)."""
-    first, second = (b.assembled for b in position.prepared)
+    first, second = (b.assembled for b in position.condensed)
     n = first.stiffness.shape[0]
     T = np.zeros((n + second.stiffness.shape[0], size))
     T[first.free, np.arange(len(first.free))] = 1.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent import Freedom, Nitsche, Placement, Position, Step, prepare
+from evolvent import Freedom, Nitsche, Placement, Step, StepSystem, condense_bodies
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
 from tests.solver.contact.newton.test_equilibrium import ball, cylinder
@@ -21,7 +21,7 @@ def test_condensed_is_full(make, θ, μ):
     and without friction, 2D and 3D)."""
     problem = replace(make(μ), nitsche=Nitsche(theta=θ))
     x, system = full_solution(problem, Step())
-    position = Position(problem, prepare(problem), Step())
+    position = StepSystem(problem, condense_bodies(problem), Step())
     solution, _ = position.solve(None)
     assert np.max(_differences(position, solution, x, system)) < 1e-8
 
@@ -32,11 +32,11 @@ def test_after_finite_sliding(θ, μ):
     """The block has moved 0.8 mm sideways (several nodes) under the cylinder: new projections, the old compliance, and
     the slip since the first step. The block then drags the cylinder along with μ times the load."""
     problem = replace(cylinder(μ, first=1, extra=(Freedom("x", displacement=0.0),)), nitsche=Nitsche(theta=θ))
-    prepared = prepare(problem)
+    condensed = condense_bodies(problem)
     rest = Placement.at_rest(2)
-    _, before = Position(problem, prepared, Step()).solve(None)
+    _, before = StepSystem(problem, condensed, Step()).solve(None)
     moved = Step(placements=(rest, Placement(np.eye(2), np.array([0.8, 0.0]))))
-    position = Position(problem, prepared, moved)
+    position = StepSystem(problem, condensed, moved)
     x, system = full_equilibrium(position, position.slip(before))
     solution, _ = position.solve(before)
     assert np.max(_differences(position, solution, x, system)) < 1e-8
@@ -50,7 +50,7 @@ def _differences(position, solution, x, system):
     motion = np.concatenate([m[p.free] for m, p in zip(solution.motions, position.motions, strict=True)])
     pairs = [(solution.contacts[0].traction, traction), (motion, x[system.K.shape[0] :])]
     at = 0
-    for index, body in enumerate(position.prepared):
+    for index, body in enumerate(position.condensed):
         a = body.assembled
         u = np.zeros(a.stiffness.shape[0])
         u[a.free] = x[at : at + len(a.free)]
@@ -65,7 +65,7 @@ def test_full_tangent(θ):
     """∂residual/∂x against central differences in a random direction near the solution, 1e-6 relative."""
     problem = replace(cylinder(), nitsche=Nitsche(theta=θ))
     x, _ = full_solution(problem, Step())
-    position = Position(problem, prepare(problem), Step())
+    position = StepSystem(problem, condense_bodies(problem), Step())
     system = FullContact(position, lambda t: coulomb(t, 0.2), position.slip(None))
     rng = np.random.default_rng(0)
     x = x * (1.0 + 1e-3 * rng.normal(size=len(x)))

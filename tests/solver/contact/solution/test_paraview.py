@@ -75,8 +75,8 @@ def written(tmp_path_factory) -> tuple[list[Solution], pyvista.PVDReader]:
 
 @pytest.mark.parametrize("step", [0, 1])
 def test_bodies(written, step):
-    """Places, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along the
-    turned height and σ_z = −νp, in ParaView's order of components."""
+    """Positions, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along
+    the rotated height and σ_z = −νp, in ParaView's order of components."""
     solutions, reader = written
     reader.set_active_time_value(step + 1.0)
     p, R = (30.0, np.eye(2)) if step == 0 else (60.0, TURN)
@@ -111,7 +111,7 @@ def test_averages_keep_the_force(tmp_path):
     (solution,) = sweep(cylinder(), [Step()])
     contact = solution.contacts[0]
     surface = pyvista.get_reader(write_paraview(solution, tmp_path)).read()[2]
-    hats = solution.prepared[0].surfaces["arc"].weights()
+    hats = solution.condensed[0].surfaces["arc"].weights()
     assert hats @ surface["pressure_MPa"] == pytest.approx(contact.weights @ contact.pressure, rel=1e-12)
     assert surface["pressure_MPa"].min() == 0.0
     assert 0.9 * contact.pressure.max() < surface["pressure_MPa"].max() < contact.pressure.max()

@@ -16,14 +16,14 @@ from evolvent import (
     Freedom,
     Material,
     MeshData,
+    PairingNotSettled,
     Placement,
     Problem,
     Rigid,
     SearchError,
+    SmallStrainExceeded,
     Solution,
     Step,
-    TooLarge,
-    Unsettled,
     solve,
     sweep,
 )
@@ -170,7 +170,7 @@ def test_turned_about_its_centre(first):
 
 def test_large_turn_is_refused():
     """0.8 rad would lengthen the disc by a third: said, with the angle and what to do."""
-    with pytest.raises(TooLarge, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
+    with pytest.raises(SmallStrainExceeded, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
         solve(turned_disc(0.8, 0))
 
 
@@ -187,19 +187,20 @@ def test_large_strain_is_refused():
     """Strains 1000/E: 0.19 is solved, 0.21 and 2 are refused with what was found."""
     assert solve(column(1000 / 0.19)).motions[0][0] == pytest.approx(-2 * 0.19 - 4 * 0.019, rel=1e-6)
     for strain in (0.21, 2.0):
-        with pytest.raises(TooLarge, match=rf"body 0.*strain of at most 0\.2 in every cell.*found {strain:g};"):
+        message = rf"body 0.*strain of at most 0\.2 in every cell.*found {strain:g};"
+        with pytest.raises(SmallStrainExceeded, match=message):
             solve(column(1000 / strain))
 
 
 def test_what_does_not_settle_is_refused(monkeypatch):
     """With one search allowed, both a reach that is too small and a placement in overlap are refused, with what was
     found and what to do."""
-    monkeypatch.setattr(displaced_search, "ROUNDS", 1)
+    monkeypatch.setattr(displaced_search, "SEARCHES", 1)
     with pytest.raises(
-        Unsettled, match=r"'arc' of body 0.*found an overlap of 0\.0\d+ mm without; give .* larger reach"
+        PairingNotSettled, match=r"'arc' of body 0.*found an overlap of 0\.0\d+ mm without; give .* larger reach"
     ):
         solve(cylinder(1e-3, Freedom("y", displacement=-0.15)))
-    with pytest.raises(Unsettled, match=r"elsewhere after 1 searches \(gaps off by .*smaller steps"):
+    with pytest.raises(PairingNotSettled, match=r"elsewhere after 1 searches \(gaps off by .*smaller steps"):
         solve(*half_discs(0.2, placed=True))
 
 

@@ -15,21 +15,21 @@ from evolvent import (
     Contact,
     ContactResult,
     Fixed,
-    Position,
     Problem,
     ScatteredPressureWarning,
     Step,
-    prepare,
+    StepSystem,
+    condense_bodies,
     solve,
 )
-from evolvent.contact.problem.step_pairing import Meeting
-from evolvent.contact.step.peak_scatter import LARGE, parabola, peak_scatter
+from evolvent.contact.step.paired_surfaces import PairedSurfaces
+from evolvent.contact.step.peak_scatter import SCATTER_LIMIT, parabola, peak_scatter
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import press_fit, punch, rubber
 
 
-def flat(d: int) -> Meeting:
+def flat(d: int) -> PairedSurfaces:
     """Pairs of two flat blocks of 8 mm, with cells of 0.5 and 0.8 mm."""
     if d == 2:
         upper, lower = rectangle(8.0, 1.0, 16, 1), rectangle(8.0, 1.0, 10, 1, origin=(0.0, -1.0))
@@ -38,28 +38,28 @@ def flat(d: int) -> Meeting:
         lower = box((8.0, 8.0, 1.0), (10, 10, 1), 1, origin=(0.0, 0.0, -1.0))
     bodies = Body(upper, supports=(Fixed("top"),)), Body(lower, supports=(Fixed("bottom"),))
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
-    return Position(problem, prepare(problem), Step()).meetings[0]
+    return StepSystem(problem, condense_bodies(problem), Step()).paired[0]
 
 
 @pytest.fixture(scope="module", params=[2, 3])
-def meeting(request) -> Meeting:
+def paired(request) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_smooth_pressures(meeting):
+def test_smooth_pressures(paired):
     """Uniform, a square root, and Hertz' over ten cells: smooth but for rounding."""
-    x = meeting.operator.points[:, :-1]
+    x = paired.operator.points[:, :-1]
     r = np.linalg.norm(x - 4.1, axis=1)
     hertz = 9.0 * np.sqrt(np.maximum(0.0, 1.0 - (r / 2.5) ** 2))
     for pressure in (np.full(len(x), 3.0), np.sqrt(1.0 + x[:, 0]), hertz):
-        assert peak_scatter(meeting, pressure) < 1e-9
+        assert peak_scatter(paired, pressure) < 1e-9
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0])
-def test_waves(meeting, period):
+def test_waves(paired, period):
     """±10 % that come and go with each cell of 0.5 mm, or with every second: found at about that."""
-    x = meeting.operator.points[:, 0]
-    assert peak_scatter(meeting, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
+    x = paired.operator.points[:, 0]
+    assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
 
 
 def test_weights_below_zero():
@@ -71,9 +71,9 @@ def test_weights_below_zero():
     np.testing.assert_allclose(parabola(points, weights, values), values, atol=1e-12)
 
 
-def test_nothing_presses(meeting):
+def test_nothing_presses(paired):
     """No pressure, no scatter."""
-    assert peak_scatter(meeting, np.zeros(len(meeting.operator.weights))) == 0.0
+    assert peak_scatter(paired, np.zeros(len(paired.operator.weights))) == 0.0
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
@@ -87,7 +87,7 @@ def test_hertz(cells, first):
 
 
 def warned(contact: ContactResult) -> bool:
-    return contact.peak_scatter > LARGE
+    return contact.peak_scatter > SCATTER_LIMIT
 
 
 @pytest.mark.parametrize(("cells", "over"), [(4.0, 0.25), (8.0, 0.12)])

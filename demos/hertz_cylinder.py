@@ -8,7 +8,7 @@ problem. Which body carries the normals is part of the problem: the contact half
 small displacements along the cylinder's normals or the block's differ by 0.3 % in the peak.
 
 At a/4, a/8, a/16 a cell of the cylinder ends at Hertz' edge of contact. Where the edge cuts a cell, the profile's error
-at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/solver/contact/test_verification.py.
+at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/solver/contact/test_hertz_problems.py.
 """
 
 from __future__ import annotations

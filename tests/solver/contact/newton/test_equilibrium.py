@@ -66,7 +66,7 @@ def _position(problem: Problem) -> StepSystem:
 
 @pytest.mark.parametrize("make", [cylinder, ball])
 @pytest.mark.parametrize("law", ["coulomb", "starting guess"])
-def test_tangent(make, law):
+def test_tangent_is_the_derivative_of_the_residual(make, law):
     """The residual's derivative [I + MA, −MH; Hᵀ, 0] against central differences, 1e-6 relative, near the solution with
     open, stuck and sliding points; and a Newton step is its inverse, as accurate as asked for."""
     position = _position(make())
@@ -95,7 +95,7 @@ def test_tangent(make, law):
     assert compared >= 3
 
 
-def test_accuracy_of_a_step():
+def test_accuracy_of_a_newton_step_follows_the_residual():
     """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
     leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
     hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
@@ -107,7 +107,7 @@ def test_accuracy_of_a_step():
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_work_is_the_slope_of_the_energy(make):
+def test_work_along_a_step_is_the_derivative_of_the_energy(make):
     """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
     relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
     and Newton's step begins with a negative one."""
@@ -141,7 +141,7 @@ def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_contact_conditions(make):
+def test_solution_meets_the_contact_and_friction_conditions(make):
     """At the solution: λ ≥ 0, no weighted overlap beyond what the flux term explains, |τ| ≤ μλ, the load is carried."""
     problem = make()
     position = _position(problem)
@@ -156,7 +156,7 @@ def test_contact_conditions(make):
     assert solution.imbalance < 1e-10
 
 
-def test_friction_changes_the_answer():
+def test_friction_adds_shear_and_stiffness():
     """The same cylinder with μ = 0 and 0.2: no shear without friction, and a stiffer contact with it."""
     smooth, rough = (solve(cylinder(μ)) for μ in (0.0, FRICTION))
     shear = [
@@ -170,7 +170,7 @@ def test_friction_changes_the_answer():
 
 @pytest.mark.parametrize("make", [lambda: cylinder(first=0), lambda: cylinder(first=1), ball])
 @pytest.mark.parametrize("friction", [0.0, FRICTION])
-def test_action_is_reaction(make, friction):
+def test_contact_forces_on_both_bodies_are_opposite(make, friction):
     """Nodal forces on both bodies cancel to 1e-10. Their moments cancel but for what small displacements leave out:
     the forces act at the undeformed surfaces, which are a gap apart where they touch; at most gap times force."""
     problem = make()
@@ -191,7 +191,7 @@ def test_action_is_reaction(make, friction):
     assert np.abs(moment[0] + moment[1]).max() <= np.abs(gap).max() * (contact.weights @ contact.pressure)
 
 
-def test_nothing_within_reach():
+def test_no_contact_within_reach_is_not_converged():
     """A cylinder that is loaded but held away from the block by its reach: an error that says what to do."""
     position = _position(cylinder(0.0))
     system = normal_part(position.system())
@@ -200,7 +200,7 @@ def test_nothing_within_reach():
         _assumed_contact(system, none)
 
 
-def test_start_does_not_matter():
+def test_solution_does_not_depend_on_the_initial_contact_set():
     """The frictionless solution from all points in contact and from six in the middle is the same."""
     system = normal_part(_position(cylinder(0.0)).system())
     few = np.zeros(len(system.operator.weights), dtype=bool)
@@ -209,7 +209,7 @@ def test_start_does_not_matter():
     assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
 
 
-def test_bad_guess_is_no_failure():
+def test_bad_initial_guess_does_not_prevent_the_solution():
     """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
     without a guess."""
     position = _position(cylinder())
@@ -222,7 +222,7 @@ def test_bad_guess_is_no_failure():
         assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
 
 
-def test_free_sideways_motion_needs_friction():
+def test_free_tangential_motion_needs_friction():
     """A cylinder that may also move sideways, pushed with less than μP: with friction it sticks; without friction on a
     flat first surface nothing resists, and the error names that."""
     push = (Freedom("x", load=0.3 * FRICTION * 5e3),)

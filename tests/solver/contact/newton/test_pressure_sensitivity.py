@@ -16,7 +16,7 @@ from tests.support.gear_cases import model_of, spur_scene
 STEP = 1e-7  # mm
 
 
-def test_response_is_the_derivative() -> None:
+def test_sensitivity_is_the_derivative_of_the_pressures() -> None:
     """He's pair with two teeth in contact: ∂λ for a wavy opening = the central difference of two solved states, within
     1e-4 of its norm over the points that are pressed in both; where nothing was pressed it is zero."""
     model = model_of(spur_scene())
@@ -35,7 +35,7 @@ def test_response_is_the_derivative() -> None:
     assert not found[smooth.traction[:, 0] == 0.0].any()
 
 
-def test_the_load_stays() -> None:
+def test_pressure_changes_keep_the_load() -> None:
     """The torque is held, so that the change of the pressure has none: Hᵀ ∂f = 0."""
     model = model_of(spur_scene())
     shared = shared_position(model, np.radians(1.0), (0.0, 0.0), [0.0], None)
@@ -46,7 +46,7 @@ def test_the_load_stays() -> None:
     assert abs(moment[0]) < 1e-10 * size[0]
 
 
-def test_nothing_touches() -> None:
+def test_sensitivity_of_an_open_contact_is_refused() -> None:
     """Without a pressed point there is no response."""
     model = model_of(spur_scene())
     shared = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)

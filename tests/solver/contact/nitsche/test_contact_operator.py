@@ -69,7 +69,7 @@ def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     return tuple((merged.d * n[:, None] + np.arange(merged.d)).ravel() for n in every)
 
 
-def test_projection(merged):
+def test_projection_agrees_with_ufl(merged):
     """M = ∫N_k N_l and MΠ = ∫N_1 N_2 of the operator over segments; UFL integrates them over inner facets."""
     op, (dofs1, dofs2) = _position(merged).operators[0], _surface_dofs(merged)
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
@@ -98,7 +98,7 @@ def _normal(merged: Merged):
     return ufl.as_vector([0.0] * (merged.d - 1) + [-1.0])
 
 
-def test_recovered_traction(merged):
+def test_recovered_traction_agrees_with_ufl(merged):
     """S of flux_recovery.py against UFL's σ(u)n."""
     found = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom")).traction
     exact = _traction(merged)
@@ -136,7 +136,7 @@ def _constant_term(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
     return (F.T @ merged.matrix(form) @ F).tocsr()
 
 
-def test_constant_term(merged):
+def test_constant_term_agrees_with_ufl(merged):
     """∫ γF_n² + γ_t|F_t|² against UFL's integral of the recovered flux."""
     nitsche = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom"))
     n = merged.d * len(merged.upper.points)
@@ -170,7 +170,7 @@ class _UflContact:
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_residual_and_tangent(merged, θ):
+def test_residual_and_tangent_agree_with_ufl(merged, θ):
     """The full residual and tangent of the solver at random states, with open, stuck and sliding points, against
     a(u,v) − θ∫F(u)·ΓF(v) + ∫(λn + τ)·([v] − θF(v)) with UFL's integrals and UFL's derivative."""
     position = _position(merged, theta=θ)
@@ -197,7 +197,7 @@ def test_residual_and_tangent(merged, θ):
     assert all(state.any() for state in (λ == 0.0, (λ > 0.0) & slides, (λ > 0.0) & ~slides)), "a state was not met"
 
 
-def test_sandwiched():
+def test_sandwiched_product_agrees_with_dense_matrices():
     """Σ_q N_qi D_q N_qj for points of three facets, of two and of three nodes, one of them visited twice, against the
     same sum in dense arrays, exact but for rounding; and no points at all: zero."""
     rng = np.random.default_rng(1)
@@ -225,7 +225,7 @@ def _unknowns(position: StepSystem, size: int) -> np.ndarray:
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["triangle", "quadrilateral", "tetrahedron", "hexahedron"])
-def test_inverse_trace_constants(shape, order):
+def test_inverse_trace_constants_agree_with_eigenvalues_of_ufl_forms(shape, order):
     """C_n and C_t of one sheared cell: the largest eigenvalue of UFL's ∫σ_n(v)² against its a(v, v)."""
     mesh = _one_cell(shape, order)
     surface = surface_of(mesh, "top")

@@ -63,7 +63,7 @@ def _modified(mesh: MeshData, safety: float):
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
 @pytest.mark.parametrize("safety", [1.25, SAFETY])
-def test_coercive(shape, order, safety):
+def test_stiffness_with_gamma_is_coercive(shape, order, safety):
     """θ = 1: K − ∫F·ΓF is positive definite from 1.25 times the inverse trace constants on (averaging the traction
     between cells costs up to 1.18 with second-order quadrilaterals and hexahedra): no eigenvalue is negative or zero,
     and its Cholesky factor solves with it."""
@@ -74,7 +74,7 @@ def test_coercive(shape, order, safety):
     assert np.abs(stiffness @ Factor(stiffness).solve(load) - load).max() < 1e-9
 
 
-def test_not_coercive_far_below_the_limit():
+def test_stiffness_far_below_the_limit_is_not_coercive():
     """A tenth of the limit is indefinite, and the factorisation says so: the test above can fail."""
     assert np.linalg.eigvalsh(_modified(_block("quadrilateral", 2), 0.1).toarray())[0] < 0.0
     with pytest.raises(NotPositiveDefinite):

@@ -34,7 +34,7 @@ def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("by_load", [False, True])
-def test_ratios_of_stiffness(d, friction, order, by_load):
+def test_column_of_any_stiffness_ratio_is_exact(d, friction, order, by_load):
     """A column of two blocks that cannot get wider, its top lowered by δ, either by prescribing δ or by the force that
     takes: the stress is δ/Σ(h/M), exactly, on any mesh. Force and sinking within 1e-6, for moduli of the upper block
     1e-8 to 1e8 times that of the lower one, in 2D and 3D, with and without friction, each block named first."""
@@ -65,7 +65,7 @@ def roller(stiffer: float, order: int) -> Solution:
     return pushed
 
 
-def test_named_order_keeps_its_meaning():
+def test_signs_follow_the_named_order_whichever_surface_carries():
     """Whichever surface carries the pressure, force is on the second body, normals point out of the first, slip is of
     the first over the second. A roller 1e6 times as stiff as its block, named first and second: the same fields, with
     opposite signs; pushed to the right, it slides and drags the block along with μλ."""

@@ -16,7 +16,7 @@ CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) 
 
 
 @pytest.mark.parametrize(("make", "θ", "μ"), CASES)
-def test_condensed_is_full(make, θ, μ):
+def test_condensed_and_full_system_have_the_same_solution(make, θ, μ):
     """Pressure, traction, rigid motion and the whole displacement field of both ways agree to 1e-8 (θ = 1, 0, −1, with
     and without friction, 2D and 3D)."""
     problem = replace(make(μ), nitsche=Nitsche(theta=θ))
@@ -28,7 +28,7 @@ def test_condensed_is_full(make, θ, μ):
 
 @pytest.mark.parametrize("θ", [1.0, -1.0])
 @pytest.mark.parametrize("μ", [0.0, 0.1])
-def test_after_finite_sliding(θ, μ):
+def test_condensed_and_full_system_agree_after_finite_sliding(θ, μ):
     """The block has moved 0.8 mm sideways (several nodes) under the cylinder: new projections, the old compliance, and
     the slip since the first step. The block then drags the cylinder along with μ times the load."""
     problem = replace(cylinder(μ, first=1, extra=(Freedom("x", displacement=0.0),)), nitsche=Nitsche(theta=θ))
@@ -61,7 +61,7 @@ def _differences(position, solution, x, system):
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_full_tangent(θ):
+def test_full_tangent_is_the_derivative_of_the_residual(θ):
     """∂residual/∂x against central differences in a random direction near the solution, 1e-6 relative."""
     problem = replace(cylinder(), nitsche=Nitsche(theta=θ))
     x, _ = full_solution(problem, Step())

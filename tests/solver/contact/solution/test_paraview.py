@@ -32,7 +32,7 @@ AWAY = Placement(TURN, np.array([3.0, 1.0]))
 
 
 @pytest.mark.parametrize(("shape", "order"), SHAPES)
-def test_every_cell_has_its_nodes_in_vtks_order(shape, order, tmp_path):
+def test_every_cell_has_its_nodes_in_the_order_of_vtk(shape, order, tmp_path):
     """Every node of the straight cells that are read back lies where VTK's own reference cell, mapped by the cell's
     corners, has it; two nodes exchanged would not."""
     plane = shape in ("triangle", "quadrilateral")
@@ -74,7 +74,7 @@ def written(tmp_path_factory) -> tuple[list[Solution], pyvista.PVDReader]:
 
 
 @pytest.mark.parametrize("step", [0, 1])
-def test_bodies(written, step):
+def test_body_files_have_displacement_and_stress(written, step):
     """Positions, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along
     the rotated height and σ_z = −νp, in ParaView's order of components."""
     solutions, reader = written
@@ -94,7 +94,7 @@ def test_bodies(written, step):
         assert np.allclose(mises, von_mises(cell_stress(mesh, material, solutions[step].displacement(index))))
 
 
-def test_contact(written):
+def test_contact_file_has_pressure_and_traction(written):
     """The pressure at the nodes of the first surface, and the traction on the second body in space."""
     reader = written[1]
     reader.set_active_time_value(2.0)
@@ -105,7 +105,7 @@ def test_contact(written):
     assert surface.n_cells == 4
 
 
-def test_averages_keep_the_force(tmp_path):
+def test_nodal_averages_keep_the_contact_force(tmp_path):
     """A cylinder on a block: nodal pressures times the hats' areas are the force; no node is pulled, none is above the
     peak at the points."""
     (solution,) = sweep(cylinder(), [Step()])
@@ -130,7 +130,7 @@ def test_series_grows_with_the_sweep(tmp_path):
     assert not list(tmp_path.glob(f"*{PART}*"))
 
 
-def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path):
+def test_failed_write_leaves_no_partial_file(tmp_path):
     """A folder in a file's place: an error that names it, and no temporary file stays."""
     (tmp_path / "body_0_0001.vtu").mkdir()
     (solution,) = sweep(pressed(), [Step()])

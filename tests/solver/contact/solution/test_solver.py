@@ -39,7 +39,7 @@ INNER = {
 """Public names that a program meets without asking for them, or that stand in the text of the page."""
 
 
-def test_own_problem_page(tmp_path, monkeypatch):
+def test_programs_of_the_page_on_own_problems_run(tmp_path, monkeypatch):
     """The programs in docs/own_problem.md run as they stand; the first one has at most 40 lines and carries its load,
     and the peak that it prints is within 0.2 % of that of a mesh ten times as fine, 2275.4 MPa; the ground carries what
     the contact gives, and ParaView's files are there."""
@@ -59,7 +59,7 @@ def test_own_problem_page(tmp_path, monkeypatch):
     assert len(list((tmp_path / "out").glob("*.vtu"))) == 3 * len(names["solutions"])
 
 
-def test_page_names_every_class():
+def test_page_on_own_problems_lists_every_public_name():
     """The tables of docs/own_problem.md have every public name that a program states or asks for."""
     text = (ROOT / "docs/own_problem.md").read_text()
     rows = "\n".join(line.split("|")[1] for line in text.splitlines() if line.startswith("|"))
@@ -83,7 +83,7 @@ def test_load_factor_scales_a_closed_contact():
     assert np.allclose(2.0 * half.displacement(0), full.displacement(0), atol=1e-12)
 
 
-def test_load_or_displacement():
+def test_load_and_displacement_give_the_same_contact():
     """Prescribing the motion that a load made gives that load back, in a later step of the same sweep too."""
     problem = cylinder(0.0)
     by_load = solve(problem)
@@ -93,12 +93,12 @@ def test_load_or_displacement():
     assert np.allclose(by_motion.contacts[0].pressure, by_load.contacts[0].pressure, atol=1e-6)
 
 
-def test_iterations_count_the_start():
+def test_iterations_include_those_of_the_frictionless_start():
     """With friction the iterations are those of the frictionless start, the same as without, and at least one more."""
     assert solve(cylinder(FRICTION)).iterations > solve(cylinder(0.0)).iterations > 0
 
 
-def test_normal_then_tangential():
+def test_tangential_load_after_the_normal_load_makes_partial_slip():
     """First pressed, then pushed with half of what slides: the tangential load arrives, some points stick and some
     slide. Repeating the same step moves the cylinder by less than a thousandth of what the push did; the traction near
     the edge of sticking, a kink that the stored nodal history cannot follow, moves by some per cent at a/3."""
@@ -119,7 +119,7 @@ def test_normal_then_tangential():
     assert contact.weights @ change**2 < 0.05**2 * (contact.weights @ (FRICTION * contact.pressure) ** 2)
 
 
-def test_sliding_there_and_back():
+def test_friction_reverses_when_a_sliding_block_returns():
     """The lower block moved to the right and back under the pressed cylinder: friction μP to the right, then to the
     left. A solver that forgets the last step, or loses μ, cannot do this."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
@@ -129,7 +129,7 @@ def test_sliding_there_and_back():
     assert forces[2] == pytest.approx(-FRICTION * 5e3, rel=1e-6)
 
 
-def test_frame_does_not_matter():
+def test_contact_does_not_depend_on_the_common_frame():
     """Both bodies turned and moved together: the same pressure, the traction turned."""
     problem = cylinder(FRICTION)
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
@@ -153,7 +153,7 @@ def test_two_contacts_share_the_load():
         assert np.allclose(contact.pressure, 60.0, rtol=1e-9)
 
 
-def test_separation():
+def test_lifted_part_of_an_interface_has_no_tension():
     """Only part of a tilted load's interface touches: no tension anywhere, the rest of the load where it touches.
 
     A block 2 wide and 4 high pushed at its top to the side lifts off on one edge."""
@@ -189,13 +189,13 @@ def _centre(solution: Solution, body: int) -> float:
         (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
     ],
 )
-def test_bad_input(make, message):
+def test_inconsistent_steps_are_refused(make, message):
     """Each mistake is a ValueError that names what was found."""
     with pytest.raises(ValueError, match=message):
         make(cylinder())
 
 
-def test_rigid_punch_centre():
+def test_rigid_coupling_rotates_about_its_centre():
     """A moment about the coupling's centre tilts a punch: the pressure's centre moves by moment over force."""
     punch = rectangle(2.0, 1.0, 6, 3, origin=(-1.0, 0.0))
     ground = rectangle(6.0, 3.0, 24, 6, origin=(-3.0, -3.0))
@@ -209,7 +209,7 @@ def test_rigid_punch_centre():
     assert solution.contacts[0].force[1] == pytest.approx(-1000.0, rel=1e-9)
 
 
-def test_on_after_a_step_that_failed():
+def test_sweep_continues_after_a_step_that_failed():
     """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium, which
     is said. The same sweep takes a smaller push instead, and gives what a sweep without the failure gives, history
     included."""
@@ -230,7 +230,7 @@ def test_on_after_a_step_that_failed():
     assert run.solved == 2
 
 
-def test_one_line_a_step(caplog):
+def test_every_step_logs_one_line(caplog):
     """The logger "evolvent" tells of each step: its number, the load factor, iterations, force and peak pressure."""
     with caplog.at_level("INFO", logger="evolvent"):
         first, _ = sweep(_flat(), [Step(0.5), Step(1.0)])
@@ -240,7 +240,7 @@ def test_one_line_a_step(caplog):
     assert lines[1].startswith("step 2: load factor 1, ")
 
 
-def test_a_face_that_is_moved():
+def test_prescribed_displacement_of_a_face_gives_uniaxial_strain():
     """Two blocks of height h each pressed by moving the top: uniaxial strain under rollers on all sides,
     p = E(1−ν)/((1+ν)(1−2ν)) δ/2h, and the reactions at the moved face and at the bottom are p times the width."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
@@ -260,7 +260,7 @@ def test_a_face_that_is_moved():
     assert bottom == pytest.approx([0.0, 2.0 * p], rel=1e-9, abs=1e-9)
 
 
-def test_a_moved_face_without_condensation():
+def test_prescribed_displacement_agrees_with_the_full_system():
     """The same on all degrees of freedom (full_system.py), with friction and a clamped bottom: the same motion."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
     bodies = (

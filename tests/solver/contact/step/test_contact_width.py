@@ -48,7 +48,7 @@ def paired(request) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_strip(paired):
+def test_width_of_a_strip(paired):
     """A strip of 3 mm inside: 3 mm over the longer cells, 0.8 mm; to the quadrature points' distance."""
     x = paired.operator.points[:, 0]
     found = measure_width(paired, np.where((x > 2.0) & (x < 5.0), 7.0, 0.0))
@@ -57,7 +57,7 @@ def test_strip(paired):
     assert found.cells == pytest.approx(3.0 / 0.8, abs=0.3)
 
 
-def test_narrowest_patch_counts(paired):
+def test_width_is_that_of_the_narrowest_loaded_patch(paired):
     """Two strips, of 3 and 1 mm: the narrow one; unless it carries hardly anything."""
     x = paired.operator.points[:, 0]
     wide, narrow = (x > 1.0) & (x < 4.0), (x > 5.5) & (x < 6.5)
@@ -65,12 +65,12 @@ def test_narrowest_patch_counts(paired):
     assert measure_width(paired, 1.0 * wide + 1e-3 * narrow).width == pytest.approx(3.0, abs=0.25)
 
 
-def test_whole_surface(paired):
+def test_width_of_a_whole_surface(paired):
     """What presses all over is as wide as the surface."""
     assert measure_width(paired, np.ones(len(paired.operator.weights))).width == pytest.approx(8.0, abs=0.25)
 
 
-def test_nothing_presses(paired):
+def test_open_contact_has_no_width_and_no_warning(paired):
     """An open contact is 0 mm and 0 cells wide, and not too coarse."""
     width = measure_width(paired, np.zeros(len(paired.operator.weights)))
     assert (width.width, width.cells) == (0.0, 0.0)
@@ -79,13 +79,13 @@ def test_nothing_presses(paired):
         warn_if_coarse("contact", width)
 
 
-def test_what_is_less_than_two_is_not_said_to_be_two(paired):
+def test_number_of_cells_is_rounded_down_in_the_warning(paired):
     """1.9996 cells: said as 1.99."""
     with pytest.warns(CoarseContactWarning, match=r"found 1\.99, 2 mm"):
         warn_if_coarse("contact", ContactWidth(1.9996, 1.0))
 
 
-def test_disc_and_ring():
+def test_width_of_a_disc_and_of_a_ring():
     """In 3D a disc is as wide as its diameter, a ring as its band."""
     paired = flat(3)
     r = np.hypot(*(paired.operator.points[:, :2] - 4.0).T)
@@ -93,7 +93,7 @@ def test_disc_and_ring():
     assert measure_width(paired, 1.0 * ((r > 2.0) & (r < 3.2))).width == pytest.approx(1.2, abs=0.3)
 
 
-def test_coarse_at_the_edge():
+def test_longest_cell_at_the_edge_counts():
     """Rubber under a cylinder, cells of 0.3 mm over |x| <= 1.5 mm, which grow by 1.3 outside: the contact ends in the
     second of them, 0.5 mm long. That one counts; by those in the middle the contact was 12 cells wide."""
     contact = solve(rubber(0.3, 1.5)).contacts[0]
@@ -102,7 +102,7 @@ def test_coarse_at_the_edge():
     assert contact.cells_across == pytest.approx(8.0, abs=1.0)
 
 
-def test_long_cells_at_the_ends_of_a_strip():
+def test_long_cells_along_a_strip_do_not_count():
     """A strip of 1.5 by 8 mm whose cells are 2 mm long along it and 0.25 mm across: 6 cells wide, up to its ends."""
     upper = box((8.0, 8.0, 1.0), (32, 4, 1), 1)
     lower = box((8.0, 8.0, 1.0), (32, 4, 1), 1, origin=(0.0, 0.0, -1.0))
@@ -114,7 +114,7 @@ def test_long_cells_at_the_ends_of_a_strip():
 
 
 @pytest.mark.parametrize(("supports", "width"), [((), 2.0), ((Fixed("left", "x"),), 4.0)])
-def test_plane_of_symmetry(supports, width):
+def test_width_across_a_plane_of_symmetry_is_doubled(supports, width):
     """A contact up to a free edge ends there; up to a plane of symmetry it is half of the whole."""
     paired = flat(2, supports)
     found = measure_width(paired, 1.0 * (paired.operator.points[:, 0] < 2.0))
@@ -128,13 +128,13 @@ def roller(size: float) -> Problem:
     return Problem((up, low), (Contact((0, "arc"), (1, "top"), reach=0.2),))
 
 
-def test_hertz():
+def test_width_of_a_hertz_contact():
     """2a = 0.662 mm, within a tenth of a cell of 0.08 mm."""
     contact = solve(roller(0.08)).contacts[0]
     assert contact.cells_across == pytest.approx(0.662 / 0.08, abs=0.3)
 
 
-def test_warning():
+def test_contact_of_less_than_two_cells_is_warned_of():
     """0.66 mm on cells of 0.5 mm: warned, with the contact, the cells and the size that would do; on finer ones not."""
     said = r"'arc' \(body 0, 'body'\) with 'top' .*2 cells wide, found 0\.99, .*at most 0\.\d+ mm on both"
     with pytest.warns(CoarseContactWarning, match=said):
@@ -145,7 +145,7 @@ def test_warning():
 
 
 @pytest.mark.parametrize(("cell", "warns"), [("0.1", False), ("0.7", True)])
-def test_example_of_the_docs(tmp_path, cell, warns):
+def test_example_of_the_page_is_warned_of_on_coarse_cells(tmp_path, cell, warns):
     """docs/own_problem.md presses a hook to a contact of 1.1 mm with cells of 0.1 mm, and is not warned; with cells of
     0.7 mm it is."""
     page = (ROOT / "docs/own_problem.md").read_text()

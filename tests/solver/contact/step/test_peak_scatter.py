@@ -46,7 +46,7 @@ def paired(request) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_smooth_pressures(paired):
+def test_smooth_pressures_have_no_scatter(paired):
     """Uniform, a square root, and Hertz' over ten cells: smooth but for rounding."""
     x = paired.operator.points[:, :-1]
     r = np.linalg.norm(x - 4.1, axis=1)
@@ -56,13 +56,13 @@ def test_smooth_pressures(paired):
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0])
-def test_waves(paired, period):
+def test_scatter_of_a_wave_is_its_amplitude(paired, period):
     """±10 % that come and go with each cell of 0.5 mm, or with every second: found at about that."""
     x = paired.operator.points[:, 0]
     assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
 
 
-def test_weights_below_zero():
+def test_parabola_ignores_negative_weights():
     """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the
     parabola fitted to them is that polynomial."""
     x, y = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 20))
@@ -71,14 +71,14 @@ def test_weights_below_zero():
     np.testing.assert_allclose(parabola(points, weights, values), values, atol=1e-12)
 
 
-def test_nothing_presses(paired):
+def test_open_contact_has_no_scatter(paired):
     """No pressure, no scatter."""
     assert peak_scatter(paired, np.zeros(len(paired.operator.weights))) == 0.0
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
 @pytest.mark.parametrize("cells", [2.0, 4.0, 4.54, 8.0])
-def test_hertz(cells, first):
+def test_scatter_of_an_accurate_hertz_contact_is_small(cells, first):
     """4, 8, 9 and 16 cells across the contact, wherever its edge cuts a cell: the peak is right within 0.6 %, and lies
     within 2 % of its surroundings."""
     contact = solve(cylinder_on_block(cells, ratio=1.37, first=first)).contacts[0]
@@ -91,7 +91,7 @@ def warned(contact: ContactResult) -> bool:
 
 
 @pytest.mark.parametrize(("cells", "over"), [(4.0, 0.25), (8.0, 0.12)])
-def test_order_1_on_a_polygon(cells, over):
+def test_scatter_of_order_1_cells_on_a_cylinder_is_large(cells, over):
     """Cells of order 1 on a finer block meet the cylinder as a polygon: the peak is more than a quarter and an eighth
     too high, at 8 and 16 cells."""
     contact = solve(cylinder_on_block(cells, order=1, ratio=1.37, first="block")).contacts[0]
@@ -99,7 +99,7 @@ def test_order_1_on_a_polygon(cells, over):
     assert warned(contact)
 
 
-def test_rubber_beyond_the_fine_zone():
+def test_scatter_of_rubber_beyond_the_fine_zone_is_large():
     """The contact on rubber, ν = 0.49, ends outside the fine zone: a peak 36 % too high, at its edge. On cells of
     0.3 mm all over the contact the peak is right within 0.5 %: 1.461 MPa, as with 0.2 and 0.1 mm."""
     bad, good = (solve(rubber(0.3, fine)).contacts[0] for fine in (1.5, 4.0))
@@ -109,7 +109,7 @@ def test_rubber_beyond_the_fine_zone():
     assert not warned(good)
 
 
-def test_press_fit():
+def test_scatter_of_a_coarse_press_fit_is_large():
     """A press fit has a uniform pressure. Where the sag of coarse cells is not small against the interference it is
     wavy by 14 %, at ten cells; with twice as many it is uniform within 2 %."""
     coarse, fine = press_fit(14, 11, 0.008), press_fit(28, 22, 0.008)
@@ -121,7 +121,7 @@ def test_press_fit():
     assert not warned(fine)
 
 
-def test_flat_punch():
+def test_scatter_at_the_edge_of_a_flat_punch_is_large():
     """The pressure at the edge of a flat punch is infinite: the peak grows by a tenth or more with each mesh, and no
     mesh is let pass."""
     coarse, fine = punch(4), punch(16)
@@ -130,7 +130,7 @@ def test_flat_punch():
     assert warned(fine)
 
 
-def test_what_the_docs_say(tmp_path, monkeypatch):
+def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
     """docs/own_problem.md about its example: with 0.25 mm, 4.2 cells, the peak is 11 % too high, and warned of; every
     mesh of two cells and more that is not warned of is within 3.5 %, from five cells on within 0.6 %."""
     page = (ROOT / "docs/own_problem.md").read_text()
@@ -151,7 +151,7 @@ def test_what_the_docs_say(tmp_path, monkeypatch):
         assert cell != 0.25 or off == pytest.approx(0.106, abs=0.01)
 
 
-def test_the_warning():
+def test_scattered_peak_is_warned_of():
     """It names the contact and what was found; a good mesh is not warned of."""
     said = r"'top' \(body 1, 'body'\) with 'arc' \(body 0, .*within 5%.*found it 1\d% off"
     with pytest.warns(ScatteredPressureWarning, match=said):

@@ -1,4 +1,4 @@
-"""The table of abuses: each is refused by one clear error, or gives the right number."""
+"""Input that cannot be used is refused by one clear error; unusual input that can be used gives the exact solution."""
 
 from __future__ import annotations
 
@@ -8,22 +8,18 @@ import numpy as np
 import pytest
 
 from evolvent import EvolventError, InputError
-from tests.support.abuses import bodies as api_body_abuses
-from tests.support.abuses import extremes as api_large_abuses
-from tests.support.abuses import meshes as api_mesh_abuses
-from tests.support.abuses import odd_inputs as api_odd_inputs
-from tests.support.abuses import steps as api_step_abuses
+from tests.support.abuses import bodies, contacts, extremes, meshes, odd_inputs, solutions, steps
 from tests.support.abuses.blocks import Abuse, Fine
 
-ABUSES = [*api_mesh_abuses.ROWS, *api_body_abuses.ROWS, *api_step_abuses.ROWS, *api_large_abuses.ABUSES]
-FINE = [*api_odd_inputs.ROWS, *api_large_abuses.FINE]
+ABUSES = [*meshes.ROWS, *bodies.ROWS, *contacts.ROWS, *steps.ROWS, *solutions.ROWS, *extremes.ABUSES]
+FINE = [*odd_inputs.ROWS, *extremes.FINE]
 JARGON = re.compile(
     r"numpy|ufunc|PETSc|UFL|matmul|tuple index|substring|max_gap|attribute|Traceback|NoneType|broadcast"
 )
 
 
 @pytest.mark.parametrize("abuse", ABUSES, ids=lambda each: each.name)
-def test_abuse(abuse: Abuse, tmp_path, monkeypatch):
+def test_unusable_input_is_refused(abuse: Abuse, tmp_path, monkeypatch):
     """One error that derives from EvolventError and says what was wanted, what was found and what to do, in the API's
     own words; malformed input is an InputError, hence a ValueError too; nothing is written."""
     monkeypatch.chdir(tmp_path)
@@ -40,15 +36,14 @@ def test_abuse(abuse: Abuse, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("fine", FINE, ids=lambda each: each.name)
-def test_odd_but_right(fine: Fine, tmp_path):
-    """What looks odd and is right gives the exact number."""
-    found, wanted = np.asarray(fine.call(tmp_path), dtype=float), np.asarray(fine.wanted, dtype=float)
-    assert np.abs(found - wanted).max(initial=0.0) <= fine.accuracy * max(np.abs(wanted).max(initial=0.0), 1e-300), (
-        found
-    )
+def test_unusual_input_gives_the_exact_solution(fine: Fine, tmp_path):
+    """The number that the row asks for is its exact value, within its accuracy."""
+    value, wanted = np.asarray(fine.call(tmp_path), dtype=float), np.asarray(fine.wanted, dtype=float)
+    largest = max(np.abs(wanted).max(initial=0.0), 1e-300)
+    assert np.abs(value - wanted).max(initial=0.0) <= fine.accuracy * largest, value
 
 
-def test_enough_of_them():
-    """At least 150 abuses, each under a name of its own."""
+def test_table_of_unusable_input_has_150_rows_and_more():
+    """At least 150 rows, each with a name of its own."""
     names = [each.name for each in (*ABUSES, *FINE)]
     assert len(names) == len(set(names)) >= 150

@@ -75,16 +75,17 @@ class Sweep:
 def solve(problem: Problem, step: Step | None = None) -> Solution:
     """The equilibrium of one step from rest, by default under the full load. Raises as `Sweep.solve`.
 
-    A block of 1 × 1 mm is pressed with 100 N/mm on a larger one:
+    A steel roller of 50 mm radius is pressed with 1000 N/mm on a steel block; Hertz' peak is 857 MPa:
 
     >>> from evolvent import Body, Contact, Fixed, Freedom, Problem, Rigid, solve
-    >>> from evolvent_meshes.shapes.blocks import rectangle
-    >>> punch = Body(rectangle(1.0, 1.0, 4, 4, origin=(0.5, 1.0)), rigid=Rigid("top", (Freedom("y", load=-100.0),)))
-    >>> base = Body(rectangle(2.0, 1.0, 6, 3), supports=(Fixed("bottom"),))
-    >>> solution = solve(Problem((base, punch), (Contact((0, "top"), (1, "bottom")),)))
-    >>> force = solution.contacts[0].force  # on the punch, N per mm of thickness
-    >>> print(f"{force[1]:.6f}")
-    100.000000
+    >>> from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
+    >>> block = Body(graded_rectangle(width=40.0, height=20.0, size=0.1, fine=1.5), supports=(Fixed("bottom"),))
+    >>> pressed = Rigid("top", (Freedom("y", load=-1000.0),))
+    >>> roller = Body(cylinder_2d(radius=50.0, size=0.1, fine=1.5), rigid=pressed)
+    >>> solution = solve(Problem((block, roller), (Contact((0, "top"), (1, "arc"), reach=0.2),)))
+    >>> contact = solution.contacts[0]
+    >>> print(f"peak {contact.pressure.max():.0f} MPa, force on the roller {contact.force[1]:.1f} N/mm")
+    peak 857 MPa, force on the roller 1000.0 N/mm
     """
     return Sweep(problem).solve(Step() if step is None else step)
 
@@ -93,7 +94,7 @@ def sweep(problem: Problem, steps: Iterable[Step]) -> Iterator[Solution]:
     """Equilibria of one step after another, each with the slip since the one before. Raises as `Sweep.solve`; a `Sweep`
     can go on from the last step that was solved.
 
-    The block above, of half and of all its load; the contact is closed, so that the pressure doubles:
+    A block on another one under half and under all of its load; the contact is closed, so that the pressure doubles:
 
     >>> from evolvent import Body, Contact, Fixed, Problem, Step, Traction, sweep
     >>> from evolvent_meshes.shapes.blocks import rectangle

@@ -60,7 +60,7 @@ class PairingCheck:
 
     @property
     def pairs_hold(self) -> bool:
-        """Whether the pairs found are accurate enough."""
+        """Whether the pairs are accurate enough."""
         return self.gap_change <= GAP_CHANGE and self.tilt <= TILT and self.drift <= DRIFT
 
 

@@ -1,7 +1,7 @@
 """Evolvent's solver: frictional contact of elastic bodies, and of gear pairs, with dolfinx and PETSc.
 
-The names below are the Python API of contact problems, described in docs/own_problem.md; `evolvent.gears` and
-`evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
+The names below are the Python API of contact problems, described in docs/own_problem.md; the packages `evolvent.gears`
+and `evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
 """
 
 from importlib import metadata
@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 from evolvent_meshes.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from evolvent import gears as gears
+    from evolvent import wear as wear
     from evolvent.contact import hertz as hertz
     from evolvent.contact.newton.snes import NotConverged as NotConverged
     from evolvent.contact.problem.condensed_body import CondensedBody as CondensedBody

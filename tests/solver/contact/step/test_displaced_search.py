@@ -54,7 +54,7 @@ def test_overlap_beyond_a_small_reach_is_found(freedom, reach):
     assert found.contacts[0].pressure.max() == pytest.approx(wanted.contacts[0].pressure.max(), rel=0.05)
 
 
-def test_solution_does_not_depend_on_an_ample_reach():
+def test_contact_that_stays_in_place_is_searched_once():
     """A contact that stays where it is searched is searched once, and its solution is that of one search."""
     found = solve(cylinder(0.5, Freedom("y", load=-5e3)))
     assert found.searches == 1

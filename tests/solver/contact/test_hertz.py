@@ -46,7 +46,7 @@ def test_line_approach_is_the_integral_of_the_axis_strain() -> None:
 
     def strain(log_depth: float) -> float:
         ratio = math.exp(log_depth)
-        stress = hertz.line_axis_stress(np.float64(ratio), poisson)
+        stress = hertz.line_axis_stress(np.asarray(ratio), poisson)
         return -peak * (1 - poisson**2) / modulus * float(stress.depth - poisson / (1 - poisson) * stress.width) * ratio
 
     exact = width * quad(strain, math.log(1e-9), math.log(depth / width), limit=200)[0]

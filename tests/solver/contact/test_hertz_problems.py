@@ -63,7 +63,7 @@ def test_overkill_solution_of_the_cylinder_is_close_to_hertz(first):
     assert overkill.error(exact) < 0.015
 
 
-def test_error_falls_with_order_1_and_the_finer_body_first():
+def test_error_falls_with_order_1_and_the_finer_body_first() -> None:
     """Order 1 with the finer body carrying the pressure is the bad choice: the pressure wiggles, but the error still
     falls with the element size, and p0 is within 1 % at a/16."""
     found = [line.pressed(line.cylinder_on_block(n, 1, 1.37, "block")) for n in (2, 4, 8, 16)]
@@ -88,7 +88,7 @@ def test_partial_slip_of_the_cylinder_agrees_with_cattaneo(first):
     assert np.abs(pressed.shear).max() < 0.2 * slip.friction * slip.peak  # of the curved surfaces: vanishes with a/R
 
 
-def test_push_beyond_the_friction_force_has_no_equilibrium():
+def test_push_beyond_the_friction_force_has_no_equilibrium() -> None:
     """Pushed with 1.05 μP there is no equilibrium, and no solution is made up; |τ| ≤ μλ holds up to there."""
     pushed = line.Slip(share=0.95).profiles(4)[1]
     assert (np.abs(pushed.shear) <= 0.3 * pushed.pressure * (1.0 + 1e-9) + 1e-9).all()
@@ -111,7 +111,7 @@ def test_ball_on_block_agrees_with_hertz(cells, first):
         assert rough.peak == pytest.approx(profile.peak, rel=0.005)
 
 
-def test_skew_variant_halves_the_profile_error_of_a_ball_on_square_cells():
+def test_skew_variant_halves_the_profile_error_of_a_ball_on_square_cells() -> None:
     """Square cells of a/4, cut by the edge at all angles: the skew method's profile with γ = 0.3 C is off by less than
     4 %, and by less than half of what the symmetric one's is (13 %)."""
     symmetric, skew = (

@@ -1,5 +1,8 @@
 """Materials, supports, loads and rigid couplings that are wrong."""
 
+# mypy: ignore-errors
+# the arguments are of the wrong types on purpose
+
 from __future__ import annotations
 
 import numpy as np

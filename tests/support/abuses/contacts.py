@@ -1,5 +1,8 @@
 """Contacts, problems and settings of the method that cannot be used."""
 
+# mypy: ignore-errors
+# the arguments are of the wrong types on purpose
+
 from __future__ import annotations
 
 import numpy as np

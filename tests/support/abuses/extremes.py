@@ -1,5 +1,8 @@
 """Ratios of stiffness, motions, loads and reaches that are too small or too large: refused, or right."""
 
+# mypy: ignore-errors
+# some arguments are of other types than those declared, on purpose
+
 from __future__ import annotations
 
 from dataclasses import replace

@@ -95,7 +95,7 @@ def test_tangent_is_the_derivative_of_the_residual(make, law):
     assert compared >= 3
 
 
-def test_accuracy_of_a_newton_step_follows_the_residual():
+def test_accuracy_of_a_newton_step_follows_the_residual() -> None:
     """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
     leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
     hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
@@ -156,7 +156,7 @@ def test_solution_meets_the_contact_and_friction_conditions(make):
     assert solution.imbalance < 1e-10
 
 
-def test_friction_adds_shear_and_stiffness():
+def test_friction_adds_shear_and_stiffness() -> None:
     """The same cylinder with μ = 0 and 0.2: no shear without friction, and a stiffer contact with it."""
     smooth, rough = (solve(cylinder(μ)) for μ in (0.0, FRICTION))
     shear = [
@@ -191,7 +191,7 @@ def test_contact_forces_on_both_bodies_are_opposite(make, friction):
     assert np.abs(moment[0] + moment[1]).max() <= np.abs(gap).max() * (contact.weights @ contact.pressure)
 
 
-def test_no_contact_within_reach_is_not_converged():
+def test_no_contact_within_reach_is_not_converged() -> None:
     """A cylinder that is loaded but held away from the block by its reach: an error that says what to do."""
     position = _position(cylinder(0.0))
     system = normal_part(position.system())
@@ -200,7 +200,7 @@ def test_no_contact_within_reach_is_not_converged():
         _assumed_contact(system, none)
 
 
-def test_solution_does_not_depend_on_the_initial_contact_set():
+def test_solution_does_not_depend_on_the_initial_contact_set() -> None:
     """The frictionless solution from all points in contact and from six in the middle is the same."""
     system = normal_part(_position(cylinder(0.0)).system())
     few = np.zeros(len(system.operator.weights), dtype=bool)
@@ -209,7 +209,7 @@ def test_solution_does_not_depend_on_the_initial_contact_set():
     assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
 
 
-def test_bad_initial_guess_does_not_prevent_the_solution():
+def test_bad_initial_guess_does_not_prevent_the_solution() -> None:
     """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
     without a guess."""
     position = _position(cylinder())
@@ -222,7 +222,7 @@ def test_bad_initial_guess_does_not_prevent_the_solution():
         assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
 
 
-def test_free_tangential_motion_needs_friction():
+def test_free_tangential_motion_needs_friction() -> None:
     """A cylinder that may also move sideways, pushed with less than μP: with friction it sticks; without friction on a
     flat first surface nothing resists, and the error names that."""
     push = (Freedom("x", load=0.3 * FRICTION * 5e3),)

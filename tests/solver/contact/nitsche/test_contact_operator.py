@@ -65,8 +65,11 @@ def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) ->
 def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     """Degrees of freedom of the nodes of both contact surfaces among those of both bodies."""
     first, second = surface_of(merged.upper, "bottom").nodes, surface_of(merged.lower, "top").nodes
-    every = (first, len(merged.upper.points) + second)
-    return tuple((merged.d * n[:, None] + np.arange(merged.d)).ravel() for n in every)
+    upper, lower = (
+        (merged.d * nodes[:, None] + np.arange(merged.d)).ravel()
+        for nodes in (first, len(merged.upper.points) + second)
+    )
+    return upper, lower
 
 
 def test_projection_agrees_with_ufl(merged):
@@ -197,7 +200,7 @@ def test_residual_and_tangent_agree_with_ufl(merged, θ):
     assert all(state.any() for state in (λ == 0.0, (λ > 0.0) & slides, (λ > 0.0) & ~slides)), "a state was not met"
 
 
-def test_sandwiched_product_agrees_with_dense_matrices():
+def test_sandwiched_product_agrees_with_dense_matrices() -> None:
     """Σ_q N_qi D_q N_qj for points of three facets, of two and of three nodes, one of them visited twice, against the
     same sum in dense arrays, exact but for rounding; and no points at all: zero."""
     rng = np.random.default_rng(1)

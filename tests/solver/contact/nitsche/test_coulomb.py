@@ -44,11 +44,11 @@ def test_derivative_of_the_starting_guess(d, known):
     assert np.abs(starting_guess(trial, 0.3, heading).derivative - exact).max() < 1e-6 * np.abs(exact).max()
 
 
-def test_coulombs_law_when_open_sticking_and_sliding():
+def test_coulombs_law_when_open_sticking_and_sliding() -> None:
     """Open: nothing. Stuck: τ = q. Sliding: |τ| = μλ along q. One node each, by hand."""
     trial = np.array([[-1.0, 5.0, 5.0], [2.0, 0.3, -0.4], [2.0, 3.0, 4.0]])
     law = coulomb(trial, 0.5)
-    assert np.allclose(law.traction, [[0, 0, 0], [2.0, 0.3, -0.4], [2.0, 0.6, 0.8]], atol=1e-15)
+    assert np.allclose(law.traction, np.array([[0.0, 0.0, 0.0], [2.0, 0.3, -0.4], [2.0, 0.6, 0.8]]), atol=1e-15)
 
 
 @pytest.mark.parametrize("d", [2, 3])
@@ -61,7 +61,7 @@ def test_traction_stays_inside_the_friction_cone(d):
     assert np.all(np.linalg.norm(traction[:, 1:], axis=1) <= μ * traction[:, 0] * (1.0 + 1e-14))
 
 
-def test_sliding_traction_is_friction_times_pressure():
+def test_sliding_traction_is_friction_times_pressure() -> None:
     """With μ > 0 a node far beyond its limit slides with exactly μλ: fails if μ is taken as zero anywhere."""
     law = coulomb(np.array([[10.0, 1e6]]), 0.07)
     assert law.traction[0, 1] == pytest.approx(0.7, rel=1e-14)

@@ -74,7 +74,7 @@ def test_stiffness_with_gamma_is_coercive(shape, order, safety):
     assert np.abs(stiffness @ Factor(stiffness).solve(load) - load).max() < 1e-9
 
 
-def test_stiffness_far_below_the_limit_is_not_coercive():
+def test_stiffness_far_below_the_limit_is_not_coercive() -> None:
     """A tenth of the limit is indefinite, and the factorisation says so: the test above can fail."""
     assert np.linalg.eigvalsh(_modified(_block("quadrilateral", 2), 0.1).toarray())[0] < 0.0
     with pytest.raises(NotPositiveDefinite):
@@ -93,7 +93,7 @@ def test_rigid_motion_has_no_flux(shape, order):
     assert np.abs(nitsche.flux() @ u).max() < 1e-12 * np.abs(u).max()
 
 
-def test_constant_term_of_a_uniform_stress():
+def test_constant_term_of_a_uniform_stress() -> None:
     """Where F is uniform, ∫ γF_n² + γ_t|F_t|² is its value times the area: uniaxial strain, F_n = σ_yy/γ, F_t = 0."""
     mesh, material = _block("quadrilateral", 2), Material(210e3, 0.3)
     nitsche = nitsche_traction(mesh, material, surface_of(mesh, "top"))

@@ -23,8 +23,8 @@ def oedometric(modulus: float) -> float:
 def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
     """Two blocks, 2 mm wide and 1 mm high each, one on the other, whose meshes do not match; held to the sides."""
     if d == 2:
-        sides = (Fixed("left", "x"), Fixed("right", "x"))
-        return rectangle(2.0, 1.0, 4, 2), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0)), sides, "y"
+        plane = (Fixed("left", "x"), Fixed("right", "x"))
+        return rectangle(2.0, 1.0, 4, 2), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0)), plane, "y"
     sides = (Fixed("left", "x"), Fixed("right", "x"), Fixed("front", "y"), Fixed("back", "y"))
     sizes = (2.0, 2.0, 1.0)
     return box(sizes, (2, 2, 1), 1), box(sizes, (3, 3, 1), 1, origin=(0.0, 0.0, -1.0)), sides, "z"
@@ -65,7 +65,7 @@ def roller(stiffer: float, order: int) -> Solution:
     return pushed
 
 
-def test_signs_follow_the_named_order_whichever_surface_carries():
+def test_signs_follow_the_named_order_whichever_surface_carries() -> None:
     """Whichever surface carries the pressure, force is on the second body, normals point out of the first, slip is of
     the first over the second. A roller 1e6 times as stiff as its block, named first and second: the same fields, with
     opposite signs; pushed to the right, it slides and drags the block along with μλ."""

@@ -8,7 +8,7 @@ import pytest
 from evolvent.contact.search.clipping import clip, fan
 
 
-def test_clipped_triangles_fill_the_polygon():
+def test_clipped_triangles_fill_the_polygon() -> None:
     """The unit square cut by a triangle: the fan's areas sum to the known overlap; a point outside leaves nothing.
 
     Triangle (0.5, 0.5), (2, 0.5), (0.5, 2) and the square share the square of side 0.5: area 0.25.
@@ -32,7 +32,7 @@ def test_fan_does_not_depend_on_the_first_corner() -> None:
     assert all(cut == found[0] for cut in found[1:])
 
 
-def test_fan_of_a_dented_polygon_overlaps_nowhere():
+def test_fan_of_a_dented_polygon_overlaps_nowhere() -> None:
     """A square with one dented side: the apex is chosen so that no triangle has negative area; they sum to 0.95."""
     dented = np.array([[[0, 0], [0.5, 0.1], [1, 0], [1, 1], [0, 1]]], float)
     for turn in range(5):

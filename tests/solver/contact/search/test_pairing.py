@@ -12,6 +12,8 @@ from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, hats
 from tests.support.surface_shapes import cap, curve, facing, lattice, rectangle, shaken
 
+Kind = tuple[str, int]
+"""Shape and order of facets."""
 QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangle", 1), ("triangle", 2)
 FACES = [(QUAD1, QUAD1), (QUAD2, QUAD2), (TRI1, TRI1), (TRI2, TRI2), (QUAD2, TRI1), (TRI2, QUAD2), (QUAD1, TRI2)]
 
@@ -37,12 +39,12 @@ def assert_consistent(first: Surface, second: Surface, p: Pairing) -> None:
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_area_and_moments_of_a_planar_overlap(first, second):
+def test_area_and_moments_of_a_planar_overlap(first: Kind, second: Kind) -> None:
     """Surface 2, the rectangle [0.3, 1.7] × [0.2, 0.9] turned by 0.3 rad, lies wholly over surface 1 at gap 0.01.
 
     ∫1, ∫x, ∫xy, ∫x²y² over the overlap are those of the rectangle, to 1e-12, whatever the meshes.
     """
-    low, high, turn = np.array([0.3, 0.2]), np.array([1.7, 0.9]), 0.3
+    low, high, turn = (0.3, 0.2), (1.7, 0.9), 0.3
     a = lattice(5, 4, *first, rectangle((-0.5, -0.5), (2.2, 1.9)))
     b = facing(lattice(4, 3, *second, rectangle(low, high, turn, 0.01)))
     p = pair_surfaces(a, b, 0.1, 0.1)
@@ -50,7 +52,7 @@ def test_area_and_moments_of_a_planar_overlap(first, second):
     s, w = np.polynomial.legendre.leggauss(4)
     u, v = (low[i] + (high[i] - low[i]) * (s + 1) / 2 for i in (0, 1))
     U, V = np.meshgrid(u, v, indexing="ij")
-    W = np.outer(w, w) / 4 * np.prod(high - low)
+    W = np.outer(w, w) / 4 * (high[0] - low[0]) * (high[1] - low[1])
     X, Y = np.cos(turn) * U - np.sin(turn) * V, np.sin(turn) * U + np.cos(turn) * V
     for f in (lambda x, y: 1 + 0 * x, lambda x, y: x, lambda x, y: x * y, lambda x, y: x * x * y * y):
         assert p.weight @ f(x, y) == pytest.approx((W * f(X, Y)).sum(), abs=1e-12)
@@ -59,7 +61,7 @@ def test_area_and_moments_of_a_planar_overlap(first, second):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_shape_functions_of_surface_2_are_integrated_exactly(first, second):
+def test_shape_functions_of_surface_2_are_integrated_exactly(first: Kind, second: Kind) -> None:
     """Parallel planes, surface 2 wholly covered: ∫N2_k∘π over surface 1 is ∫N2_k over surface 2, for every node k."""
     a = lattice(5, 4, *first, rectangle((-0.5, -0.5), (2.2, 1.9)))
     b = facing(lattice(4, 3, *second, rectangle((0.3, 0.2), (1.7, 0.9), 0.3, 0.01)))
@@ -70,7 +72,7 @@ def test_shape_functions_of_surface_2_are_integrated_exactly(first, second):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_hat_functions_of_a_covered_surface_are_integrated_exactly(first, second):
+def test_hat_functions_of_a_covered_surface_are_integrated_exactly(first: Kind, second: Kind) -> None:
     """Surface 1 wholly covered by a larger, turned surface 2: ∫ψ_j over the segments is m_j, for every node j."""
     a = lattice(4, 3, *first, rectangle((0.3, 0.2), (1.7, 0.9), 0.3))
     b = facing(lattice(5, 4, *second, rectangle((-0.5, -0.5), (2.2, 1.9), 0.0, 0.01)))
@@ -81,7 +83,7 @@ def test_hat_functions_of_a_covered_surface_are_integrated_exactly(first, second
 
 @pytest.mark.parametrize("order1", [1, 2])
 @pytest.mark.parametrize("order2", [1, 2])
-def test_overlap_of_two_lines_has_exact_moments(order1, order2):
+def test_overlap_of_two_lines_has_exact_moments(order1: int, order2: int) -> None:
     """2D: y = 0 over [0, 2] below y = 0.02 over [0.7, 3.1]: overlap 1.3, ∫x = 1.755, ∫x² = (8 − 0.343)/3."""
     a = curve(5, order1, lambda u: np.stack([2 * (1 - u), 0 * u], axis=1))
     b = curve(7, order2, lambda u: np.stack([0.7 + 2.4 * u, 0.02 + 0 * u], axis=1))
@@ -94,7 +96,7 @@ def test_overlap_of_two_lines_has_exact_moments(order1, order2):
     assert_consistent(a, b, p)
 
 
-def test_areas_of_distorted_planar_facets_are_exact():
+def test_areas_of_distorted_planar_facets_are_exact() -> None:
     """Planes meshed with facets whose inner nodes are displaced at random, so that edges are curved: areas exact.
 
     Regular [0, 2] × [0, 1] under a displaced [0.5, 2.5] × [−0.5, 0.5]: 0.75; displaced [0, 2] × [0, 1] wholly under a
@@ -113,7 +115,7 @@ def test_areas_of_distorted_planar_facets_are_exact():
 
 
 @pytest.mark.parametrize("kind", [QUAD1, QUAD2, TRI2])
-def test_gap_between_offset_surfaces_is_exact(kind):
+def test_gap_between_offset_surfaces_is_exact(kind: Kind) -> None:
     """Surface 2 is surface 1 (a curved cylinder) with every node moved by 0.05 along its normal, turned over.
 
     Then x2(ξ) = x1(ξ) + 0.05 ΣN_k n_k: the gap at ξ is 0.05 |ΣN_k n_k|, the partner the same point of the same facet.
@@ -133,7 +135,7 @@ def test_gap_between_offset_surfaces_is_exact(kind):
 
 
 @pytest.mark.parametrize(("first", "second", "rate"), [(QUAD2, QUAD2, 6.0), (TRI2, QUAD2, 6.0), (QUAD1, TRI1, 3.0)])
-def test_gap_between_spheres_converges(first, second, rate):
+def test_gap_between_spheres_converges(first: Kind, second: Kind, rate: float) -> None:
     """Concentric caps of radius 5 and 5.01, meshed differently: the gap is 0.01; its largest error falls as h³ (h²)."""
     error = []
     for n in (6, 12):
@@ -146,7 +148,7 @@ def test_gap_between_spheres_converges(first, second, rate):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_curved_surfaces_are_covered_once(first, second):
+def test_curved_surfaces_are_covered_once(first: Kind, second: Kind) -> None:
     """Caps with doubly curved, obliquely meeting facets of other sizes: every facet of 1 is covered exactly once."""
     for n1, n2 in ((3, 10), (9, 4), (7, 7)):
         a = lattice(n1, n1, *first, cap(5.0, 0.3, 0.0, 0.3))
@@ -158,7 +160,7 @@ def test_curved_surfaces_are_covered_once(first, second):
         assert np.abs(p.xi2 - 0.5).max() < 0.6, inside
 
 
-def test_long_narrow_facets_are_covered_once():
+def test_long_narrow_facets_are_covered_once() -> None:
     """Helical flanks have facets twenty times as long as wide; crossed at 6° on a cylinder, all are covered once."""
     def flank(radius, turn, width):
         def place(u, v):
@@ -174,7 +176,7 @@ def test_long_narrow_facets_are_covered_once():
     assert np.abs(p.gap - 0.002).max() < 1e-6
 
 
-def test_points_of_chosen_facets_are_those_of_the_whole_search():
+def test_points_of_chosen_facets_are_those_of_the_whole_search() -> None:
     """The points for chosen facets are those of the whole search; facets beyond the edge of surface 2 have none."""
     a = lattice(6, 6, *QUAD2, rectangle((0, 0), (6, 6)))
     b = facing(lattice(3, 3, *TRI2, rectangle((-1, -1), (3.25, 3.25), 0.0, 0.1)))
@@ -189,7 +191,7 @@ def test_points_of_chosen_facets_are_those_of_the_whole_search():
     assert len(pair_surfaces(a, b, 0.2, 0.2, facets1=[]).gap) == 0
 
 
-def test_only_gaps_in_range_are_kept():
+def test_only_gaps_in_range_are_kept() -> None:
     """A plane y = 0 and a slope y = 0.1 x over [0, 4], max_gap 0.1, max_overlap 0: the points have 0 <= gap <= 0.1."""
     a = curve(40, 2, lambda u: np.stack([6 * (0.5 - u), 0 * u], axis=1))
     b = curve(4, 1, lambda u: np.stack([8 * (u - 0.5), 0.8 * (u - 0.5)], axis=1))
@@ -203,7 +205,7 @@ def test_only_gaps_in_range_are_kept():
     assert len(pair_surfaces(a, Surface.from_arrays(b.points, b.facets[:, ::-1], "interval", 1), 1, 1).gap) == 0
 
 
-def test_unusable_surfaces_and_limits_are_refused():
+def test_unusable_surfaces_and_limits_are_refused() -> None:
     """Mixed dimensions and negative limits are ValueErrors; two layers in range and hopeless facets SearchErrors."""
     a = lattice(3, 3, *QUAD2, rectangle((0, 0), (1, 1)))
     line = curve(3, 1, lambda u: np.stack([u, 0 * u], axis=1))
@@ -220,7 +222,7 @@ def test_unusable_surfaces_and_limits_are_refused():
         pair_surfaces(a, both, 0.3, 0.3)
 
 
-def test_area_without_partners_is_refused():
+def test_area_without_partners_is_refused() -> None:
     """A hilly surface (radius 0.2, slopes of 60°) meshed with three facets: what has no partner raises SearchError."""
     def hills(turn, z):
         def place(u, v):

@@ -10,6 +10,8 @@ from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.surface import Surface, hats
 from tests.support.surface_shapes import cap, curve, facing, lattice
 
+Kind = tuple[str, int]
+"""Shape and order of facets."""
 QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangle", 1), ("triangle", 2)
 
 
@@ -20,7 +22,7 @@ def by_pair(first: Surface, second: Surface, p: Pairing, values: np.ndarray) -> 
 
 
 @pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1)])
-def test_pairing_is_invariant_under_a_common_rigid_motion(first, second):
+def test_pairing_is_invariant_under_a_common_rigid_motion(first: Kind, second: Kind) -> None:
     """Both caps turned and shifted together: gaps, partners' shape functions and weights as sums, to 1e-12."""
     a, b = lattice(5, 4, *first, cap(5, 0.3, 0, 0.3)), facing(lattice(4, 5, *second, cap(5.01, 0.3, 0.4, 0.2)))
     turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
@@ -33,7 +35,7 @@ def test_pairing_is_invariant_under_a_common_rigid_motion(first, second):
 
 
 @pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1), (QUAD1, TRI2)])
-def test_pairing_agrees_with_the_reference_in_3d(first, second):
+def test_pairing_agrees_with_the_reference_in_3d(first: Kind, second: Kind) -> None:
     """Same integrals of gap and partners as pairing_reference.py, pair of facets by pair.
 
     To 1e-9: the triangles may differ, and the rule of degree 8 is not exact on curved facets.
@@ -43,7 +45,7 @@ def test_pairing_agrees_with_the_reference_in_3d(first, second):
     assert_same_integrals(a, b, fast, slow)
 
 
-def test_pairing_agrees_with_the_reference_in_2d():
+def test_pairing_agrees_with_the_reference_in_2d() -> None:
     """As above for a circle against a wavy line that it overlaps in part."""
     a = curve(6, 2, lambda u: np.stack([np.sin(1.5 - 3 * u), np.cos(1.5 - 3 * u)], axis=1))
     b = curve(5, 2, lambda u: np.stack([1.4 * (u - 0.5), 0.9 + 0.05 * np.sin(9 * u)], axis=1))

@@ -72,7 +72,7 @@ def test_node_held_twice_counts_for_the_first_support(solution):
     assert right.force[0] != 0.0
 
 
-def test_reaction_moment_of_a_beam_in_3d():
+def test_reaction_moment_of_a_beam_in_3d() -> None:
     """A plate on the floor, loaded on its left half only by a second one, held at the left and right below: the
     supports share the load as levers say, whatever the elasticity: two unknowns, two equations of statics."""
     plate = box((4.0, 1.0, 1.0), (4, 1, 1), 1)

@@ -43,7 +43,7 @@ def test_unusual_input_gives_the_exact_solution(row: Exact, tmp_path):
     assert np.abs(value - wanted).max(initial=0.0) <= row.accuracy * largest, value
 
 
-def test_table_of_unusable_input_has_150_rows_and_more():
+def test_table_of_unusable_input_has_150_rows_and_more() -> None:
     """At least 150 rows, each with a name of its own."""
-    names = [each.name for each in (*REFUSED, *EXACT)]
+    names = [each.name for each in REFUSED] + [each.name for each in EXACT]
     assert len(names) == len(set(names)) >= 150

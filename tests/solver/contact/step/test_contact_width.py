@@ -85,7 +85,7 @@ def test_number_of_cells_is_rounded_down_in_the_warning(paired):
         warn_if_coarse("contact", ContactWidth(1.9996, 1.0))
 
 
-def test_width_of_a_disc_and_of_a_ring():
+def test_width_of_a_disc_and_of_a_ring() -> None:
     """In 3D a disc is as wide as its diameter, a ring as its band."""
     paired = flat(3)
     r = np.hypot(*(paired.operator.points[:, :2] - 4.0).T)
@@ -93,7 +93,7 @@ def test_width_of_a_disc_and_of_a_ring():
     assert measure_width(paired, 1.0 * ((r > 2.0) & (r < 3.2))).width == pytest.approx(1.2, abs=0.3)
 
 
-def test_longest_cell_at_the_edge_counts():
+def test_longest_cell_at_the_edge_counts() -> None:
     """Rubber under a cylinder, cells of 0.3 mm over |x| <= 1.5 mm, which grow by 1.3 outside: the contact ends in the
     second of them, 0.5 mm long. That one counts; by those in the middle the contact was 12 cells wide."""
     contact = solve(rubber(0.3, 1.5)).contacts[0]
@@ -102,7 +102,7 @@ def test_longest_cell_at_the_edge_counts():
     assert contact.cells_across == pytest.approx(8.0, abs=1.0)
 
 
-def test_long_cells_along_a_strip_do_not_count():
+def test_long_cells_along_a_strip_do_not_count() -> None:
     """A strip of 1.5 by 8 mm whose cells are 2 mm long along it and 0.25 mm across: 6 cells wide, up to its ends."""
     upper = box((8.0, 8.0, 1.0), (32, 4, 1), 1)
     lower = box((8.0, 8.0, 1.0), (32, 4, 1), 1, origin=(0.0, 0.0, -1.0))
@@ -128,13 +128,13 @@ def roller(size: float) -> Problem:
     return Problem((up, low), (Contact((0, "arc"), (1, "top"), reach=0.2),))
 
 
-def test_width_of_a_hertz_contact():
+def test_width_of_a_hertz_contact() -> None:
     """2a = 0.662 mm, within a tenth of a cell of 0.08 mm."""
     contact = solve(roller(0.08)).contacts[0]
     assert contact.cells_across == pytest.approx(0.662 / 0.08, abs=0.3)
 
 
-def test_contact_of_less_than_two_cells_is_warned_of():
+def test_contact_of_less_than_two_cells_is_warned_of() -> None:
     """0.66 mm on cells of 0.5 mm: warned, with the contact, the cells and the size that would do; on finer ones not."""
     said = r"'arc' \(body 0, 'body'\) with 'top' .*2 cells wide, found 0\.99, .*at most 0\.\d+ mm on both"
     with pytest.warns(CoarseContactWarning, match=said):
@@ -149,7 +149,7 @@ def test_example_of_the_page_is_warned_of_on_coarse_cells(tmp_path, cell, warns)
     """docs/own_problem.md presses a hook to a contact of 1.1 mm with cells of 0.1 mm, and is not warned; with cells of
     0.7 mm it is."""
     page = (ROOT / "docs/own_problem.md").read_text()
-    program = re.search(r"```python\n(.*?)```", page, re.DOTALL).group(1)
+    (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)[:1]
     program = program.replace("hook.msh", str(tmp_path / "hook.msh"))
     assert program.count("CELL = 2000.0, 0.1") == 1
     with warnings.catch_warnings(record=True) as caught:

@@ -54,7 +54,7 @@ def test_overlap_beyond_a_small_reach_is_found(freedom, reach):
     assert found.contacts[0].pressure.max() == pytest.approx(wanted.contacts[0].pressure.max(), rel=0.05)
 
 
-def test_contact_that_stays_in_place_is_searched_once():
+def test_contact_that_stays_in_place_is_searched_once() -> None:
     """A contact that stays where it is searched is searched once, and its solution is that of one search."""
     found = solve(cylinder(0.5, Freedom("y", load=-5e3)))
     assert found.searches == 1
@@ -110,7 +110,7 @@ def half_of(body: Body, side: float) -> Body:
     return replace(body, mesh=half, supports=(*body.supports, Fixed("symmetry", "x")))
 
 
-def test_half_of_a_symmetric_contact_agrees_with_the_whole():
+def test_half_of_a_symmetric_contact_agrees_with_the_whole() -> None:
     """The right half of two half-discs that are placed in overlap, with a support in the plane of symmetry: half of the
     force, and the peak, of the whole, but for rounding. The halves were pulled apart along their mean normal, which
     points to the side: the peak was 8 % too high (a quarter of two spheres: 4.6 %)."""
@@ -168,7 +168,7 @@ def test_body_rotated_about_its_centre_is_paired_again(first):
     assert found.pressure.max() == pytest.approx(1916.0, rel=0.01)
 
 
-def test_large_rotation_is_refused():
+def test_large_rotation_is_refused() -> None:
     """0.8 rad would lengthen the disc by a third: said, with the angle and what to do."""
     with pytest.raises(SmallStrainExceeded, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
         solve(turned_disc(0.8, 0))
@@ -183,7 +183,7 @@ def column(modulus: float) -> Problem:
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.5),))
 
 
-def test_large_strain_is_refused():
+def test_large_strain_is_refused() -> None:
     """Strains 1000/E: 0.19 is solved, 0.21 and 2 are refused with what was found."""
     assert solve(column(1000 / 0.19)).motions[0][0] == pytest.approx(-2 * 0.19 - 4 * 0.019, rel=1e-6)
     for strain in (0.21, 2.0):
@@ -204,7 +204,7 @@ def test_pairing_that_does_not_settle_is_refused(monkeypatch):
         solve(*half_discs(0.2, placed=True))
 
 
-def test_surfaces_that_face_away_are_refused():
+def test_surfaces_that_face_away_are_refused() -> None:
     """A punch that is turned by a Placement until its side faces the block finds no partner, and says so."""
     quarter = Placement(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([0.0, 0.0]))
     step = Step(placements=(quarter, Placement.at_rest(2)))

@@ -62,7 +62,7 @@ def test_scatter_of_a_wave_is_its_amplitude(paired, period):
     assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
 
 
-def test_parabola_ignores_negative_weights():
+def test_parabola_ignores_negative_weights() -> None:
     """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the
     parabola fitted to them is that polynomial."""
     x, y = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 20))
@@ -99,7 +99,7 @@ def test_scatter_of_order_1_cells_on_a_cylinder_is_large(cells, over):
     assert warned(contact)
 
 
-def test_scatter_of_rubber_beyond_the_fine_zone_is_large():
+def test_scatter_of_rubber_beyond_the_fine_zone_is_large() -> None:
     """The contact on rubber, ν = 0.49, ends outside the fine zone: a peak 36 % too high, at its edge. On cells of
     0.3 mm all over the contact the peak is right within 0.5 %: 1.461 MPa, as with 0.2 and 0.1 mm."""
     bad, good = (solve(rubber(0.3, fine)).contacts[0] for fine in (1.5, 4.0))
@@ -109,7 +109,7 @@ def test_scatter_of_rubber_beyond_the_fine_zone_is_large():
     assert not warned(good)
 
 
-def test_scatter_of_a_coarse_press_fit_is_large():
+def test_scatter_of_a_coarse_press_fit_is_large() -> None:
     """A press fit has a uniform pressure. Where the sag of coarse cells is not small against the interference it is
     wavy by 14 %, at ten cells; with twice as many it is uniform within 2 %."""
     coarse, fine = press_fit(14, 11, 0.008), press_fit(28, 22, 0.008)
@@ -121,7 +121,7 @@ def test_scatter_of_a_coarse_press_fit_is_large():
     assert not warned(fine)
 
 
-def test_scatter_at_the_edge_of_a_flat_punch_is_large():
+def test_scatter_at_the_edge_of_a_flat_punch_is_large() -> None:
     """The pressure at the edge of a flat punch is infinite: the peak grows by a tenth or more with each mesh, and no
     mesh is let pass."""
     coarse, fine = punch(4), punch(16)
@@ -134,7 +134,7 @@ def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
     """docs/own_problem.md about its example: with 0.25 mm, 4.2 cells, the peak is 11 % too high, and warned of; every
     mesh of two cells and more that is not warned of is within 3.5 %, from five cells on within 0.6 %."""
     page = (ROOT / "docs/own_problem.md").read_text()
-    program = re.search(r"```python\n(.*?)drag = ", page, re.DOTALL).group(1)
+    (program,) = re.findall(r"```python\n(.*?)drag = ", page, re.DOTALL)[:1]
     program = program.replace("hook.msh", str(tmp_path / "hook.msh"))
 
     def found(cell: float) -> ContactResult:
@@ -151,7 +151,7 @@ def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
         assert cell != 0.25 or off == pytest.approx(0.106, abs=0.01)
 
 
-def test_scattered_peak_is_warned_of():
+def test_scattered_peak_is_warned_of() -> None:
     """It names the contact and what was found; a good mesh is not warned of."""
     said = r"'top' \(body 1, 'body'\) with 'arc' \(body 0, .*within 5%.*found it 1\d% off"
     with pytest.warns(ScatteredPressureWarning, match=said):

@@ -1,12 +1,12 @@
-"""Variants of the verification problems: cells, normals, friction, an edge of contact inside a cell.
+"""Variants of Hertz' problems: cells, normals, friction, an edge of contact inside a cell.
 
 The problems themselves are rungs of the ladder (test_ladder.py).
 
-Errors are taken against an overkill solution of the same problem, because a block of 200 mm is no half-space for a
-contact of 12 mm: what is left against Hertz then is the problem's, and is bounded on its own.
+Errors are measured against an overkill solution of the same problem, because a block of 200 mm is no half-space for a
+contact of 12 mm; the difference of that solution from Hertz' has a bound of its own.
 
-Where cells end decides: at a/8 and with γ = 2 C the profile is off by 1 % where a cell ends at the edge of contact (as
-at a/8 by construction), by up to 6 % where the edge cuts a cell, in 2D and in 3D. Both are tested.
+The position of the cells matters: at a/8 and with γ = 2 C the profile is off by 1 % where a cell ends at the edge of
+contact (as at a/8 by construction), by up to 6 % where the edge cuts a cell, in 2D and in 3D. Both are tested.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def test_partial_slip_of_the_cylinder_agrees_with_cattaneo(first):
 
 
 def test_push_beyond_the_friction_force_has_no_equilibrium() -> None:
-    """Pushed with 1.05 μP there is no equilibrium, and no solution is made up; |τ| ≤ μλ holds up to there."""
+    """Pushed with 1.05 μP there is no equilibrium: NotConverged; |τ| ≤ μλ holds at 0.95 μP."""
     pushed = line.Slip(share=0.95).profiles(4)[1]
     assert (np.abs(pushed.shear) <= 0.3 * pushed.pressure * (1.0 + 1e-9) + 1e-9).all()
     with pytest.raises(NotConverged):

@@ -1,4 +1,4 @@
-"""Patch test: a uniform stress is in every finite element space, so non-matching meshes have to return it exactly."""
+"""Patch test: every finite element space contains a uniform stress, which non-matching meshes have to transmit."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_uniform_pressure_passes_rotated_meshes(shape):
 
 
 def test_sliding_block_has_no_equilibrium() -> None:
-    """A shear above μp cannot be held by friction: the solver must say so, not return the traction of a stuck block."""
+    """A shear above μp cannot be held by friction: NotConverged, not the traction of a sticking block."""
     patch = Patch("quadrilateral", 2, friction=0.5 * SHEAR / PRESSURE)
     with pytest.raises(NotConverged):
         solve(patch.problem())

@@ -1,4 +1,4 @@
-"""The condensed contact system: its tangent, what it balances, and the contact conditions at the solution."""
+"""The condensed contact system: tangent, Newton steps, balance of forces, contact conditions at the solution."""
 
 from __future__ import annotations
 
@@ -96,21 +96,22 @@ def test_tangent_is_the_derivative_of_the_residual(make, law):
 
 
 def test_accuracy_of_a_newton_step_follows_the_residual() -> None:
-    """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
-    leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
-    hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
-    for share in 10.0 ** np.arange(-9, 1):
-        left = _accuracy(share * 5e3, 5e3) * share
-        assert left <= max(0.2 * 200.0 * share**2, 1e-2 * TOLERANCE, 1e-7 * share) * (1.0 + 1e-9)
-        assert 1e-7 * share * (1.0 - 1e-9) <= left <= 1e-2 * share * (1.0 + 1e-9)
+    """The linear residual of a Newton step, accuracy times residual, is less than a fifth of the residual that the
+    nonlinearity of the law leaves (200 times the square of the residual), but need not be below a hundredth of the
+    tolerance; it is at most a hundredth of the residual, and at least 1e-7 of it, which double precision reaches. A
+    system without a load has an accuracy, too."""
+    for relative in 10.0 ** np.arange(-9, 1):
+        left = _accuracy(relative * 5e3, 5e3) * relative
+        assert left <= max(0.2 * 200.0 * relative**2, 1e-2 * TOLERANCE, 1e-7 * relative) * (1.0 + 1e-9)
+        assert 1e-7 * relative * (1.0 - 1e-9) <= left <= 1e-2 * relative * (1.0 + 1e-9)
     assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
 def test_work_along_a_step_is_the_derivative_of_the_energy(make):
     """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
-    relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
-    and Newton's step begins with a negative one."""
+    relative, far from the solution and with points that open along the step. It never decreases along a step, as the
+    energy is convex, and is negative at the start of Newton's step."""
     system = normal_part(_position(make()).system())
     problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
     solution = frictionless(system)
@@ -142,7 +143,7 @@ def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("make", [cylinder, ball])
 def test_solution_meets_the_contact_and_friction_conditions(make):
-    """At the solution: λ ≥ 0, no weighted overlap beyond what the flux term explains, |τ| ≤ μλ, the load is carried."""
+    """At the solution: λ ≥ 0, no weighted overlap beyond the flux term, |τ| ≤ μλ, contact force equal to the load."""
     problem = make()
     position = _position(problem)
     solution, _ = position.solve(None)
@@ -157,7 +158,7 @@ def test_solution_meets_the_contact_and_friction_conditions(make):
 
 
 def test_friction_adds_shear_and_stiffness() -> None:
-    """The same cylinder with μ = 0 and 0.2: no shear without friction, and a stiffer contact with it."""
+    """The same cylinder with μ = 0 and 0.2: no shear without friction, a stiffer contact with it."""
     smooth, rough = (solve(cylinder(μ)) for μ in (0.0, FRICTION))
     shear = [
         np.abs(s.contacts[0].traction - s.contacts[0].pressure[:, None] * s.contacts[0].normals).max()
@@ -171,8 +172,8 @@ def test_friction_adds_shear_and_stiffness() -> None:
 @pytest.mark.parametrize("make", [lambda: cylinder(first=0), lambda: cylinder(first=1), ball])
 @pytest.mark.parametrize("friction", [0.0, FRICTION])
 def test_contact_forces_on_both_bodies_are_opposite(make, friction):
-    """Nodal forces on both bodies cancel to 1e-10. Their moments cancel but for what small displacements leave out:
-    the forces act at the undeformed surfaces, which are a gap apart where they touch; at most gap times force."""
+    """Nodal forces on both bodies cancel to 1e-10. Their moments cancel up to gap times force: the forces act at the
+    undeformed surfaces, which are a gap apart where they touch."""
     problem = make()
     problem = Problem(problem.bodies, tuple(Contact(c.first, c.second, friction, c.reach) for c in problem.contacts))
     solution = solve(problem)
@@ -192,7 +193,7 @@ def test_contact_forces_on_both_bodies_are_opposite(make, friction):
 
 
 def test_no_contact_within_reach_is_not_converged() -> None:
-    """A cylinder that is loaded but held away from the block by its reach: an error that says what to do."""
+    """No point in contact under a load: an error that says so."""
     position = _position(cylinder(0.0))
     system = normal_part(position.system())
     none = np.zeros(len(system.operator.weights), dtype=bool)
@@ -210,8 +211,8 @@ def test_solution_does_not_depend_on_the_initial_contact_set() -> None:
 
 
 def test_bad_initial_guess_does_not_prevent_the_solution() -> None:
-    """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
-    without a guess."""
+    """A guess with the bodies a millimetre apart, or in overlap by one, is abandoned: the solution is that without a
+    guess."""
     position = _position(cylinder())
     system, slip = position.system(), position.slip(None)
     unknown, start = np.zeros((len(system.operator.weights), 1)), frictionless(normal_part(system))
@@ -224,7 +225,7 @@ def test_bad_initial_guess_does_not_prevent_the_solution() -> None:
 
 def test_free_tangential_motion_needs_friction() -> None:
     """A cylinder that may also move sideways, pushed with less than μP: with friction it sticks; without friction on a
-    flat first surface nothing resists, and the error names that."""
+    flat first surface nothing resists the push, and the error says so."""
     push = (Freedom("x", load=0.3 * FRICTION * 5e3),)
     solution = solve(cylinder(first=1, extra=push))
     assert solution.contacts[0].force[0] == pytest.approx(-0.3 * FRICTION * 5e3, rel=1e-9)

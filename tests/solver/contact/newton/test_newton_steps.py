@@ -1,4 +1,4 @@
-"""Newton steps one after the other: as accurate as asked for, with what they keep from one another and without."""
+"""Newton steps: accuracy, and reuse of factors from step to step."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ def dense(tangent: Tangent) -> np.ndarray:
 
 
 def error(tangent: Tangent, found: np.ndarray, right: np.ndarray) -> float:
-    """What is left of T y = b, over |b|."""
+    """Residual of T y = b over |b|."""
     return float(np.linalg.norm(right - dense(tangent) @ found) / np.linalg.norm(right))
 
 
 @pytest.fixture
 def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
-    """In which precision each factor was made, and of how many columns."""
+    """Precision and number of columns of each factor made."""
     made: list[tuple[str, int]] = []
     original = ReducedTangent.of
 
@@ -63,7 +63,7 @@ def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-7, 1e-11])
 def test_newton_step_is_as_accurate_as_wanted(accuracy: float) -> None:
-    """A random right-hand side: T y = b up to the accuracy, beyond that of single precision too."""
+    """A random right-hand side: T y = b within the accuracy, also beyond that of single precision."""
     right = RNG(1).normal(size=N * K + 1)
     tangent = sliding(20, 40, 0.2)
     found = NewtonSteps(tangent.A, tangent.H).solve(tangent, right, accuracy)
@@ -92,7 +92,7 @@ def test_factor_is_reused_for_a_similar_tangent(factored: list[tuple[str, int]])
 
 
 def test_factor_of_a_dissimilar_tangent_is_replaced(factored: list[tuple[str, int]]) -> None:
-    """All nodes touch, then only every third: the first factor leads astray, the second step has its own."""
+    """All nodes touch, then only every third: GMRES does not converge with the first factor, a second one is made."""
     steps = NewtonSteps(compliance(), motion())
     whole = sliding(0, N, 0.1)
     right = np.append(whole.M @ RNG(4).normal(size=N * K), 1.0)

@@ -1,4 +1,4 @@
-"""How pressures follow when gaps open, against states solved with other gaps."""
+"""Derivative of the pressures by the gaps, against equilibria with other gaps."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_sensitivity_is_the_derivative_of_the_pressures() -> None:
 
 
 def test_pressure_changes_keep_the_load() -> None:
-    """The torque is held, so that the change of the pressure has none: Hᵀ ∂f = 0."""
+    """The torque is prescribed, so that the change of the pressure has no torque: Hᵀ ∂f = 0."""
     model = model_of(spur_scene())
     shared = shared_position(model, np.radians(1.0), (0.0, 0.0), [0.0], None)
     operator = shared.system.operator
@@ -47,7 +47,7 @@ def test_pressure_changes_keep_the_load() -> None:
 
 
 def test_sensitivity_of_an_open_contact_is_refused() -> None:
-    """Without a pressed point there is no response."""
+    """Without a point in contact there is no derivative: NotConverged."""
     model = model_of(spur_scene())
     shared = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
     apart = replace(shared.smooth, traction=np.zeros_like(shared.smooth.traction))

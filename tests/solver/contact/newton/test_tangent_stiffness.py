@@ -1,4 +1,4 @@
-"""The tangent stiffness of a mesh: against two torques, and that neither relief nor wear counts as compliance."""
+"""Tangent mesh stiffness: against two torques, with tip relief and with wear."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contact law at a node: positive part, ball projection and their derivatives."""
+"""The contact law at a point: positive part, projection onto the friction disc, and their derivatives."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_derivative_of_coulombs_law(d):
 @pytest.mark.parametrize("d", [2, 3])
 @pytest.mark.parametrize("known", [False, True])
 def test_derivative_of_the_starting_guess(d, known):
-    """The same for the law of the first iteration, stuck and with a known direction of slip."""
+    """The same for the law of the first iteration, sticking and with a known direction of slip."""
     trial = _trials(d)
     heading = np.zeros((len(trial), d - 1))
     heading[:, 0] = 1.0 if known else 0.0
@@ -45,7 +45,7 @@ def test_derivative_of_the_starting_guess(d, known):
 
 
 def test_coulombs_law_when_open_sticking_and_sliding() -> None:
-    """Open: nothing. Stuck: τ = q. Sliding: |τ| = μλ along q. One node each, by hand."""
+    """Open: no traction. Sticking: τ = q. Sliding: |τ| = μλ along q. One point each, by hand."""
     trial = np.array([[-1.0, 5.0, 5.0], [2.0, 0.3, -0.4], [2.0, 3.0, 4.0]])
     law = coulomb(trial, 0.5)
     assert np.allclose(law.traction, np.array([[0.0, 0.0, 0.0], [2.0, 0.3, -0.4], [2.0, 0.6, 0.8]]), atol=1e-15)
@@ -53,7 +53,7 @@ def test_coulombs_law_when_open_sticking_and_sliding() -> None:
 
 @pytest.mark.parametrize("d", [2, 3])
 def test_traction_stays_inside_the_friction_cone(d):
-    """λ ≥ 0 and |τ| ≤ μλ for any trial value, also with a coefficient for each node."""
+    """λ ≥ 0 and |τ| ≤ μλ for any trial value, also with a coefficient for each point."""
     trial = np.random.default_rng(1).normal(size=(1000, d))
     μ = np.linspace(0.0, 1.0, 1000)
     traction = coulomb(trial, μ).traction
@@ -62,7 +62,7 @@ def test_traction_stays_inside_the_friction_cone(d):
 
 
 def test_sliding_traction_is_friction_times_pressure() -> None:
-    """With μ > 0 a node far beyond its limit slides with exactly μλ: fails if μ is taken as zero anywhere."""
+    """With μ > 0 a point far beyond its limit slides with exactly μλ; a μ that is taken as zero anywhere fails."""
     law = coulomb(np.array([[10.0, 1e6]]), 0.07)
     assert law.traction[0, 1] == pytest.approx(0.7, rel=1e-14)
     assert coulomb(np.array([[10.0, 1e6]]), 0.0).traction[0, 1] == 0.0

@@ -1,4 +1,4 @@
-"""The recovered nodal traction, the constants of the inverse trace inequality, and what they make of the stiffness."""
+"""Recovered nodal traction, constants of the inverse trace inequality, and coercivity of the stiffness with them."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_stiffness_with_gamma_is_coercive(shape, order, safety):
 
 
 def test_stiffness_far_below_the_limit_is_not_coercive() -> None:
-    """A tenth of the limit is indefinite, and the factorisation says so: the test above can fail."""
+    """With a tenth of the limit the stiffness is indefinite, and its factorisation raises an error."""
     assert np.linalg.eigvalsh(_modified(_block("quadrilateral", 2), 0.1).toarray())[0] < 0.0
     with pytest.raises(NotPositiveDefinite):
         Factor(_modified(_block("quadrilateral", 2), 0.1))
@@ -83,7 +83,7 @@ def test_stiffness_far_below_the_limit_is_not_coercive() -> None:
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
 def test_rigid_motion_has_no_flux(shape, order):
-    """A small rotation and a shift carry no stress: F = 0, so δ enters the contact by the trace alone."""
+    """A small rotation and a translation cause no stress: F = 0, and δ enters the contact by the trace alone."""
     mesh = _block(shape, order)
     nitsche = nitsche_traction(mesh, Material(210e3, 0.3), surface_of(mesh, "top"))
     d = mesh.dimension

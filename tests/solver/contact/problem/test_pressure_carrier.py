@@ -1,5 +1,4 @@
-"""Bodies of very different stiffness, named in either order: the softer one carries the pressure from a ratio of 10
-on."""
+"""Bodies of very different stiffness, named in either order: beyond a ratio of 10 the softer carries the pressure."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ SHORTENED = 1e-3  # mm
 
 
 def oedometric(modulus: float) -> float:
-    """Stress over strain [MPa] of a body that cannot get wider."""
+    """Stress over strain [MPa] of a body that cannot expand sideways."""
     return modulus * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
 
 

@@ -1,4 +1,4 @@
-"""Warnings point to the user's line, through all functions of the packages."""
+"""Warnings point to the line of the user, whatever function of the packages raises them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contact search: no area missed or covered twice, exact partners and gaps, on curved and non-matching facets."""
+"""Pairing: no area missed or covered twice, exact partners and gaps, on curved and non-matching facets."""
 
 from __future__ import annotations
 
@@ -206,7 +206,8 @@ def test_only_gaps_in_range_are_kept() -> None:
 
 
 def test_unusable_surfaces_and_limits_are_refused() -> None:
-    """Mixed dimensions and negative limits are ValueErrors; two layers in range and hopeless facets SearchErrors."""
+    """Mixed dimensions and negative limits are ValueErrors; two layers within reach and too coarse facets are
+    SearchErrors."""
     a = lattice(3, 3, *QUAD2, rectangle((0, 0), (1, 1)))
     line = curve(3, 1, lambda u: np.stack([u, 0 * u], axis=1))
     with pytest.raises(ValueError, match="found 3D facing 2D"):
@@ -223,7 +224,7 @@ def test_unusable_surfaces_and_limits_are_refused() -> None:
 
 
 def test_area_without_partners_is_refused() -> None:
-    """A hilly surface (radius 0.2, slopes of 60°) meshed with three facets: what has no partner raises SearchError."""
+    """A hilly surface (radius 0.2, slopes of 60°) with three facets: area without partners raises SearchError."""
     def hills(turn, z):
         def place(u, v):
             x, y, _ = rectangle((-1, -1), (1, 1), turn)(u, v).T

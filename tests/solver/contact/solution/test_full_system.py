@@ -1,4 +1,4 @@
-"""Condensation is elimination: the condensed and the full system have one solution; and the full tangent is right."""
+"""Condensation is exact elimination: the condensed and the full system have the same solution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""ParaView output of own problems, read back by pyvista: numbers, places, node order of every cell."""
+"""ParaView output of contact problems, read back by pyvista: values, positions, node order of every cell."""
 
 from __future__ import annotations
 
@@ -106,8 +106,8 @@ def test_contact_file_has_pressure_and_traction(written):
 
 
 def test_nodal_averages_keep_the_contact_force(tmp_path):
-    """A cylinder on a block: nodal pressures times the hats' areas are the force; no node is pulled, none is above the
-    peak at the points."""
+    """A cylinder on a block: nodal pressures times the areas of the hat functions are the force; no nodal pressure is
+    negative or above the peak at the points."""
     (solution,) = sweep(cylinder(), [Step()])
     contact = solution.contacts[0]
     surface = pyvista.get_reader(write_paraview(solution, tmp_path)).read()[2]
@@ -118,7 +118,7 @@ def test_nodal_averages_keep_the_contact_force(tmp_path):
 
 
 def test_series_grows_with_the_sweep(tmp_path):
-    """A sweep that fails at its third step leaves two that can be read, nothing half."""
+    """A sweep that fails at its third step leaves two steps that can be read and no partial file."""
 
     def steps():
         yield from (Step(0.5), Step(1.0))
@@ -131,7 +131,7 @@ def test_series_grows_with_the_sweep(tmp_path):
 
 
 def test_failed_write_leaves_no_partial_file(tmp_path):
-    """A folder in a file's place: an error that names it, and no temporary file stays."""
+    """A folder with the name of the file: an error that names it, and no temporary file is left."""
     (tmp_path / "body_0_0001.vtu").mkdir()
     (solution,) = sweep(pressed(), [Step()])
     with pytest.raises(WriteError, match="body_0_0001"):

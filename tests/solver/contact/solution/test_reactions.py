@@ -1,4 +1,4 @@
-"""Reactions of supports and couplings: they balance what acts on each body, and are what statics says."""
+"""Reactions of supports and couplings: balance of each body, and agreement with statics."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_reaction_of_a_rigid_coupling_includes_its_load(solution):
 
 
 def test_node_held_twice_counts_for_the_first_support(solution):
-    """Each support takes what its directions hold: the edge that is led along x carries no vertical force."""
+    """Each support has the forces along its own directions: an edge held along x carries no vertical force."""
     bottom, right = reactions(solution, 1)
     assert (bottom.group, right.group) == ("bottom", "right")
     assert right.force[1] == 0.0

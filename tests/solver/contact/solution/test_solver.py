@@ -1,4 +1,4 @@
-"""The public API: steps, sweeps, placements, several contacts, what is refused; and the page of docs that shows it."""
+"""The public API: steps, sweeps, placements, several contacts, refused steps; and the page that describes it."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_page_on_own_problems_lists_every_public_name() -> None:
 
 
 def test_surfaces_out_of_reach_are_refused() -> None:
-    """Two blocks 1 mm apart, and a reach of 0.1 mm: said, with both surfaces and what to do."""
+    """Two blocks 1 mm apart, and a reach of 0.1 mm: SearchError, with both surfaces and what to do."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0))
     bodies = Body(upper, rigid=Rigid("top", (Freedom("y", load=-1.0),))), Body(lower, supports=(Fixed("bottom"),))
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
@@ -78,7 +78,7 @@ def test_load_factor_scales_a_closed_contact() -> None:
 
 
 def test_load_and_displacement_give_the_same_contact() -> None:
-    """Prescribing the motion that a load made gives that load back, in a later step of the same sweep too."""
+    """Prescribing the motion that resulted from a load gives that load, also in a later step of the same sweep."""
     problem = cylinder(0.0)
     by_load = solve(problem)
     sunk = float(by_load.motions[0][0])
@@ -124,7 +124,7 @@ def test_friction_reverses_when_a_sliding_block_returns() -> None:
 
 
 def test_contact_does_not_depend_on_the_common_frame() -> None:
-    """Both bodies turned and moved together: the same pressure, the traction turned."""
+    """Both bodies rotated and translated together: the same pressure, and the traction rotated."""
     problem = cylinder(FRICTION)
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
     place = Placement(turn, np.array([5.0, -3.0]))
@@ -134,7 +134,7 @@ def test_contact_does_not_depend_on_the_common_frame() -> None:
 
 
 def test_two_contacts_share_the_load() -> None:
-    """A stack of three blocks: the weight of the load passes both interfaces, one with friction and one without."""
+    """A stack of three blocks: both interfaces transmit the whole load, one with friction and one without."""
     blocks = [rectangle(2.0, 1.0, n, 2, origin=(0.0, y)) for n, y in ((4, 2.0), (5, 1.0), (3, 0.0))]
     bodies = (
         Body(blocks[0], supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -60.0)),)),
@@ -204,9 +204,8 @@ def test_rigid_coupling_rotates_about_its_centre() -> None:
 
 
 def test_sweep_continues_after_a_step_that_failed() -> None:
-    """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium, which
-    is said. The same sweep takes a smaller push instead, and gives what a sweep without the failure gives, history
-    included."""
+    """A cylinder is pressed, then pushed by more than friction can hold: that step has no equilibrium, and the error
+    says so. The same sweep then solves a smaller push, with the result of a sweep without the failure, slip included."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
 
     def push(share: float) -> Step:
@@ -225,7 +224,7 @@ def test_sweep_continues_after_a_step_that_failed() -> None:
 
 
 def test_every_step_logs_one_line(caplog):
-    """The logger "evolvent" tells of each step: its number, the load factor, iterations, force and peak pressure."""
+    """One line a step on the logger "evolvent": number, load factor, iterations, force and peak pressure."""
     with caplog.at_level("INFO", logger="evolvent"):
         first, _ = sweep(_flat(), [Step(0.5), Step(1.0)])
     lines = [record.getMessage() for record in caplog.records if record.name == "evolvent"]

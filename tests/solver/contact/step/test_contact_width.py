@@ -1,4 +1,4 @@
-"""How many cells a contact is wide: of known footprints, in 2D and 3D; and the warning."""
+"""Width of a contact in cells: of known patches, in 2D and 3D; and the warning."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_width_of_a_strip(paired):
 
 
 def test_width_is_that_of_the_narrowest_loaded_patch(paired):
-    """Two strips, of 3 and 1 mm: the narrow one; unless it carries hardly anything."""
+    """Two strips, of 3 and 1 mm: the width of the narrow one, unless it carries less than 5 % of the force."""
     x = paired.operator.points[:, 0]
     wide, narrow = (x > 1.0) & (x < 4.0), (x > 5.5) & (x < 6.5)
     assert measure_width(paired, 1.0 * (wide | narrow)).width == pytest.approx(1.0, abs=0.25)
@@ -66,7 +66,7 @@ def test_width_is_that_of_the_narrowest_loaded_patch(paired):
 
 
 def test_width_of_a_whole_surface(paired):
-    """What presses all over is as wide as the surface."""
+    """A contact that presses on the whole surface is as wide as the surface."""
     assert measure_width(paired, np.ones(len(paired.operator.weights))).width == pytest.approx(8.0, abs=0.25)
 
 
@@ -80,13 +80,13 @@ def test_open_contact_has_no_width_and_no_warning(paired):
 
 
 def test_number_of_cells_is_rounded_down_in_the_warning(paired):
-    """1.9996 cells: said as 1.99."""
+    """1.9996 cells are reported as 1.99."""
     with pytest.warns(CoarseContactWarning, match=r"found 1\.99, 2 mm"):
         warn_if_coarse("contact", ContactWidth(1.9996, 1.0))
 
 
 def test_width_of_a_disc_and_of_a_ring() -> None:
-    """In 3D a disc is as wide as its diameter, a ring as its band."""
+    """In 3D a disc has the width of its diameter, a ring that of its band."""
     paired = flat(3)
     r = np.hypot(*(paired.operator.points[:, :2] - 4.0).T)
     assert measure_width(paired, 1.0 * (r < 2.0)).width == pytest.approx(4.0, abs=0.3)

@@ -1,5 +1,5 @@
-"""Contacts whose surfaces move: reach that is too small, bodies placed in overlap, dragged off an edge, turned; and
-what is too large for small strain. Each is held against the same problem stated so that nothing of this matters."""
+"""Contacts whose surfaces move: reach that is too small, bodies placed in overlap, dragged off an edge, rotated; and
+steps beyond small strain. Each is compared with a formulation of the same problem that needs no second search."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def cylinder(reach: float | None, freedom: Freedom) -> Problem:
 @pytest.mark.parametrize("freedom", [Freedom("y", load=-5e3), Freedom("y", displacement=-0.15)])
 @pytest.mark.parametrize("reach", [1e-2, 1e-3])
 def test_overlap_beyond_a_small_reach_is_found(freedom, reach):
-    """Gaps at the edge of contact are 0.05 mm. A reach of a fifth or less of it cut the contact off: force −6 to −27 %,
-    a peak of six to eleven times. It grows: the contact is that of a large reach, force and approach within 0.1 %,
-    pressure within 5 % (its points at the edge differ)."""
+    """Gaps at the edge of contact are 0.05 mm. A contact cut off at a reach of a fifth or less of them has a force 6
+    to 27 % too small and a peak six to eleven times too large. The reach is increased: force and approach are those of
+    a large reach within 0.1 %, the peak within 5 % (points at the edge differ)."""
     wanted, found = solve(cylinder(1.0, freedom)), solve(cylinder(reach, freedom))
     assert found.searches > 1
     assert found.contacts[0].force[1] == pytest.approx(wanted.contacts[0].force[1], rel=1e-3)
@@ -169,7 +169,7 @@ def test_body_rotated_about_its_centre_is_paired_again(first):
 
 
 def test_large_rotation_is_refused() -> None:
-    """0.8 rad would lengthen the disc by a third: said, with the angle and what to do."""
+    """0.8 rad would lengthen the disc by a third: refused, with the angle and what to do."""
     with pytest.raises(SmallStrainExceeded, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
         solve(turned_disc(0.8, 0))
 
@@ -205,7 +205,7 @@ def test_pairing_that_does_not_settle_is_refused(monkeypatch):
 
 
 def test_surfaces_that_face_away_are_refused() -> None:
-    """A punch that is turned by a Placement until its side faces the block finds no partner, and says so."""
+    """A punch that is rotated by a Placement until its side faces the block has no partners: SearchError."""
     quarter = Placement(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([0.0, 0.0]))
     step = Step(placements=(quarter, Placement.at_rest(2)))
     with pytest.raises(SearchError, match="wanted surfaces within"):

@@ -1,5 +1,5 @@
-"""How far the largest pressure lies from its surroundings: of known pressures, of good meshes, and of bad ones, whose
-peaks are off by much more than 5 % though they have cells enough across the contact."""
+"""Scatter of the largest pressure: of known pressures, of good meshes, and of meshes whose peaks are off by much more
+than 5 % though they have enough cells across the contact."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_smooth_pressures_have_no_scatter(paired):
 
 @pytest.mark.parametrize("period", [0.5, 1.0])
 def test_scatter_of_a_wave_is_its_amplitude(paired, period):
-    """±10 % that come and go with each cell of 0.5 mm, or with every second: found at about that."""
+    """Waves of ±10 % with the length of one cell of 0.5 mm, or of two: a scatter of about 10 %."""
     x = paired.operator.points[:, 0]
     assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
 
@@ -122,8 +122,8 @@ def test_scatter_of_a_coarse_press_fit_is_large() -> None:
 
 
 def test_scatter_at_the_edge_of_a_flat_punch_is_large() -> None:
-    """The pressure at the edge of a flat punch is infinite: the peak grows by a tenth or more with each mesh, and no
-    mesh is let pass."""
+    """The pressure at the edge of a flat punch is infinite: the peak grows with each mesh, and all of them are warned
+    of."""
     coarse, fine = punch(4), punch(16)
     assert fine.pressure.max() > 1.2 * coarse.pressure.max()
     assert warned(coarse)
@@ -152,7 +152,7 @@ def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
 
 
 def test_scattered_peak_is_warned_of() -> None:
-    """It names the contact and what was found; a good mesh is not warned of."""
+    """The warning has the name of the contact and the scatter; a good mesh is not warned of."""
     said = r"'top' \(body 1, 'body'\) with 'arc' \(body 0, .*within 5%.*found it 1\d% off"
     with pytest.warns(ScatteredPressureWarning, match=said):
         solve(rubber(0.3, 1.5))

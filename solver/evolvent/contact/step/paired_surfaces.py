@@ -120,7 +120,7 @@ def displaced(placed: SurfacePair, positions: SurfacePositions) -> SurfacePair:
         first, second = (surface.displaced(x - surface.points) for surface, x in zip(placed, positions))
     except ValueError as folded:
         raise SearchError(
-            f"contact on displaced surfaces: wanted facets that stay facets, found {folded}; load in smaller steps, or "
+            f"contact on displaced surfaces: wanted facets that do not fold, found {folded}; load in smaller steps, or "
             "lower the load"
         ) from folded
     return first, second

@@ -78,7 +78,7 @@ def test_zero_residual_gives_a_zero_step() -> None:
 
 def test_factor_is_reused_for_a_similar_tangent(factored: list[tuple[str, int]]) -> None:
     """Three friction coefficients at which the same nodes touch: one factor of their normal columns, and every step is
-    as accurate as asked for. Where others touch too, there is a second one."""
+    as accurate as wanted. When other nodes touch as well, a second factor is made."""
     steps = NewtonSteps(compliance(), motion())
     for friction in (0.1, 0.15, 0.2):
         tangent = sliding(20, 40, friction)

@@ -205,7 +205,7 @@ def test_rigid_coupling_rotates_about_its_centre() -> None:
 
 def test_sweep_continues_after_a_step_that_failed() -> None:
     """A cylinder is pressed, then pushed by more than friction can hold: that step has no equilibrium, and the error
-    says so. The same sweep then solves a smaller push, with the result of a sweep without the failure, slip included."""
+    says so. The same sweep then solves a smaller push with the result of a sweep without the failure, slip included."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
 
     def push(share: float) -> Step:

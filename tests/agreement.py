@@ -73,7 +73,7 @@ def keep(path: Path, solution: Solution) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     contact = solution.contacts[0]
     arrays: dict[str, Any] = {"force": contact.force, "point_traction": contact.traction}
-    for i in range(len(solution.prepared)):
+    for i in range(len(solution.condensed)):
         arrays |= {f"{i}/displacement": solution.displacement(i), f"{i}/nodal_forces": solution.nodal_forces[i]}
     write_bytes(path, arrays_bytes(arrays))
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from evolvent.contact.hertz import LoadFactors, yang_estimate
+from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.scene.checking.problem_size import counted, gigabytes, memory_megabytes, room_problem, sector_sizes
 from evolvent.scene.checking.scene_warnings import scene_warnings

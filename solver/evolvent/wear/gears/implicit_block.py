@@ -17,7 +17,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, normal_part
 from evolvent.contact.newton.newton_steps import RELATIVE
-from evolvent.contact.newton.pressure_sensitivity import PressureResponse
+from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
@@ -63,8 +63,8 @@ class PositionResponse:
         return self
 
     @cached_property
-    def _at_all_points(self) -> PressureResponse:
-        return PressureResponse(self._normal, self._state, self.at_all_points(self.separating))
+    def _at_all_points(self) -> PressureSensitivity:
+        return PressureSensitivity(self._normal, self._state, self.at_all_points(self.separating))
 
     @cached_property
     def matrix(self) -> Floats:

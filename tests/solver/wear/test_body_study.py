@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from evolvent import Contact, Placement, Problem, Step
+from evolvent import Contact, Problem
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
 from evolvent.wear.archard import Archard
@@ -28,6 +28,7 @@ from tests.support.wear_cases import (
     K,
     cylinder,
     sphere,
+    to_and_fro,
 )  # fmt: skip
 
 MILLIMETRE = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
@@ -57,15 +58,6 @@ def test_sphere() -> None:
     *_, block = study.blocks(SLIDING, BlockSettings(first=500.0, tolerance=0.1))
     assert pytest.approx(7.979e-3, rel=5e-4) == SPHERE_DEPTH  # which leaves the h/3 out
     assert block.state.depth.max() == pytest.approx(SPHERE_DEPTH, rel=0.01)
-
-
-def to_and_fro(stroke: float) -> Cycle:
-    """The slab goes to one side, to the other, and back [mm]."""
-
-    def at(x: float) -> Step:
-        return Step(placements=(Placement.at_rest(2), Placement(np.eye(2), np.array([x, 0.0]))))
-
-    return Cycle((Step(), at(stroke), at(0.0), at(-stroke), at(0.0)))
 
 
 @pytest.mark.parametrize("laws", [Archard(K), Archard(0.0, K), Archard(K, 3.0 * K)])

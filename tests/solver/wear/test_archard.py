@@ -12,7 +12,7 @@ from evolvent_meshes.shapes.blocks import box, rectangle
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "hexahedron", "tetrahedron"])
-def test_volume_is_kept(shape: str, order: int) -> None:
+def test_depth_projection_keeps_the_volume(shape: str, order: int) -> None:
     """Random volumes at random points of a surface: Σ m_k h_k is their sum to rounding and no depth is negative, also
     where points lie a little outside their facet."""
     plane = shape == "quadrilateral"
@@ -28,7 +28,7 @@ def test_volume_is_kept(shape: str, order: int) -> None:
     np.testing.assert_allclose(projection.at_points(np.ones(len(depth))), 1.0, rtol=1e-14)
 
 
-def test_uniform_wear_is_uniform() -> None:
+def test_depth_projection_of_a_uniform_depth_is_uniform() -> None:
     """Volumes w of a quadrature on all facets: the depth is 1 everywhere on a plane surface of order 1."""
     from evolvent.fem.lagrange import quadrature
 
@@ -41,7 +41,7 @@ def test_uniform_wear_is_uniform() -> None:
 
 
 @pytest.mark.parametrize("value", [-1e-10, float("nan"), float("inf")])
-def test_bad_coefficient(value: float) -> None:
+def test_bad_wear_coefficient_is_refused(value: float) -> None:
     """K/H below zero, or no number, is refused with its side."""
     with pytest.raises(ValueError, match="wear of the second surface: wanted K/H of zero or more"):
         Archard(1e-10, value)

@@ -107,7 +107,7 @@ def test_halving_the_tolerance_halves_the_error(implicit: bool) -> None:
     assert errors[1] < 0.55 * errors[0] and errors[2] < 0.55 * errors[1]
 
 
-def test_one_cycle_a_block() -> None:
+def test_explicit_block_costs_one_evaluation() -> None:
     """A block that is not refused costs one cycle, and one more at the start."""
     study = Softening()
     _, lengths = worn(study, BlockSettings(0.1, 0.05, implicit=False))
@@ -119,7 +119,7 @@ def test_one_cycle_a_block() -> None:
     assert study.calls == 1 + len(lengths) + refused
 
 
-def test_rolled_back() -> None:
+def test_rejected_block_is_shortened_from_the_same_state() -> None:
     """Blocks above 0.3 cycles fail: shorter ones are made from the same state, to nearly the same end."""
     settings = BlockSettings(1.0, 0.5)
     depth, lengths = worn(Failing(0.3), settings)
@@ -127,7 +127,7 @@ def test_rolled_back() -> None:
     assert depth[0] == pytest.approx(np.sqrt(1.0 + 2.0 * END) - 1.0, rel=0.05)
 
 
-def test_stopped() -> None:
+def test_no_accepted_block_stops_the_study() -> None:
     """No block converges: WearStopped says where and why, and the state is as it was."""
     settings, study = BlockSettings(1.0), Failing(0.0)
     state = initial_wear_state(study, np.full(2, 0.3), settings)
@@ -136,7 +136,7 @@ def test_stopped() -> None:
     assert (state.depth == 0.3).all()
 
 
-def test_a_mesh_that_cannot_follow_shortens_the_block() -> None:
+def test_mesh_inversion_shortens_the_block() -> None:
     """At most 0.5 mm at a time: shorter blocks, to nearly the same end. At most 3 mm in all: the study stops near
     there, and says why; it does not creep towards it."""
     settings = BlockSettings(5.0, 0.5)
@@ -172,7 +172,7 @@ def test_deformation_limits_a_block() -> None:
 
 
 @pytest.mark.parametrize("wrong", [{"first": 0.0}, {"first": 1.0, "tolerance": -1.0}, {"first": float("nan")}])
-def test_bad_settings(wrong: dict[str, float]) -> None:
+def test_bad_block_settings_are_refused(wrong: dict[str, float]) -> None:
     """Lengths and tolerances that are not above zero are refused by name."""
     with pytest.raises(ValueError, match=r"wanted .* above zero, found"):
         BlockSettings(**wrong)

@@ -35,7 +35,7 @@ MILLIMETRE = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
 
 
 @pytest.mark.parametrize("follows", [False, True])
-def test_cylinder(follows: bool) -> None:
+def test_rigid_cylinder_wears_flat(follows: bool) -> None:
     """A nearly rigid cylinder worn flat: a = (3RkF's/2)^⅓ = 0.19574 mm, h = a²/2R = 3.832e-3 mm, within 1 %; also where
     the mesh follows each 1e-3 mm. Volume kF's within 1e-6 at the nodes, and the mesh's own loss within 0.1 %."""
     assert pytest.approx(0.19574, abs=5e-6) == CYLINDER_WIDTH
@@ -52,7 +52,7 @@ def test_cylinder(follows: bool) -> None:
     assert before - after == pytest.approx(volume, rel=1e-3)
 
 
-def test_sphere() -> None:
+def test_rigid_sphere_wears_flat() -> None:
     """A nearly rigid sphere worn flat: πh²(R − h/3) = kFs, h = 7.979e-3 mm, within 1 %."""
     study = WearStudy(sphere(), (Archard(K),), MILLIMETRE)
     *_, block = study.blocks(SLIDING, BlockSettings(first=500.0, tolerance=0.1))
@@ -62,7 +62,7 @@ def test_sphere() -> None:
 
 @pytest.mark.parametrize("laws", [Archard(K), Archard(0.0, K), Archard(K, 3.0 * K)])
 @pytest.mark.parametrize(("order", "friction"), [(1, 0.0), (1, 0.3), (2, 0.0), (2, 0.3)])
-def test_both_sides(laws: Archard, order: int, friction: float) -> None:
+def test_volumes_of_one_or_both_worn_sides(laws: Archard, order: int, friction: float) -> None:
     """One or both bodies wear as the slab goes to and fro by 0.0005 mm: on every side that wears, and on no other, the
     volume at the nodes is K/H ∫∫p|v_s| within 1e-6 in every block, and with friction that is what friction takes over
     μ. The sliding is the stroke less what the bodies give way."""
@@ -83,7 +83,7 @@ def test_both_sides(laws: Archard, order: int, friction: float) -> None:
             assert abs(lost) / friction == pytest.approx(work, rel=1e-5 if order == 1 else 1e-6)
 
 
-def test_nothing_that_wears() -> None:
+def test_study_without_wear_or_laws_is_refused() -> None:
     """Without a K/H above zero there is nothing to study; without a law for a contact neither."""
     with pytest.raises(ValueError, match="wanted a K/H above zero on some surface"):
         WearStudy(cylinder(3.0), (Archard(),), MILLIMETRE)
@@ -91,7 +91,7 @@ def test_nothing_that_wears() -> None:
         WearStudy(cylinder(3.0), (), MILLIMETRE)
 
 
-def test_explicit_and_implicit_agree() -> None:
+def test_explicit_and_implicit_blocks_agree() -> None:
     """A soft cylinder, whose contact is three cells wide at first, by explicit and by implicit blocks at 2 %: the two
     differ by less than 2 % of the volume."""
     depths = []
@@ -105,7 +105,7 @@ def test_explicit_and_implicit_agree() -> None:
     assert study.areas @ np.abs(depths[0] - depths[1]) < 0.02 * study.areas @ depths[1]
 
 
-def test_the_loop_goes_on() -> None:
+def test_slip_cycle_is_periodic() -> None:
     """Steel that goes to and fro by little more than it sticks: each leg slides as in a loop that has gone on for ever,
     the way out as far as the way back, and pressing wears nothing."""
     steel = Material(2.1e5, 0.3)
@@ -116,7 +116,7 @@ def test_the_loop_goes_on() -> None:
     assert work[2] == pytest.approx(work[4], rel=1e-3)
 
 
-def test_long_steps_are_refused() -> None:
+def test_steps_longer_than_the_contact_are_refused() -> None:
     """A step of 0.3 mm over a contact of 0.05 mm: what lies between would not wear."""
     steel = Material(2.1e5, 0.3)
     study = WearStudy(cylinder(4.0, 1, 0.0, steel), (Archard(K),), to_and_fro(0.3))
@@ -133,7 +133,7 @@ def slabs(E: float = 2.1e5) -> Problem:
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.05),))
 
 
-def test_worn_far_beyond_reach() -> None:
+def test_wear_beyond_the_reach_moves_the_mesh() -> None:
     """A block worn to a fifth of its height, in one block of cycles if it could be: the contact is looked for within
     0.05 mm, so that blocks are made shorter, the mesh follows, and the reach with it. The mesh has lost K F s."""
     study = WearStudy(slabs(), (Archard(1e-6),), MILLIMETRE)
@@ -145,7 +145,7 @@ def test_worn_far_beyond_reach() -> None:
     assert left == pytest.approx(2.0 - 1.6, rel=1e-3)
 
 
-def test_worn_away() -> None:
+def test_body_worn_away_stops_the_study() -> None:
     """Wear of ten times the block's height: it ends with a message before the block is gone, and the last good state
     can be solved."""
     study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), []
@@ -158,7 +158,7 @@ def test_worn_away() -> None:
     assert state.volumes[0, "bottom"] == pytest.approx(1.0 * 2e-3 * 2.1e5, rel=1e-6)
 
 
-def test_travel_of_nothing() -> None:
+def test_travel_without_body_or_sliding_is_refused() -> None:
     """A body that there is not, and a cycle in which nothing slides."""
     with pytest.raises(ValueError, match="wanted travel of a body below 2, found body 5"):
         WearStudy(cylinder(3.0), (Archard(K),), Cycle(travel=(Travel(5, translation=(1.0, 0.0, 0.0)),)))
@@ -167,7 +167,7 @@ def test_travel_of_nothing() -> None:
         still.evaluate(np.zeros(len(still.areas)))
 
 
-def test_sphere_whose_mesh_follows() -> None:
+def test_mesh_of_a_worn_sphere_loses_the_worn_volume() -> None:
     """A quarter of a sphere, whose planes of symmetry come down with it: the mesh loses what the contact took away
     within 0.1 %."""
     whole = mesh_volume(sphere().bodies[0].mesh)

@@ -29,7 +29,7 @@ def block(shape: str, order: int) -> MeshData:
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "triangle", "hexahedron", "tetrahedron"])
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_volume(shape: str, order: int, follow: str) -> None:
+def test_moved_mesh_loses_the_worn_volume(shape: str, order: int, follow: str) -> None:
     """The top of a block worn by 0.05 (1 + cos πx) mm, 0 at one side: the mesh loses Σ m_k h_k within 0.1 %, its sides
     stay plane and its bottom stays."""
     mesh = block(shape, order)
@@ -44,7 +44,7 @@ def test_volume(shape: str, order: int, follow: str) -> None:
 
 
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_uniform_wear_of_a_block_is_uniform_squeezing(follow: str) -> None:
+def test_uniform_wear_moves_a_block_straight_down(follow: str) -> None:
     """A block worn by the same depth everywhere: the top goes down by it, no node moves sideways."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")
@@ -55,7 +55,7 @@ def test_uniform_wear_of_a_block_is_uniform_squeezing(follow: str) -> None:
         np.testing.assert_allclose(shift[:, 0], 0.0, atol=1e-12)
 
 
-def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
+def test_worn_edge_stays_in_its_adjacent_face() -> None:
     """A half disc whose arc wears, cut off at an angle by its flat top: at the arc's ends, 45° up, other facets go on
     smoothly, so that the direction is the normal; at a block's corner it is the side's."""
     disc = cylinder_2d(1.0, 0.1, 0.2)
@@ -73,7 +73,7 @@ def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
 
 
 @pytest.mark.parametrize("shape", ["quadrilateral", "triangle"])
-def test_which_equation_keeps_better_cells(shape: str) -> None:
+def test_elastic_interior_keeps_better_cells(shape: str) -> None:
     """A block 2 wide and 1 high loses a pit a·exp(−(x/w)²) in one go. The elastic equation keeps better cells, by more
     than 0.03 of the scaled Jacobian at a = 0.2, w = 0.25 and 0.5, and can follow deeper: a = 0.3, w = 0.25 turns cells
     over that follow the harmonic one."""
@@ -92,7 +92,7 @@ def test_which_equation_keeps_better_cells(shape: str) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_squeezed_cells_do_not_bulge(order: int) -> None:
+def test_compressed_cells_stay_within_the_side_faces(order: int) -> None:
     """Half of a block worn off evenly, elastically: what is squeezed would bulge past its sides, which stay; kept from
     that only afterwards, the nodes beside them turned the cells over."""
     mesh = block("quadrilateral", order)
@@ -101,7 +101,7 @@ def test_squeezed_cells_do_not_bulge(order: int) -> None:
     assert scaled_jacobians(moved).min() > 0.9
 
 
-def test_turned_over_is_refused() -> None:
+def test_inverted_cells_are_refused() -> None:
     """Deeper than the body is high: MeshInverted with the place and what to do."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")
@@ -109,7 +109,7 @@ def test_turned_over_is_refused() -> None:
         worn_mesh(mesh, [WornSurface(top, np.full(len(top.points), 1.2))], ["bottom"])
 
 
-def test_nothing_held_is_refused() -> None:
+def test_mesh_motion_without_a_held_group_is_refused() -> None:
     """Without a group at rest the whole body would follow its surface."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")

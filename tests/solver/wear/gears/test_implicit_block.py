@@ -26,7 +26,7 @@ def fresh() -> tuple[GearWear, PitchState]:
     return gears, gears.evaluate(gears.begin)
 
 
-def test_response_as_a_matrix() -> None:
+def test_pressure_response_as_matrix_and_as_product() -> None:
     """R times an opening is the same by the matrix and by the product, to rounding; points that have left the contact
     keep no pressure, whatever opens."""
     now = fresh()[1]
@@ -41,7 +41,7 @@ def test_response_as_a_matrix() -> None:
     np.testing.assert_allclose(left.separation[pulled], -left.points.pressure[pulled], rtol=1e-12)
 
 
-def test_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_implicit_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
     """An implicit block is the same within what GMRES leaves, however many points count as few."""
     gears, now = fresh()
     few, _ = gears.implicit_block(gears.begin, now, LENGTH)
@@ -50,7 +50,7 @@ def test_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> N
     np.testing.assert_allclose(few, many, atol=1e-5 * few.max())
 
 
-def test_long_block_lets_points_go() -> None:
+def test_long_implicit_block_has_no_negative_depth() -> None:
     """In 4e5 cycles at once points would pull: what is worn off is nowhere below zero, and the pressures of the block's
     end, found by solving the pitch there, are those that it has reckoned with, within a tenth of the work."""
     gears, now = fresh()

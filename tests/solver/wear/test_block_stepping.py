@@ -1,4 +1,4 @@
-"""Blocks of cycles on equations with a known solution."""
+"""Block stepping on equations with a known solution."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ END = 20.0
 
 
 class Softening:
-    """dh/dN = 1/(1 + h): h = √(1 + 2N) − 1, at two nodes, the second with half the rate and depth scale."""
+    """dh/dN = 1/(1 + h) with h = √(1 + 2N) − 1, at two nodes, the second with half the rate and depth scale."""
 
     def __init__(self) -> None:
         self.calls = 0
@@ -44,7 +44,7 @@ class Softening:
 
 
 class Failing(Softening):
-    """The same, but no block longer than `longest` cycles converges."""
+    """The same, but blocks longer than `longest` cycles do not converge."""
 
     def __init__(self, longest: float) -> None:
         super().__init__()
@@ -57,7 +57,7 @@ class Failing(Softening):
 
 
 class Inverting(Softening):
-    """The same, but no mesh follows by more than `deepest` at a time, or in all by more than `last`."""
+    """The same, but the mesh cannot follow by more than `deepest` at a time, or by more than `last` in all."""
 
     def __init__(self, deepest: float, last: float) -> None:
         super().__init__()
@@ -95,8 +95,8 @@ def worn(wearable, settings: BlockSettings):
 
 @pytest.mark.parametrize("implicit", [False, True])
 def test_halving_the_tolerance_halves_the_error(implicit: bool) -> None:
-    """h(20) = √41 − 1: below the tolerance, and at half the tolerance nearly or less than half the error (as long
-    as the first block, which has none to choose, does not count); blocks add up to 20."""
+    """Problem: `Softening` to 20 cycles at three tolerances. Exact: h(20) = √41 − 1. The error is below the tolerance,
+    and at half the tolerance at most about half as large; the blocks add up to 20 cycles."""
     exact, errors = np.sqrt(1.0 + 2.0 * END) - 1.0, []
     for tolerance in (0.04, 0.02, 0.01):
         depth, lengths = worn(Softening(), BlockSettings(0.01, tolerance, implicit))
@@ -108,7 +108,7 @@ def test_halving_the_tolerance_halves_the_error(implicit: bool) -> None:
 
 
 def test_explicit_block_costs_one_evaluation() -> None:
-    """A block that is not refused costs one cycle, and one more at the start."""
+    """Explicit blocks cost one evaluation each, rejected ones included, and one more at the start."""
     study = Softening()
     _, lengths = worn(study, BlockSettings(0.1, 0.05, implicit=False))
     state = initial_wear_state(again := Softening(), np.zeros(2), BlockSettings(0.1, 0.05, implicit=False))
@@ -120,7 +120,8 @@ def test_explicit_block_costs_one_evaluation() -> None:
 
 
 def test_rejected_block_is_shortened_from_the_same_state() -> None:
-    """Blocks above 0.3 cycles fail: shorter ones are made from the same state, to nearly the same end."""
+    """Problem: blocks above 0.3 cycles do not converge. Exact: shorter ones from the same state reach h(20) within 5
+    %."""
     settings = BlockSettings(1.0, 0.5)
     depth, lengths = worn(Failing(0.3), settings)
     assert max(lengths) <= 0.3
@@ -128,7 +129,7 @@ def test_rejected_block_is_shortened_from_the_same_state() -> None:
 
 
 def test_no_accepted_block_stops_the_study() -> None:
-    """No block converges: WearStopped says where and why, and the state is as it was."""
+    """Problem: no block converges. Exact: WearStopped names the cycles and the reason, and the state is unchanged."""
     settings, study = BlockSettings(1.0), Failing(0.0)
     state = initial_wear_state(study, np.full(2, 0.3), settings)
     with pytest.raises(WearStopped, match=r"after 0 cycles.*too long.*last good state is kept"):
@@ -137,8 +138,8 @@ def test_no_accepted_block_stops_the_study() -> None:
 
 
 def test_mesh_inversion_shortens_the_block() -> None:
-    """At most 0.5 mm at a time: shorter blocks, to nearly the same end. At most 3 mm in all: the study stops near
-    there, and says why; it does not creep towards it."""
+    """Problem: meshes follow by at most 0.5 mm at a time: shorter blocks reach the exact end within 10 %. By at most 3
+    mm in all: the study stops near there with the reason, after a bounded number of evaluations."""
     settings = BlockSettings(5.0, 0.5)
     depth, lengths = worn(Inverting(0.5, np.inf), settings)
     assert len(lengths) > 10
@@ -152,8 +153,8 @@ def test_mesh_inversion_shortens_the_block() -> None:
 
 @pytest.mark.parametrize(("share", "grows"), [(STABLE_SHARE, False), (1.3 * STABLE_SHARE, True)])
 def test_explicit_blocks_are_stable(share: float, grows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A ripple of 1e-3 on a depth of some cycles, in blocks as long as they may be: it is worn off; in blocks a third
-    longer it grows."""
+    """Problem: a ripple of 1e-3 on a depth of some cycles, in blocks of the largest length. Exact: at the stability
+    limit it decays; in blocks a third longer it grows."""
     monkeypatch.setattr(block_stepping, "STABLE_SHARE", share)
     study, settings = Rippling(), BlockSettings(END, implicit=False)
     state = initial_wear_state(study, np.array([0.0, 1e-3]), settings)
@@ -164,7 +165,7 @@ def test_explicit_blocks_are_stable(share: float, grows: bool, monkeypatch: pyte
 
 
 def test_deformation_limits_a_block() -> None:
-    """At most a tenth of the deformation, 1 mm, a block at the rate of its start, 1 mm a cycle."""
+    """Problem: at most a tenth of the deformation, 1 mm, a block, at a rate of 1 mm per cycle. Exact: 0.1 cycles."""
     settings = BlockSettings(5.0, 1.0, implicit=False, deformation_share=0.1)
     study = Softening()
     state = initial_wear_state(study, np.zeros(2), settings)

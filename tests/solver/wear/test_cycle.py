@@ -1,4 +1,4 @@
-"""A cycle on worn surfaces is solved on step systems that know nothing of wear."""
+"""A cycle on worn surfaces, solved on step systems that do not depend on wear."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SIDE = (0, "arc")
 
 
 def test_no_class_derives_from_the_step_system() -> None:
-    """Wear is composed with a step system: no subclass can be half built while the system's constructor runs."""
+    """Wear is composed with a step system: no subclass can be half initialised while the system's constructor runs."""
     assert Position.__subclasses__() == []
 
 

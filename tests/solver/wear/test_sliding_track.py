@@ -1,4 +1,4 @@
-"""Bodies that travel wear on their whole track: wheels, discs and belts, against what Archard's law asks for."""
+"""Bodies that travel wear on their whole track: wheels, discs and belts, against Archard's law."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ def certified(study: WearStudy, state: CycleState) -> None:
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("order", [1, 2])
 def test_wheel_wears_all_around_its_rim(order: int, friction: float) -> None:
-    """A wheel turns on a block, 2D, K/H different. Exact: all around, the wheel loses (K₁/H) F' in a revolution, 2πR
-    times that as volume; the block loses (K₂/H) F' 2πR in place. The contact is 0.015 R wide to each side, so that the
-    pressure is inclined by up to 1e-4."""
+    """Problem: a wheel turns on a block, 2D, different K/H. Exact: all around, the wheel loses (K₁/H) F' in a
+    revolution, as volume 2πR times that; the block loses (K₂/H) F' 2πR in place. The contact is 0.015 R wide to each
+    side, so that the pressure is inclined by up to 1e-4."""
     law = Archard(K, 3.0 * K)
     study = WearStudy(cylinder(8.0, order, friction, SOFT), (law,), WHEEL)
     state = fresh(study)
@@ -68,8 +68,8 @@ def test_wheel_wears_all_around_its_rim(order: int, friction: float) -> None:
 
 
 def test_plane_belt_wears_along_its_whole_length() -> None:
-    """A belt of length l = |translation| slides past a cylinder, 2D, aslant to the axes as made. Exact: all along, it
-    loses (K₂/H) F' in a cycle; the cylinder (K₁/H) F' l in place."""
+    """Problem: a belt of length l = |translation| slides past a cylinder, 2D, at an angle to the axes as made. Exact:
+    all along, it loses (K₂/H) F' in a cycle; the cylinder (K₁/H) F' l in place."""
     R, length = np.array([[0.6, -0.8], [0.8, 0.6]]), 250.0
     pin, slab = cylinder(8.0, material=SOFT).bodies
     slab = replace(slab, mesh=replace(slab.mesh, points=slab.mesh.points @ np.pad(R, (0, 1))))
@@ -98,9 +98,10 @@ def in_strips(study: WearStudy, state: CycleState, strips: Floats) -> tuple[Floa
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("travel", [DISC, BELT, replace(BELT, translation=(30.0, 40.0, 0.0))])
 def test_track_loses_what_passes_over_it(travel: Travel, friction: float, order: int) -> None:
-    """A square punch on a disc that turns, on a belt that slides along its side and aslant. Exact: at c the track loses
-    (K/H) ∫p along the path, so that what passes between two c is lost there, whatever p is; found in strips a third of
-    the punch wide within 3 %, as the hats smooth over one cell. In all the volume is K/H ∫∫p|v_s|."""
+    """Problem: a square punch on a rotating disc, and on a belt that slides along its side and at an angle. Exact: at c
+    the track loses (K/H)∫p along the path, so a strip between two c loses the wear of the points that pass over it, for
+    any p; within 3 % in strips a third of the punch wide, as hat functions smooth over one cell. In all the volume is
+    (K/H)∫∫p|v_s|."""
     study = WearStudy(punch(order, friction), (Archard(K, 2.0 * K),), Cycle(travel=(travel,)))
     state = fresh(study)
     certified(study, state)
@@ -112,8 +113,8 @@ def test_track_loses_what_passes_over_it(travel: Travel, friction: float, order:
 
 
 def test_depth_across_a_belt_integrates_to_the_load() -> None:
-    """A belt of length l = |translation| slides under a square punch: the integral of its depth across the path is
-    (K/H) F, whatever the pressure, and further off the punch than a cell there is none."""
+    """Problem: a belt of length l = |translation| slides under a square punch. Exact: its depth integrated across the
+    path is (K/H) F for any pressure, and more than a cell beside the punch it is zero."""
     study = WearStudy(punch(), (Archard(0.0, K),), Cycle(travel=(BELT,)))
     rate, track = study.by_side(fresh(study).rate)[RING], study.tracks[RING]
     assert track.areas.sum() == pytest.approx(60.0 * 4.0, rel=1e-12)
@@ -123,7 +124,7 @@ def test_depth_across_a_belt_integrates_to_the_load() -> None:
 
 
 def test_rate_of_the_unworn_pin_is_independent_of_the_disc() -> None:
-    """In the first cycle nothing is worn yet: the pin's rate is the same whatever the disc's K/H is."""
+    """Problem: the first cycle, with no wear yet. Exact: the pin's rate is the same for any K/H of the disc."""
     cycle = Cycle(travel=(DISC,))
     rates = []
     for second in (0.0, 5.0 * K):
@@ -133,8 +134,8 @@ def test_rate_of_the_unworn_pin_is_independent_of_the_disc() -> None:
 
 
 def test_track_of_a_placed_body_is_that_of_the_body_as_made() -> None:
-    """The disc and its axis are made 3 mm aside and turned by 90°, and the step puts them under the pin: the same depth
-    over the radius."""
+    """Problem: disc and axis are made 3 mm aside and turned by 90°, and the step places them under the pin. Exact: the
+    same depth over the radius."""
     plain = WearStudy(punch(), (Archard(0.0, K),), Cycle(travel=(DISC,)))
     R, shift = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([3.0, 0.0, 0.0])
     pin, disc = punch().bodies
@@ -146,8 +147,8 @@ def test_track_of_a_placed_body_is_that_of_the_body_as_made() -> None:
 
 
 def test_track_on_the_side_of_a_cylinder() -> None:
-    """A plane that all lies at the radius R of a far axis, spread along it: c is the place on the axis, the ring is 2πR
-    long everywhere."""
+    """Problem: a plane at the radius R of a far axis, extended along it. Exact: c is the place along the axis, and the
+    ring is 2πR long everywhere."""
     strip = surface_of(box((1e-3, 2.0, 1.0), (1, 8, 2), 1, origin=(-5e-4, 0.0, -1.0)), "top")
     track = track_of(strip, Travel(0, rotation=(0.0, 1.0, 0.0), centre=(0.0, 0.0, -RADIUS)))
     assert (track.grid[0], track.grid[-1]) == (0.0, 2.0)
@@ -164,13 +165,14 @@ def test_track_on_the_side_of_a_cylinder() -> None:
     ],
 )
 def test_travel_without_a_track_is_refused(travel: Travel, found: str) -> None:
-    """Turning and going straight on at once, neither, an axis in the surface, a path straight out of it."""
+    """Rotation and translation at once, neither, an axis in the surface, and a path out of it are refused."""
     with pytest.raises(ValueError, match=found):
         WearStudy(punch(), (Archard(K, K),), Cycle(travel=(travel,)))
 
 
 def test_surface_off_its_track_is_refused() -> None:
-    """A sphere that turns; a wheel that turns about another axis than its own; two travels of one body."""
+    """A rotating sphere, a wheel that turns about another axis than its own, and two travels of one body are
+    refused."""
     ball = surface_of(ring_sphere(RADIUS, 3.0, 3.0, 1.0, 0.5, 1.5), "arc")
     with pytest.raises(ValueError, match="wanted a surface that stays on its own track"):
         track_of(ball, Travel(0, rotation=(0.0, 0.0, TURN)))
@@ -183,9 +185,10 @@ def test_surface_off_its_track_is_refused() -> None:
 
 @pytest.mark.parametrize(("travel", "off"), [(BELT, 0.01), (DISC, 0.1)])
 def test_mesh_follows_the_depth_of_its_track(travel: Travel, off: float) -> None:
-    """The mesh goes down to the depth of its track: it loses ∫ of its nodal depth within 0.1 %. The contact is what it
-    was with the depth in the gap, as far as the mesh can show the track: whole rows of nodes lie at the belt's grid,
-    none at the disc's, whose depth ends within a cell beside the punch; the pressure has changed by a third."""
+    """Problem: the mesh moves down by the depth of its track. Exact: it loses the integral of its nodal depth within
+    0.1 %. The contact is the same as with the depth in the gap, as far as the mesh resolves the track: whole rows of
+    nodes lie on the belt's grid, none on the disc's, whose depth ends within a cell beside the punch; the pressure has
+    changed by a third."""
     study = WearStudy(punch(), (Archard(K, 40.0 * K),), Cycle(travel=(travel,)))
     new = fresh(study)
     depth = 60.0 * new.rate
@@ -201,9 +204,9 @@ def test_mesh_follows_the_depth_of_its_track(travel: Travel, off: float) -> None
 
 
 def test_implicit_and_explicit_blocks_of_pin_and_disc_agree() -> None:
-    """Pin and disc wear in blocks, explicit ones at 0.5 %, implicit ones at 1 % and at 0.25 %: every block's volumes
-    are certified, and with the tolerance the implicit ones' depths in the end come to those of the explicit ones, from
-    within 5 % to within 1.5 % of the volume."""
+    """Problem: pin and disc wear in explicit blocks at 0.5 %, and in implicit ones at 1 % and at 0.25 %. Every block's
+    volumes are certified, and with the tolerance the final depths of the implicit blocks converge to those of the
+    explicit ones, from within 5 % to within 1.5 % of the volume."""
     depths = []
     for implicit, tolerance in ((False, 0.005), (True, 0.01), (True, 0.0025)):
         study = WearStudy(punch(), (Archard(K, 6.0 * K),), Cycle(travel=(DISC,)))
@@ -217,8 +220,8 @@ def test_implicit_and_explicit_blocks_of_pin_and_disc_agree() -> None:
 
 
 def test_worn_belt_tends_to_a_uniform_rate() -> None:
-    """Only the belt wears, until it gives way evenly under the punch. Exact then: (K/H) F/b all over the width b, where
-    an unworn belt loses a fifth less or more. Within 3 % but for the cells that the edges are in."""
+    """Problem: only the belt wears, until its rate is uniform under the punch. Exact: (K/H) F/b over the width b, where
+    the rate of an unworn belt varies by a fifth; within 3 % except for the cells at the edges."""
     study = WearStudy(punch(), (Archard(0.0, 10.0 * K),), Cycle(travel=(BELT,)))
     *_, block = study.blocks(1e4, BlockSettings(20.0, 0.01))
     inside = np.abs(study.tracks[RING].grid) < 0.5 * PUNCH - 1e-9

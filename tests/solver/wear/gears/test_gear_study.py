@@ -21,7 +21,7 @@ def studied(refresh: float) -> tuple[GearWear, list[StudyState]]:
 
 
 def test_study_depths_do_not_depend_on_mesh_updates() -> None:
-    """Meshes that follow each 0.5 µm or not at all: depths within 1 % of the volume; both lose what was worn off."""
+    """Problem: meshes that follow each 0.5 µm, or not at all. Exact: the same depths, within 1 % of the volume."""
     (never, fixed), (often, moved) = studied(np.inf), studied(5e-4)
     assert never.mesh_updates == 0 and often.mesh_updates >= 3
     one, other = fixed[-1].state.depth, moved[-1].state.depth
@@ -30,8 +30,8 @@ def test_study_depths_do_not_depend_on_mesh_updates() -> None:
 
 
 def test_resumed_study_takes_the_same_blocks() -> None:
-    """Kept after the third block, when the meshes had followed, and gone on with by other objects: the same blocks and
-    depths as without a stop within 1e-9 of the deepest."""
+    """Problem: a study resumed by other objects from a checkpoint after the third block, when the meshes had followed.
+    Exact: the blocks and depths of the study without a stop, within 1e-9 of the largest depth."""
     _, whole = studied(5e-4)
     scene = wear_scene("spur")
     first = wearing_pair(scene, 8, 5e-4)

@@ -15,8 +15,8 @@ from tests.support.gear_wear_cases import K, smooth_wear, solved_pitch, wear_sce
 
 @pytest.mark.parametrize("scene", ["spur", "helical"])
 def test_worn_volume_of_both_gears(scene: str) -> None:
-    """Pinion and wheel lose K/H ∫∫p|v_s| dA dt to rounding, the wheel's tooth 1/u times as often; with friction it is
-    the solutions' friction loss over μ within 1 %."""
+    """Problem: a pitch with friction. Exact: pinion and wheel lose (K/H)∫∫p|v_s| dA dt to rounding, the wheel's tooth
+    1/u times as often; the integral is the friction loss of the solutions over μ within 2 %."""
     study, state = solved_pitch(8, 0.1, scene)
     depths = study.by_gear(state.rate)
     for gear, K_own, often in ((0, K, 1.0), (1, 2.0 * K, 1.0 / study.model.pair.ratio)):
@@ -28,9 +28,9 @@ def test_worn_volume_of_both_gears(scene: str) -> None:
 
 
 def test_friction_history_does_not_depend_on_the_first_position() -> None:
-    """Problem: a helical pitch with strong friction, begun at two of its positions. Exact: the same pitch, transmission
-    errors within what may be left of either beginning; without going on from its own end the first position is off by
-    six times as much."""
+    """Problem: a helical pitch with strong friction, begun at two of its positions. Exact: the same periodic pitch,
+    with transmission errors within the tolerance of its periodicity; without repeating the pitch the first position is
+    off by six times as much."""
     model, found = model_of(helical_scene("contact.friction=0.5")), []
     step = 2.0 * np.pi / model.pair.pinion.z / 6
     for begin in (0, 3):
@@ -41,8 +41,8 @@ def test_friction_history_does_not_depend_on_the_first_position() -> None:
 
 
 def test_uniform_wear_adds_to_the_transmission_error() -> None:
-    """Both flanks worn by 5 and 3 µm everywhere: the transmission error grows by 8 µm within 0.1 %, as the flanks are
-    parallel curves of what they were, which are involutes of the same base circle."""
+    """Problem: both flanks worn by 5 and 3 µm everywhere. Exact: worn flanks are parallel curves, involutes of the same
+    base circles, so the transmission error grows by 8 µm, within 0.1 %."""
     study, fresh = solved_pitch(8)
     pinion, wheel = study.by_gear(study.begin)
     worn = study.evaluate(np.concatenate([np.full_like(pinion, 5e-3), np.full_like(wheel, 3e-3)]))
@@ -51,8 +51,9 @@ def test_uniform_wear_adds_to_the_transmission_error() -> None:
 
 
 def test_reused_searches_give_the_same_rates() -> None:
-    """Flanks worn by 1 µm together, from the positions kept of unworn ones and searched anew: the same transmission
-    error within 3e-4 of the wear and the same rates within 1 %, and nothing was searched in between."""
+    """Problem: flanks worn by 1 µm together, from the searches on unworn flanks and from new ones. Exact: the same
+    transmission error within 3e-4 of the wear and the same rates within 1 %; no position is searched in the first
+    case."""
     study, fresh = solved_pitch(8)
     depth = np.full_like(study.begin, 0.5e-3)
     kept, anew = study.evaluate(depth, fresh), study.evaluate(depth)
@@ -63,8 +64,8 @@ def test_reused_searches_give_the_same_rates() -> None:
 
 
 def test_implicit_block_against_many_explicit_ones() -> None:
-    """60,000 meshes in one implicit block, and in 24 explicit ones: their difference is what the block's error says,
-    within a factor of two, no depth is negative, and the volume is that of the linearised pressures."""
+    """Problem: 60,000 meshes in one implicit block and in 24 explicit ones. Exact: they differ by the block's error
+    within a factor of two, and no depth is negative."""
     study, fresh = solved_pitch(20)
     length = 6e4
     gained, end = study.implicit_block(study.begin, fresh, length)
@@ -79,7 +80,7 @@ def test_implicit_block_against_many_explicit_ones() -> None:
 
 
 def test_positions_that_are_no_pitch_are_refused() -> None:
-    """Half a pitch, and unequal steps, are refused."""
+    """Half a pitch, unequal steps and a single position are refused."""
     model, law = solved_pitch(8)[0].model, Archard(K)
     whole = uniform_pitch(model.pair.pinion.z, 8)
     for angles in (whole.angles[:4], (*whole.angles[:7], whole.angles[7] + 1e-3), whole.angles[:1]):
@@ -88,7 +89,7 @@ def test_positions_that_are_no_pitch_are_refused() -> None:
 
 
 def test_implicit_block_on_other_meshes_is_refused() -> None:
-    """A pitch solved before the meshes followed has nothing for a block after it."""
+    """An evaluation from before a mesh update cannot start a block after it."""
     scene = wear_scene("spur")
     gears = wearing_pair(scene)
     now = gears.evaluate(gears.begin)

@@ -1,4 +1,4 @@
-"""A long block of wear of a gear pair: its linear equations, with responses as matrices and as products."""
+"""An implicit block of a gear pair: its linear equations, with responses as matrices and as products."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def fresh() -> tuple[GearWear, PitchState]:
 
 def test_pressure_response_as_matrix_and_as_product() -> None:
     """R times an opening is the same by the matrix and by the product, to rounding; points that have left the contact
-    keep no pressure, whatever opens."""
+    keep no pressure for any opening."""
     now = fresh()[1]
     whole = PositionResponse.of(now.shared[0], now.points[0])
     pulled = np.arange(len(whole.separating)) % 3 == 0
@@ -42,7 +42,7 @@ def test_pressure_response_as_matrix_and_as_product() -> None:
 
 
 def test_implicit_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An implicit block is the same within what GMRES leaves, however many points count as few."""
+    """An implicit block is the same within the tolerance of GMRES whether responses are stored as matrices or not."""
     gears, now = fresh()
     few, _ = gears.implicit_block(gears.begin, now, LENGTH)
     monkeypatch.setattr(implicit_block, "SMALL", 0)
@@ -51,8 +51,9 @@ def test_implicit_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPa
 
 
 def test_long_implicit_block_has_no_negative_depth() -> None:
-    """In 4e5 cycles at once points would pull: what is worn off is nowhere below zero, and the pressures of the block's
-    end, found by solving the pitch there, are those that it has reckoned with, within a tenth of the work."""
+    """Problem: 4e5 cycles at once, after which linearised pressures of many points would be negative. Exact: no depth
+    is negative, and the depths are those of the pressures at the block's end, by solving the pitch there, within a
+    fifth of the volume."""
     gears, now = fresh()
     depth, end = gears.implicit_block(gears.begin, now, LENGTH)
     assert depth.min() >= 0.0

@@ -15,9 +15,9 @@ from tests.support.gear_wear_cases import smooth_wear, wear_scene, wearing_pair
     ("kind", "order"), [("spur", 2), ("spur", 1), ("helical", 2), ("helical", 1)]
 )  # fmt: skip
 def test_wear_in_the_meshes_and_in_the_gap_give_the_same_contact(kind: str, order: int) -> None:
-    """Flanks worn by 5 µm in the middle, once as a gap and once by meshes that have lost it (their volume within
-    0.1 %, no cell worse by more than a hundredth): the transmission error changes by 5 µm or more, and by which of both
-    only within 2 % of that; wear rates are the same within 3 % of the volume."""
+    """Problem: flanks worn by 5 µm in the middle, once in the gap and once in the meshes. Exact: the meshes lose that
+    volume within 0.1 %, no cell worse by more than a hundredth. The transmission error changes by 5 µm or more, the
+    same in both cases within 2 % of that; wear rates agree within 3 % of the volume."""
     scene = wear_scene(kind, f"mesh.order={order}")
     gears = wearing_pair(scene)
     depth = smooth_wear(gears, 5e-3)
@@ -37,8 +37,8 @@ def test_wear_in_the_meshes_and_in_the_gap_give_the_same_contact(kind: str, orde
 
 
 def test_meshable_depth_is_slope_limited() -> None:
-    """A pit at the tip's edge and random scratches: what is left is nowhere deeper, nothing at the root's rim, as
-    gentle as wanted, itself where it is made gentle again, and the whole where the whole is gentle."""
+    """Problem: smooth wear with random scratches. Exact: the meshable depth is nowhere larger, zero at the root's rim,
+    within the largest slope, unchanged when limited again, and the whole depth where that is smooth."""
     gears = wearing_pair(wear_scene("helical"))
     rng = np.random.default_rng(0)
     depth = smooth_wear(gears, 2e-3) + 1e-3 * rng.random(len(gears.begin))

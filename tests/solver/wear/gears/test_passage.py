@@ -57,9 +57,9 @@ def line_contact(pair: GearPair, gear: Member, u: np.ndarray, load: float) -> tu
 @pytest.mark.parametrize("gear", Member)
 @pytest.mark.parametrize("positions", [10, 20, 80])
 def test_passage_of_a_constant_ridge_is_the_line_contact_depth(gear: Member, positions: int) -> None:
-    """h = (K/H)(F/L)|1 − v_2/v_1| within 0.3 % of the largest one (a ridge has 40 points here), between the ends of the
-    path less one step and a half-width, but for a half-width about the pitch point, which is up to 4 times as much in
-    ξ; there below 2 % of the largest. Work: F' ∫|v_s| dφ."""
+    """Problem: Hertzian ridges of constant load, 40 points each. Exact: h = (K/H)(F/L)|1 − v_2/v_1| within 0.3 % of its
+    maximum, between the ends of the path less one step and a half-width, except for a half-width about the pitch point,
+    which is up to 4 times as much in ξ; there below 2 % of the maximum. Work: F' ∫|v_s| dφ."""
     pair = spur_scene().gear_pair()
     grids = grid(pair, Member.PINION), grid(pair, Member.WHEEL)
     found = mesh_passage(pair, ridges(pair, positions), grids, 2.0 * np.pi / pair.pinion.z / positions)
@@ -76,7 +76,7 @@ def test_passage_of_a_constant_ridge_is_the_line_contact_depth(gear: Member, pos
 
 
 def test_line_contact_depth_of_the_paper() -> None:
-    """He's pair at r = 77 mm under half the load: 2.885 µm in a million meshes, as the exact formula says."""
+    """Problem: He's pair at r = 77 mm under half the load. Exact: 2.885 µm in a million meshes."""
     pair = spur_scene().gear_pair()
     u = (77.0**2 - pair.pinion.base_radius**2) / (2.0 * pair.pinion.base_radius)
     half = 170e3 / pair.pinion.base_radius / 20.0 / 2.0
@@ -84,9 +84,9 @@ def test_line_contact_depth_of_the_paper() -> None:
 
 
 def test_passage_of_a_solved_pitch_is_the_line_contact_depth() -> None:
-    """He's pair, frictionless: the depth along the profile is (K/H)(F/L)|1 − v_2/v_1| for the solution's own load share
-    within 1 % of the largest one, 1 mm from the ends of the path and half a millimetre from the pitch point, where a
-    contact of some width wears off up to 4 % of the largest while the formula has nothing."""
+    """Problem: He's pair without friction. Exact: the depth along the profile is (K/H)(F/L)|1 − v_2/v_1| for the
+    solution's own load share within 1 % of its maximum, 1 mm from the ends of the path and half a millimetre from the
+    pitch point, where a contact of finite width wears off up to 4 % of the maximum and the formula gives zero."""
     study, state = solved_pitch(40)
     pair, grid_ = study.model.pair, study.grids[0]
     h = study.by_gear(state.rate)[0][grid_.node[0]]

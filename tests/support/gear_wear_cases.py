@@ -38,7 +38,7 @@ def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearMode
     return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 
 
-def wearing_pair(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
+def wearing_gears(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
     model = prepare_model(scene, MPI.COMM_SELF).model
     pitch, following = uniform_pitch(model.pair.pinion.z, positions), GearMeshMotion(refresh, condenser(scene))

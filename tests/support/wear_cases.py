@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from evolvent import Contact, Placement, Problem, Step
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
+from evolvent import Body, Contact, Fixed, Freedom, Material, Placement, Problem, Rigid, Step
 from evolvent.wear import Cycle
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 from evolvent_meshes.shapes.rings import ring_block, ring_sphere

@@ -11,11 +11,13 @@ from evolvent.wear.block_stepping import (
     STABLE_SHARE,
     BlockSettings,
     CycleEvaluation,
+    WearModel,
     WearStopped,
     initial_wear_state,
     next_block,
 )
 from evolvent.wear.mesh_motion import MeshInverted
+from evolvent_meshes.arrays import Floats
 
 END = 20.0
 
@@ -26,20 +28,22 @@ class Softening:
     def __init__(self) -> None:
         self.calls = 0
 
-    def evaluate(self, depth, previous=None):
+    def evaluate(self, depth: Floats, previous: CycleEvaluation | None = None) -> CycleEvaluation:
         """The rate."""
         self.calls += 1
         return CycleEvaluation(1.0 / (1.0 + depth * (1.0, 2.0)) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
 
-    def implicit_block(self, depth, start, length):
+    def implicit_block(
+        self, depth: Floats, start: CycleEvaluation, length: float
+    ) -> tuple[Floats, CycleEvaluation]:  # fmt: skip
         """The rate r at the end, r (1 + h + ΔN r) = 1."""
         self.calls += 1
         b = 1.0 + depth * (1.0, 2.0)
         end = CycleEvaluation((np.sqrt(b**2 + 4.0 * length) - b) / (2.0 * length) * (1.0, 0.5), np.ones(2), 1.0, np.inf)
         return length * end.rate, end
 
-    def accept(self, depth, end):
-        """Nothing follows."""
+    def accept(self, depth: Floats, end: CycleEvaluation) -> CycleEvaluation:
+        """No mesh follows."""
         return end
 
 
@@ -50,7 +54,9 @@ class Failing(Softening):
         super().__init__()
         self.longest = longest
 
-    def implicit_block(self, depth, start, length):
+    def implicit_block(
+        self, depth: Floats, start: CycleEvaluation, length: float
+    ) -> tuple[Floats, CycleEvaluation]:  # fmt: skip
         if length > self.longest:
             raise NotConverged("too long")
         return super().implicit_block(depth, start, length)
@@ -63,7 +69,7 @@ class Inverting(Softening):
         super().__init__()
         self.deepest, self.last, self.known = deepest, last, 0.0
 
-    def accept(self, depth, end):
+    def accept(self, depth: Floats, end: CycleEvaluation) -> CycleEvaluation:
         """The meshes follow every block."""
         if depth[0] - self.known > self.deepest or depth[0] > self.last:
             raise MeshInverted("cells turned over")
@@ -71,23 +77,19 @@ class Inverting(Softening):
         return end
 
 
-class Rippling:
+class Rippling(Softening):
     """dh_k/dN = 1 − (h_k − mean): ripples decay to 1/e in a cycle."""
 
-    def evaluate(self, depth, previous=None):
+    def evaluate(self, depth: Floats, previous: CycleEvaluation | None = None) -> CycleEvaluation:
         """The rate, which is nowhere negative."""
         return CycleEvaluation(np.maximum(1.0 - (depth - depth.mean()), 0.0), np.ones(2), np.inf, 1.0)
 
-    def accept(self, depth, end):
-        """Nothing follows."""
-        return end
 
-
-def worn(wearable, settings: BlockSettings):
+def worn(model: WearModel[CycleEvaluation], settings: BlockSettings) -> tuple[Floats, list[float]]:
     """Final depths and the lengths of all blocks."""
-    state, lengths = initial_wear_state(wearable, np.zeros(2), settings), []
+    state, lengths = initial_wear_state(model, np.zeros(2), settings), list[float]()
     while state.cycles < END * (1.0 - 1e-12):
-        block = next_block(wearable, state, END, settings)
+        block = next_block(model, state, END, settings)
         state = block.state
         lengths.append(block.length)
     return state.depth, lengths
@@ -172,8 +174,8 @@ def test_deformation_limits_a_block() -> None:
     assert next_block(study, state, END, settings).length == pytest.approx(0.1)
 
 
-@pytest.mark.parametrize("wrong", [{"first": 0.0}, {"first": 1.0, "tolerance": -1.0}, {"first": float("nan")}])
-def test_bad_block_settings_are_refused(wrong: dict[str, float]) -> None:
+@pytest.mark.parametrize(("first", "tolerance"), [(0.0, 0.05), (1.0, -1.0), (float("nan"), 0.05)])
+def test_bad_block_settings_are_refused(first: float, tolerance: float) -> None:
     """Lengths and tolerances that are not above zero are refused by name."""
     with pytest.raises(ValueError, match=r"wanted .* above zero, found"):
-        BlockSettings(**wrong)
+        BlockSettings(first, tolerance)

@@ -7,15 +7,19 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from evolvent import Contact, Problem
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
-from evolvent.wear.archard import Archard
-from evolvent.wear.block_stepping import BlockSettings, WearStopped
-from evolvent.wear.body_study import WearStudy
-from evolvent.wear.cycle import Cycle, Travel
+from evolvent import Body, Contact, Fixed, Freedom, Material, Problem, Rigid
+from evolvent.wear import (
+    Archard,
+    Block,
+    BlockSettings,
+    Cycle,
+    CycleState,
+    MeshMotion,
+    Travel,
+    WearStopped,
+    WearStudy,
+)
 from evolvent.wear.mesh_motion import mesh_volume
-from evolvent.wear.worn_geometry import MeshMotion
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.support.wear_cases import (
@@ -149,7 +153,7 @@ def test_wear_beyond_the_reach_moves_the_mesh() -> None:
 def test_body_worn_away_stops_the_study() -> None:
     """Problem: wear of ten times the block's height. Exact: WearStopped before the block is gone, and the last good
     state can be solved."""
-    study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), []
+    study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), list[Block[CycleState]]()
     cycles = 10.0 * 2.0 / (1.0 * 2e-3 * 2.1e5)
     with pytest.raises(WearStopped, match=r"wanted scaled Jacobians.*last good state is kept"):
         blocks.extend(study.blocks(cycles, BlockSettings(first=cycles)))

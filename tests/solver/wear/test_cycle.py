@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -30,18 +31,12 @@ def test_each_step_is_searched_once_for_all_depths(
 ) -> None:
     """Problem: two cycles at different depths on the same meshes. Exact: pairs do not depend on the worn depth, so each
     step is searched once in all, also where a cycle of slip is solved twice."""
-    count, pair_surfaces = 0, step_pairing.pair_surfaces
-
-    def counted(*given):
-        nonlocal count
-        count += 1
-        return pair_surfaces(*given)
-
+    counted = Mock(wraps=step_pairing.pair_surfaces)
     monkeypatch.setattr(step_pairing, "pair_surfaces", counted)
     study = WearStudy(cylinder(3.0), (Archard(K),), cycle)
     for depth in (0.0, 1e-4):
         study.evaluate(np.full(len(study.areas), depth))
-    assert count == searches
+    assert counted.call_count == searches
 
 
 def test_step_system_is_unchanged_by_worn_cycles() -> None:

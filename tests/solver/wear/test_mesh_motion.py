@@ -29,7 +29,7 @@ def block(shape: str, order: int) -> MeshData:
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "triangle", "hexahedron", "tetrahedron"])
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_moved_mesh_loses_the_worn_volume(shape: str, order: int, follow: str) -> None:
+def test_moved_mesh_loses_the_worn_volume(shape: str, order: int, follow: InteriorMotion) -> None:
     """Problem: the top of a block worn by 0.05 (1 + cos πx) mm, 0 at one side. Exact: the mesh loses Σ m_k h_k within
     0.1 %, its sides stay plane and its bottom stays at rest."""
     mesh = block(shape, order)
@@ -44,7 +44,7 @@ def test_moved_mesh_loses_the_worn_volume(shape: str, order: int, follow: str) -
 
 
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_uniform_wear_moves_a_block_straight_down(follow: str) -> None:
+def test_uniform_wear_moves_a_block_straight_down(follow: InteriorMotion) -> None:
     """Problem: a block worn by the same depth everywhere. Exact: the top moves down by it; with the harmonic interior
     no node moves sideways."""
     mesh = block("quadrilateral", 2)

@@ -7,14 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent import Contact, Placement, Problem, Step
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
+from evolvent import Body, Contact, Fixed, Freedom, Material, Placement, Problem, Rigid, Step
 from evolvent.fem.surface import surface_of
-from evolvent.wear.archard import Archard
-from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.body_study import CycleState, WearStudy
-from evolvent.wear.cycle import Cycle, Travel
+from evolvent.wear import Archard, BlockSettings, Cycle, CycleState, Travel, WearStudy
 from evolvent.wear.mesh_motion import mesh_volume
 from evolvent.wear.sliding_track import track_of
 from evolvent_meshes.arrays import Floats

@@ -10,13 +10,13 @@ import pytest
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import StudyState, checkpoint_of, study_states
 from evolvent.wear.gears.gear_wear import GearWear
-from tests.support.gear_wear_cases import wear_scene, wearing_pair
+from tests.support.gear_wear_cases import wear_scene, wearing_gears
 
 
 @cache
 def studied(refresh: float) -> tuple[GearWear, list[StudyState]]:
     """A spur pair worn by 3 µm."""
-    gears = wearing_pair(wear_scene("spur"), 8, refresh)
+    gears = wearing_gears(wear_scene("spur"), 8, refresh)
     return gears, list(study_states(gears, (2e5, 8e5), BlockSettings(4e4)))
 
 
@@ -34,11 +34,11 @@ def test_resumed_study_takes_the_same_blocks() -> None:
     Exact: the blocks and depths of the study without a stop, within 1e-9 of the largest depth."""
     _, whole = studied(5e-4)
     scene = wear_scene("spur")
-    first = wearing_pair(scene, 8, 5e-4)
+    first = wearing_gears(scene, 8, 5e-4)
     sweep = study_states(first, (2e5, 8e5), BlockSettings(4e4))
     stage = next(stage for k, stage in enumerate(sweep) if k == 4)
     assert first.mesh_updates > 0
-    second, kept = wearing_pair(scene, 8, 5e-4), checkpoint_of(first, stage)
+    second, kept = wearing_gears(scene, 8, 5e-4), checkpoint_of(first, stage)
     rest = list(study_states(second, (2e5, 8e5), BlockSettings(4e4), kept))
     assert [s.state.cycles for s in rest] == pytest.approx([s.state.cycles for s in whole[4:]], rel=1e-9)
     deepest = whole[-1].state.depth.max()

@@ -10,7 +10,7 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear
 from tests.support.gear_cases import helical_scene, model_of
-from tests.support.gear_wear_cases import K, smooth_wear, solved_pitch, wear_scene, wearing_pair
+from tests.support.gear_wear_cases import K, smooth_wear, solved_pitch, wear_scene, wearing_gears
 
 
 @pytest.mark.parametrize("scene", ["spur", "helical"])
@@ -91,7 +91,7 @@ def test_positions_that_are_no_pitch_are_refused() -> None:
 def test_implicit_block_on_other_meshes_is_refused() -> None:
     """An evaluation from before a mesh update cannot start a block after it."""
     scene = wear_scene("spur")
-    gears = wearing_pair(scene)
+    gears = wearing_gears(scene)
     now = gears.evaluate(gears.begin)
     gears.update_meshes(smooth_wear(gears, 1e-3))
     with pytest.raises(ValueError, match="found one on others"):

@@ -8,7 +8,7 @@ import pytest
 from evolvent.wear.gears.pair_geometry import MESHABLE_SLOPE
 from evolvent.wear.mesh_motion import mesh_volume
 from evolvent_meshes.mesh.quality import scaled_jacobians
-from tests.support.gear_wear_cases import smooth_wear, wear_scene, wearing_pair
+from tests.support.gear_wear_cases import smooth_wear, wear_scene, wearing_gears
 
 
 @pytest.mark.parametrize(
@@ -19,7 +19,7 @@ def test_wear_in_the_meshes_and_in_the_gap_give_the_same_contact(kind: str, orde
     volume within 0.1 %, no cell worse by more than a hundredth. The transmission error changes by 5 µm or more, the
     same in both cases within 2 % of that; wear rates agree within 3 % of the volume."""
     scene = wear_scene(kind, f"mesh.order={order}")
-    gears = wearing_pair(scene)
+    gears = wearing_gears(scene)
     depth = smooth_wear(gears, 5e-3)
     fresh, gap = gears.evaluate(gears.begin), gears.evaluate(depth)
     before = [body.mesh for body in gears.model.bodies]
@@ -39,7 +39,7 @@ def test_wear_in_the_meshes_and_in_the_gap_give_the_same_contact(kind: str, orde
 def test_meshable_depth_is_slope_limited() -> None:
     """Problem: smooth wear with random scratches. Exact: the meshable depth is nowhere larger, zero at the root's rim,
     within the largest slope, unchanged when limited again, and the whole depth where that is smooth."""
-    gears = wearing_pair(wear_scene("helical"))
+    gears = wearing_gears(wear_scene("helical"))
     rng = np.random.default_rng(0)
     depth = smooth_wear(gears, 2e-3) + 1e-3 * rng.random(len(gears.begin))
     found = gears.geometry.meshable(depth)

@@ -1,7 +1,7 @@
-"""`python -m evidence.robustness [PART]`: measures a part, writes docs/stress.md.
+"""`python -m evidence.robustness [PART] [--out docs]`: measures a part, writes OUT/stress.md.
 
 PART: matrix, scenes, wear, independence, faults, or all, the default. Each keeps its piece of the page in
-docs/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT` and `wear-seeds FIRST COUNT` are the
+OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT` and `wear-seeds FIRST COUNT` are the
 processes that `scenes` and `wear` start.
 """
 
@@ -11,6 +11,7 @@ import argparse
 import logging
 import sys
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from evidence import report
@@ -29,7 +30,7 @@ TITLE, COMMAND = "Robustness", "make stress"
 INTRODUCTION = """What happens at the edge of what can be asked: every setting over the widest range that makes
 sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
 message and no result; what was refused is listed below its figure."""
-FOLDER, PICTURES = DOCS / "stress", "pictures/stress"
+PICTURES = "pictures/stress"
 COUNTS = {SCENES.command: 500, WEAR.command: 100}
 CLAIMS = Table(
     Claim,
@@ -45,29 +46,30 @@ CLAIMS = Table(
 """NaN is shown: what was refused fails its claim."""
 
 
-def matrix() -> list[str]:
+def matrix(out: Path) -> list[str]:
     """Heat maps, their CSV files, and what was refused."""
+    (out / PICTURES).mkdir(parents=True, exist_ok=True)
     parts = ["## The matrix of settings"]
     for sheet in (make() for make in SHEETS):
-        write_sheet(sheet, FOLDER / f"{sheet.name}.csv")
-        report.picture(draw(sheet), DOCS / PICTURES / f"{sheet.name}.png")
+        write_sheet(sheet, out / "stress" / f"{sheet.name}.csv")
+        report.picture(draw(sheet), out / PICTURES / f"{sheet.name}.png")
         parts += [f"### {sheet.title}", f"![{sheet.title}]({PICTURES}/{sheet.name}.png)"]
         parts += [f"- {row}, {column}: {message}" for row, column, message in sheet.refused]
         print(f"{sheet.name}: {len(sheet.refused)} refused", flush=True)
     return parts
 
 
-def scenes() -> list[str]:
+def scenes(out: Path) -> list[str]:
     """Random scenes, counted."""
     outcomes = _outcomes(SCENES)
-    summaries.SCENES.write(FOLDER / "scenes.csv", outcomes)
+    summaries.SCENES.write(out / "stress/scenes.csv", outcomes)
     return ["## Random scenes", summaries.scene_summary(outcomes)]
 
 
-def wear() -> list[str]:
+def wear(out: Path) -> list[str]:
     """Random wear studies, counted, and the messages of those that were stopped."""
     outcomes = _outcomes(WEAR)
-    summaries.STUDIES.write(FOLDER / "wear.csv", outcomes)
+    summaries.STUDIES.write(out / "stress/wear.csv", outcomes)
     return ["## Random wear studies", summaries.wear_summary(outcomes)]
 
 
@@ -84,18 +86,18 @@ def _outcomes(trial: Trial) -> list[Any]:
     return outcomes
 
 
-def independence() -> list[str]:
+def independence(_: Path) -> list[str]:
     """Claims on γ, θ and iterations."""
     claims = [*gear_claims(), *theta_claims(), *cylinder_claims(), *iteration_claims()]
     return ["## Independence of γ and θ; iterations", CLAIMS.markdown(claims)]
 
 
-def faults() -> list[str]:
+def faults(_: Path) -> list[str]:
     """Killed and resumed."""
     return ["## Faults", CLAIMS.markdown(fault_claims())]
 
 
-PARTS: Mapping[str, Callable[[], list[str]]] = {
+PARTS: Mapping[str, Callable[[Path], list[str]]] = {
     "matrix": matrix, "scenes": scenes, "wear": wear, "independence": independence, "faults": faults,
 }  # fmt: skip
 TRIALS = {trial.command: trial for trial in (SCENES, WEAR)}
@@ -106,6 +108,7 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("part", choices=["all", *PARTS, *TRIALS], nargs="?", default="all")
     parser.add_argument("numbers", type=int, nargs="*", help="of seeds and wear-seeds: the first, and how many")
+    parser.add_argument("--out", type=Path, default=DOCS, help="folder of the page")
     given = parser.parse_args(arguments)
     dolfinx_compat.silence_logs()
     logging.getLogger("evolvent").setLevel(logging.ERROR)
@@ -113,10 +116,10 @@ def main(arguments: list[str]) -> None:
         solve_seeds(TRIALS[given.part], *given.numbers)
         return
     for name in PARTS if given.part == "all" else (given.part,):
-        report.write(FOLDER / f"{name}.md", PARTS[name]())
-    pieces = [FOLDER / f"{name}.md" for name in PARTS]
+        report.write(given.out / "stress" / f"{name}.md", PARTS[name](given.out))
+    pieces = [given.out / "stress" / f"{name}.md" for name in PARTS]
     texts = [piece.read_text(encoding="utf-8") for piece in pieces if piece.exists()]
-    report.write(DOCS / "stress.md", [report.header(TITLE, COMMAND), INTRODUCTION, *texts])
+    report.write(given.out / "stress.md", [report.header(TITLE, COMMAND), INTRODUCTION, *texts])
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ PARTS = (
     ("meshing", "scene/meshing/sector_meshes.py", "gear_mesh"),
     ("assembling: stiffness", "fem/body.py", "assemble"),
     ("assembling: Nitsche's constant term", "contact/nitsche/flux_recovery.py", "constant_term"),
-    ("condensing: order of elimination", "fem/condensation/elimination_order.py", "planned"),
+    ("condensing: order of elimination", "fem/condensation/elimination_order.py", "dissect"),
     ("condensing: leaves, by MUMPS", "fem/condensation/mumps.py", "schur_complement"),
     ("condensing: adding updates up", "fem/condensation/nested_dissection.py", "add"),
     ("condensing: separators, by LAPACK", "fem/condensation/nested_dissection.py", "eliminate"),
@@ -40,7 +40,7 @@ PARTS = (
     ("positions: what the window leaves out", "gears/contact/overlap_check.py", "overlap_outside"),
     ("positions: without friction", "contact/newton/equilibrium.py", "frictionless"),
     ("positions: with friction", "contact/newton/equilibrium.py", "frictional"),
-    ("positions: memory of friction", "gears/sweep/friction_history.py", "recalled"),
+    ("positions: friction history", "gears/sweep/friction_history.py", "recalled"),
 )
 """Name, file below solver/evolvent, and the function whose time with all that it calls it is; none calls another."""
 

@@ -1,10 +1,9 @@
-"""`python -m evidence.mutations [NAME ...]`: breaks what the tests of docs/edges.md hold, one line at a time, and sees
-whether they fail.
+"""`python -m evidence.mutations [NAME ...]`: checks that tests fail when a line that they protect is changed.
 
-A mutation of mutations.toml exchanges one line of the program, in a copy of the tree, for one that undoes what the page
-says; each test that it names has to fail then, and to pass before. What was seen goes into docs/edges_seen.csv, from
-which `make pages` writes the table of the page. All of them take more than an hour on one core; a name runs the
-mutations that begin with it.
+A mutation of mutations.toml exchanges one line of the program, in a copy of the tree, for one that undoes what a line
+of docs/edges.md says. Each test that it names must pass before and fail then. The results are kept in
+docs/edges_seen.csv, from which `make pages` writes the table of the page. All mutations take more than an hour on one
+core; a name runs those that begin with it.
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -
     assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]
 
 
-def test_summary_counts() -> None:
+def test_scene_summary_counts_every_outcome() -> None:
     """Every outcome is counted, and every bad one has its line."""
     good = replace(outcome_of(random_scene(41, plane=True), 41), seed=0)
     text = scene_summary([good, replace(good, seed=1, verdict=Verdict.REFUSED, message="NotConverged: no")])

@@ -21,7 +21,7 @@ GEARS, BODIES = 23, 27
 
 
 @pytest.mark.parametrize("seed", [6, 18, 32, 38, 55, 75])
-def test_nothing_is_lost_in_silence(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_accepted_wear_states_hold(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every state that is accepted holds, and who stops says why."""
     monkeypatch.setattr(wear_outcomes, "BLOCKS", 8)
     outcome = wear_outcome_of(random_study(seed), seed)
@@ -51,7 +51,7 @@ def test_lost_volume_is_seen(seed: int, monkeypatch: pytest.MonkeyPatch) -> None
     assert wrong.verdict is WearVerdict.WRONG and "volume" in wrong.message
 
 
-def test_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stop_without_a_reason_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     """A stop without a word is wrong, any other error is a crash."""
     drawn = random_study(BODIES)
 
@@ -67,7 +67,7 @@ def test_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     assert raising(ZeroDivisionError("no")) is WearVerdict.CRASHED
 
 
-def test_summary_counts() -> None:
+def test_wear_summary_counts_every_outcome() -> None:
     """Every outcome is counted under its kind, and every stop has its line."""
     good = WearOutcome(0, WearVerdict.FINISHED, "", "gears", 1e-9, 3)
     text = wear_summary([good, replace(good, seed=1, verdict=WearVerdict.STOPPED, message="WearStopped: no more")])

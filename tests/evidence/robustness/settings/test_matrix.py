@@ -57,7 +57,7 @@ def test_theta_does_not_matter_to_gears() -> None:
         assert claim.error <= allowed * abs(claim.wanted), str(claim)
 
 
-def test_error_is_seen() -> None:
+def test_error_of_p0_sees_a_wrong_load() -> None:
     """The measure sees a load that is 2 % too large."""
     wrong = Cylinder(load=1.02)
     found = attempt(wrong.cell)
@@ -83,7 +83,7 @@ def test_parameters_of_the_method_do_not_matter() -> None:
 
 
 @pytest.mark.parametrize("mesh", [rectangle(2.0, 1.0, 5, 3), box((2.0, 2.0, 1.0), (3, 2, 2), 1, "tetrahedron")])
-def test_distorted(mesh) -> None:  # type: ignore[no-untyped-def]
+def test_distorted_mesh_has_the_wanted_quality(mesh) -> None:  # type: ignore[no-untyped-def]
     """The wanted share of the scaled Jacobian, and the boundary where it was."""
     bad = distorted(mesh, 0.1, 0)
     assert scaled_jacobians(bad).min() == pytest.approx(0.1 * scaled_jacobians(mesh).min(), rel=1e-3)
@@ -91,7 +91,7 @@ def test_distorted(mesh) -> None:  # type: ignore[no-untyped-def]
     np.testing.assert_array_equal(bad.points[edge], mesh.points[edge])
 
 
-def test_sheet(tmp_path: Path) -> None:
+def test_sheet_keeps_refusals_and_passes_crashes_on(tmp_path: Path) -> None:
     """Refusals are kept with their message, drawn as such and written; a crash is a crash."""
 
     def solve(i: int, j: int) -> Cell:

@@ -10,7 +10,7 @@ from evolvent.contact import hertz
 from evolvent.fem.material import STEEL
 
 
-def test_small_contact_is_hertz() -> None:
+def test_small_axisymmetric_contact_is_hertz() -> None:
     """A sphere of 10 mm, cut off 8 mm from the contact, a/R = 0.025: two of them, each on the plane between both, have
     Hertz' p0 for R = 5 mm and E*/2 under the force found, within 0.3 %; the pressure carries the force."""
     a = 0.25

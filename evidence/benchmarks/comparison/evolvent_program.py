@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 import time
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +67,7 @@ def solved(task: Task) -> Answer:
     points = np.pad(contact.points, ((0, 0), (0, 3 - contact.points.shape[1])))
     return Answer(
         body=0,
-        torque=_torque(points, contact) if isinstance(task.drive, Turn) else float("nan"),
+        torque=_torque(points, contact) if isinstance(task.drive, Turn) else nan,
         pressure=contact.pressure,
         points=points,
         weights=contact.weights,

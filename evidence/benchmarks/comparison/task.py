@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -121,7 +122,7 @@ class Answer:
     nodes: Ints | None = None
     points: Floats | None = None
     weights: Floats | None = None
-    torque: float = float("nan")
+    torque: float = nan
     iterations: int = 0
     dofs: int = 0
     seconds: dict[str, float] = field(default_factory=dict)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import statistics
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 from evidence.benchmarks.comparison.pressure import Pressure, Reference
@@ -13,7 +14,6 @@ from evidence.benchmarks.comparison.round_contacts import Hertz, cylinder, line_
 from evidence.benchmarks.comparison.task import Task
 from evidence.processes import Cost, RunFailed, empty_cache
 
-NAN = float("nan")
 TASK = "task.npz"
 
 
@@ -106,19 +106,19 @@ class Row:
     order: int
     cells: float
     dofs: int
-    wall: float = NAN
+    wall: float = nan
     """Of the whole process without meshing, median [s]; `cpu` likewise."""
-    cpu: float = NAN
-    cold: float = NAN
+    cpu: float = nan
+    cold: float = nan
     """CPU time of a first run, which compiles its forms [s]."""
-    ratio: float = NAN
+    ratio: float = nan
     """CPU time over Evolvent's: median over runs side by side."""
-    memory_MB: float = NAN
+    memory_MB: float = nan
     iterations: int = 0
-    force_error: float = NAN
+    force_error: float = nan
     """Relative, as that of the fitted peak and of the pressure (L2)."""
-    peak_error: float = NAN
-    profile_error: float = NAN
+    peak_error: float = nan
+    profile_error: float = nan
     note: str = ""
     """Why there is nothing."""
 
@@ -150,7 +150,7 @@ def rows(
         task.write(folder / TASK)
         programs = [EVOLVENT, *(p for p in peers if p.takes(task))]
         solutions, failed = _side_by_side(programs, folder, case.repeats)
-        cold = NAN
+        cold = nan
         if (mesh.shape, mesh.order) not in compiled:
             compiled.add((mesh.shape, mesh.order))
             cold = solve(EVOLVENT, folder / TASK, folder, variables=empty_cache(folder)).cost.cpu
@@ -162,7 +162,7 @@ def rows(
                 continue
             cost = Cost.median([solution.cost for solution in solutions[program.name]])
             ratio = statistics.median(s.cost.cpu / other for s, other in zip(solutions[program.name], ours))
-            first = cold if program is EVOLVENT else NAN
+            first = cold if program is EVOLVENT else nan
             answer = solutions[program.name][0].answer
             pressure, a = Pressure.of(task, answer), case.hertz.half_width
             yield Row(

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 from evidence.benchmarks.gears.pitch import pitch_cost
 from evidence.processes import RunFailed, empty_cache
-
-NAN = float("nan")
 
 
 @dataclass(frozen=True)
@@ -23,15 +22,15 @@ class PitchRow:
     """Across the contact width 2b."""
     dofs: int
     positions: int
-    one: float = NAN
+    one: float = nan
     """Wall time of all but meshing for one position [s]; `pitch` that of the whole pitch."""
-    pitch: float = NAN
-    cold: float = NAN
+    pitch: float = nan
+    cold: float = nan
     """Of one position with an empty cache of compiled forms [s]."""
-    memory_MB: float = NAN
-    error: float = NAN
+    memory_MB: float = nan
+    error: float = nan
     """Relative, of the mean transmission error, against the overkill pitch."""
-    reference_error: float = NAN
+    reference_error: float = nan
     """Of that pitch."""
     note: str = ""
 
@@ -74,7 +73,7 @@ def _row(
         cost, facts = pitch_cost(folder, elements, sizes.positions, *settings, ranks=ranks)
     except RunFailed as failure:
         return PitchRow(*kind, 0, 0, note=failure.reason)
-    first = NAN
+    first = nan
     if cold:
         first = pitch_cost(folder, elements, 2, *settings, variables=empty_cache(folder))[1].one_position
     return PitchRow(

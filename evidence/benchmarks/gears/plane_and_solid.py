@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
+from math import nan
 
 import numpy as np
 
@@ -30,7 +31,6 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.sector import sector_mesh
 
 POSITIONS = 20
-NAN = float("nan")
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def rows(planes: tuple[SpurMesh, ...] = PLANES, volumes: tuple[SpurMesh, ...] = 
                 yield SpurRow(*head, mesh.elements, mesh.layers, solid.seconds, solid.memory_MB, volume_error)
                 break
         else:
-            yield SpurRow(*head, NAN, 0, NAN, NAN, NAN)
+            yield SpurRow(*head, nan, 0, nan, nan, nan)
 
 
 def _size(mesh: SpurMesh) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ from evidence.benchmarks.gears.three_teeth import ROTATION, pair_scene, three_te
 from evidence.processes import RunFailed
 
 PITCH = 2 * np.pi / 17
-NAN = float("nan")
 TASK = "gear.npz"
 
 
@@ -30,17 +30,17 @@ class GearRow:
     """Across the contact width 2b."""
     dofs: int
     positions: int
-    seconds: float = NAN
+    seconds: float = nan
     """CPU time a position, all but meshing."""
-    ratio: float = NAN
+    ratio: float = nan
     """Of the seconds over those of Evolvent's largest pitch."""
-    memory_MB: float = NAN
-    iterations: float = NAN
-    stiffness: float = NAN
+    memory_MB: float = nan
+    iterations: float = nan
+    stiffness: float = nan
     """Torque over the pinion's elastic rotation at φ = 0 [N·m/mrad]."""
-    error: float = NAN
+    error: float = nan
     """Relative, of the stiffness, against the overkill solution of the same model."""
-    reference_error: float = NAN
+    reference_error: float = nan
     """Of that solution."""
     note: str = ""
 
@@ -67,7 +67,7 @@ SMALL = GearSizes((1.0,), (1.0,), 3, 1, (1.0, 1.2), (1.0, 1.2))
 def rows(peers: Sequence[Program], sizes: GearSizes, folder: Path) -> Iterator[GearRow]:
     """Evolvent's pitches first: the others are compared with the largest one. Raises RunFailed."""
     coarse, fine = (pitch_cost(folder, n, 2)[1].transmission_error[0] for n in sizes.overkill_gears)
-    scene, fast = pair_scene(1.0), NAN
+    scene, fast = pair_scene(1.0), nan
     force = scene.load.torque_Nm * scene.gear_pair().pinion.base_radius
     for elements in sizes.pitch:
         cost, facts = pitch_cost(folder, elements, sizes.positions)

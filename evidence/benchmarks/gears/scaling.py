@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 from statistics import median
 
@@ -14,7 +15,6 @@ from evidence.benchmarks.gears.three_teeth import FRICTION
 from evidence.processes import RunFailed
 from evolvent_meshes.arrays import Floats
 
-NAN = float("nan")
 SEVEN, STRONGEST = "0.07,0.08,0.11,0.12,0.15,0.20,0.30", "0.30"
 
 
@@ -25,13 +25,13 @@ class SizeRow:
     elements: float
     """Across the contact width 2b."""
     dofs: int
-    assemble: float = NAN
+    assemble: float = nan
     """Once [s], as `condense`."""
-    condense: float = NAN
-    position: float = NAN
+    condense: float = nan
+    position: float = nan
     """One more position [s]; `iterations` are its Newton steps."""
-    iterations: float = NAN
-    memory_MB: float = NAN
+    iterations: float = nan
+    memory_MB: float = nan
     note: str = ""
 
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -179,7 +180,7 @@ def read_answer(task: Task, job: Path, start: float) -> Answer:
         body=SLAVE,
         pressure=pressure[nodes],
         nodes=nodes,
-        torque=_torque(task, job) if isinstance(task.drive, Turn) else float("nan"),
+        torque=_torque(task, job) if isinstance(task.drive, Turn) else nan,
         iterations=_iterations(job.with_suffix(".out")),
         dofs=task.dofs,
         seconds={"start": start},

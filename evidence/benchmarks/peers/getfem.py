@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -164,7 +165,7 @@ def _answer(model: Any, task: Task, parts: list[Part], iterations: int, marks: l
         body=SLAVE,
         pressure=-np.sum(traction * normals[:, :d], axis=1),
         nodes=nodes,
-        torque=_torque(model, parts) if isinstance(task.drive, Turn) else float("nan"),
+        torque=_torque(model, parts) if isinstance(task.drive, Turn) else nan,
         iterations=iterations,
         dofs=int(model.nbdof()),
         seconds={"start": marks[0], "mesh": marks[1] - marks[0], "solve": marks[2] - marks[1]},

@@ -6,6 +6,7 @@ import time
 import traceback
 from dataclasses import dataclass, replace
 from enum import Enum
+from math import nan
 
 import numpy as np
 from mpi4py import MPI
@@ -39,9 +40,9 @@ class Outcome:
     seed: int
     verdict: Verdict
     message: str = ""
-    balance: float = float("nan")
+    balance: float = nan
     """Balance error of the pitch, at the worst friction coefficient."""
-    iterations: float = float("nan")
+    iterations: float = nan
     """Mean a position and friction coefficient above 0, or without friction where all are 0; `most` the largest."""
     most: int = 0
     dofs: int = 0

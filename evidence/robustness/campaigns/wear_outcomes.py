@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import islice
+from math import nan
 
 import numpy as np
 from mpi4py import MPI
@@ -58,7 +59,7 @@ class WearOutcome:
     message: str = ""
     kind: str = ""
     """Gears, or the shapes of the bodies."""
-    fastest: float = float("nan")
+    fastest: float = nan
     """Largest K/H [mm²/N]."""
     blocks: int = 0
     """Accepted ones, of at most BLOCKS; `refused`: those that were made shorter."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -22,9 +23,9 @@ LEAST_ERROR = 1e-16
 class Cell:
     """One combination, solved or refused."""
 
-    iterations: float = float("nan")
+    iterations: float = nan
     """Of Newton's method, a position."""
-    error: float = float("nan")
+    error: float = nan
     """Relative."""
     refused: str = ""
     """Why."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -49,7 +50,7 @@ class Ratios:
     def largest(self, edge: bool) -> float:
         """|off| at the positions where a tip edge bears, or where none does; NaN without such a position."""
         here = np.abs(self.off[self.edge == edge])
-        return float(here.max()) if len(here) else float("nan")
+        return float(here.max()) if len(here) else nan
 
 
 def narrow_pair() -> Scene:

@@ -22,9 +22,8 @@ CELLS, OVERKILL = 8, 32  # cells on the half-width
 SOURCE = external("NAFEMS R0094 (2006), benchmark 1, second order")
 SMALL_STRAIN = (
     "The published results allow for large displacements, in which the block, under strains of 5 %, is softer and "
-    "sinks 2 % deeper: tests/evidence/verification/test_large_displacement.py finds the published value with "
-    "them and this one without. "
-    "Evolvent's strain is small."
+    "sinks 2 % deeper: tests/evidence/verification/contact/test_nafems.py finds the published value with them and this "
+    "one without. Evolvent's strain is small."
 )
 PROBLEM = f"""
 A steel cylinder of {RADIUS:g} mm radius on an aluminium block of {BLOCK:g} by {BLOCK:g} mm, plane strain,

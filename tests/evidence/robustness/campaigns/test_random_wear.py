@@ -13,6 +13,7 @@ from evidence.robustness.campaigns.wear_outcomes import WearOutcome, WearVerdict
 from evolvent.scene.scene import Scene
 from evolvent.wear import body_study
 from evolvent.wear.archard import DepthProjection
+from evolvent.wear.block_stepping import WearStopped
 from evolvent.wear.gears import gear_wear
 from evolvent.wear.gears.flank_grid import FlankGrid
 
@@ -62,8 +63,8 @@ def test_stop_without_a_reason_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(wear_outcomes, "WearStudy", broken)
         return wear_outcome_of(drawn, BODIES).verdict
 
-    assert raising(wear_outcomes.WearStopped("wanted wear, found none; rub")) is WearVerdict.STOPPED
-    assert raising(wear_outcomes.WearStopped("no")) is WearVerdict.WRONG
+    assert raising(WearStopped("wanted wear, found none; rub")) is WearVerdict.STOPPED
+    assert raising(WearStopped("no")) is WearVerdict.WRONG
     assert raising(ZeroDivisionError("no")) is WearVerdict.CRASHED
 
 

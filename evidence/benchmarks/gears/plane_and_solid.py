@@ -23,7 +23,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.condensed_gear import condensed_gear
 from evolvent.gears.gear_model import GearLoad, GearModel, window_half_width
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.run.output import peak_memory_MB
+from evolvent.run.context import peak_memory_MB
 from evolvent.scene.meshing.element_sizes import sector_resolutions
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import contact_teeth

@@ -17,7 +17,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import prepare_model
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 from evolvent.results.archive.archive import Archive, gear_shape
 from evolvent.results.archive.error_bar_data import kept_errors
@@ -88,7 +88,7 @@ def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunD
     """A scene on meshes of one's own, nothing written: the run on rank 0. Raises NotConverged, MeshError,
     NotPositiveDefinite, OutOfMemory."""
     model, frictions = prepare_model(scene, comm, mesh).model, scene.contact.friction
-    swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), comm))
+    swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
 
     def joined() -> RunData:
         shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import Preparation
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, Meshes
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
 from evolvent.results.archive.run_folder import RunFolder

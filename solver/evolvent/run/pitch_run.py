@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparation, prepare_model
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
@@ -114,7 +114,7 @@ def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears) -> Sweep
         gears.progress.stage(POSITIONS, len(pitch_of(scene).angles), len(done))
         frictions = scene.contact.friction[group]
         state = start.state if start is not None else initial_state(frictions)
-        for position in sweep_closed(preparation.model, pitch_of(scene), frictions, state, comm, done):
+        for position in sweep_until_periodic(preparation.model, pitch_of(scene), frictions, state, comm, done):
             certify(position.results)
             yield position
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evolvent.gears.sweep.periodic_pitch import errors_of
+from evolvent.gears.sweep.periodic_pitch import transmission_errors
 from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
 from evolvent.results.archive.run_folder import RunFolder
@@ -17,8 +17,8 @@ from evolvent_meshes.arrays import Floats
 
 @dataclass(frozen=True)
 class Start:
-    """Where a run begins: after positions with these transmission errors (`errors_of`), in this state. is_end: nothing
-    is left to be solved."""
+    """Where a run begins: after positions with these `transmission_errors`, in this state. is_end: nothing is left to
+    be solved."""
 
     errors: tuple[Floats, ...]
     is_end: bool
@@ -32,7 +32,7 @@ def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
     if state is None:
         return None
     swept = archive.read_sweep(pair)
-    errors = tuple(errors_of(position, scene.contact.friction) for position in swept)
+    errors = tuple(transmission_errors(position, scene.contact.friction) for position in swept)
     return Start(errors, bool(swept) and swept[-1].closes, state)
 
 

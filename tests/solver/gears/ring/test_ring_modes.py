@@ -65,7 +65,7 @@ def test_coupling_within_tolerance(sector: SectorCondensation, kind: str, tolera
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
-def test_second_order(sector: SectorCondensation, tolerance: float) -> None:
+def test_error_of_smooth_faces_is_of_second_order(sector: SectorCondensation, tolerance: float) -> None:
     """Faces that are smooth to half of the digits (fewer than there are) give T A⁻¹ Tᵀ to all of them."""
     c, half = len(sector.stiffness) // 2, np.sqrt(tolerance)
     faces = smooth_faces(sector.stiffness, sector.transfer, half)
@@ -81,7 +81,7 @@ def test_second_order(sector: SectorCondensation, tolerance: float) -> None:
     assert np.linalg.norm(found - exact) < tolerance * np.linalg.norm(exact)
 
 
-def test_frames(sector: SectorCondensation) -> None:
+def test_ring_coupling_rotates_with_the_tooth_frame(sector: SectorCondensation) -> None:
     """Faces in the sector's own frame, turned by `frames`, couple the teeth as faces do that are turned already."""
     turn = frames(sector)
     own = SectorCondensation(turn @ sector.stiffness @ turn.T, sector.transfer @ turn.T, sector.compliance)
@@ -91,7 +91,7 @@ def test_frames(sector: SectorCondensation) -> None:
         np.testing.assert_allclose(found.modes @ found.between(i, j) @ found.modes.T, K, atol=1e-8 * np.linalg.norm(K))
 
 
-def test_compression_error() -> None:
+def test_compressed_matrix_is_within_the_tolerance() -> None:
     """A matrix with singular values 10^-k is met to the asked tolerance with few columns, U orthonormal."""
     random = np.random.default_rng(0)
     left, right = (np.linalg.qr(random.normal(size=(n, 60)))[0] for n in (200, 150))
@@ -103,7 +103,7 @@ def test_compression_error() -> None:
 
 
 @pytest.mark.parametrize("shape", [(7, 30), (30, 7), (8, 8)])
-def test_range_of_full_rank(shape: tuple[int, int]) -> None:
+def test_range_of_a_matrix_of_full_rank_has_its_rank(shape: tuple[int, int]) -> None:
     """A matrix of full rank, smaller than a block: all of its range and no column more."""
     matrix = np.random.default_rng(0).normal(size=shape)
     basis, reduced = compressed(matrix, 1e-13, step=16)

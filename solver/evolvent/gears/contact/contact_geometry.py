@@ -20,7 +20,7 @@ from evolvent.gears.contact.jump_map import JumpMap
 from evolvent.gears.contact.search_window import arc_distance
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.kinematics import Stand, spin
-from evolvent.gears.ring.ring_compliance import Part
+from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 
@@ -180,7 +180,7 @@ class ContactGeometry:
         parts = []
         for gear, body in zip(Member, self.bodies):
             maps = zip(self.teeth, self.jump_maps(gear, k))
-            wanted = [Part(gear.sign * t.tooth, t.coupled_nodes(gear), E.jumps) for t, E in maps]
+            wanted = [MappedNodes(gear.sign * t.tooth, t.coupled_nodes(gear), E.jumps) for t, E in maps]
             with threads():
                 parts.append(body.chain.block(wanted))
         return np.asarray(sum(parts))

@@ -13,7 +13,7 @@ from evolvent.fem.condensation.schur_complement import (
     SectorSystem,
     compliance,
 )
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Part
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, MappedNodes
 from tests.support.q1_elasticity import Ring, ring
 
 PITCH = 2 * np.pi / 17
@@ -64,9 +64,9 @@ def all_rows(body: ChainedCompliance) -> np.ndarray:
     return np.array([(tooth, node) for tooth in body.teeth for node in range(body.node_count)])
 
 
-def parts(rows: np.ndarray) -> list[Part]:
+def parts(rows: np.ndarray) -> list[MappedNodes]:
     """Rows (tooth, node), sorted by tooth, as a block wants them."""
-    return [Part(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
+    return [MappedNodes(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -108,7 +108,7 @@ def test_mapped_compliance_equals_the_merged_model(shape: str) -> None:
     gear, random = chained(shape), np.random.default_rng(3)
     size = gear.node_count * len(SHAPES[shape])
     maps = {tooth: random.normal(size=(4, size)) for tooth in (1, -1, 0)}
-    found = gear.block([Part(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
+    found = gear.block([MappedNodes(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
     E = np.zeros((12, len(exact)))
     for i, (tooth, own) in enumerate(maps.items()):
         E[4 * i : 4 * i + 4, (tooth - FIRST) * size : (tooth - FIRST + 1) * size] = own

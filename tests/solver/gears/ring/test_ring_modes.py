@@ -11,13 +11,13 @@ from scipy.linalg import block_diag
 
 from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
 from evolvent.gears.ring.ring_modes import Coupling, compressed, coupling, smooth_faces
-from evolvent.gears.ring.sector_interfaces import Interfaces, OpenChain, Ring
+from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
 from tests.support.q1_elasticity import ring
 
 TEETH, NAMED = 40, 3
 TOLERANCES = [1e-4, 1e-6, 1e-8]
-JOINED: dict[str, Callable[[np.ndarray], Interfaces]] = {
-    "ring": lambda stiffness: Ring(stiffness, TEETH, NAMED),
+JOINED: dict[str, Callable[[np.ndarray], JoinedSectors]] = {
+    "ring": lambda stiffness: ClosedRing(stiffness, TEETH, NAMED),
     "chain": lambda stiffness: OpenChain(stiffness, NAMED, clamped=True),
 }
 
@@ -54,8 +54,8 @@ def coupled(sector: SectorCondensation, kind: str, tolerance: float) -> Coupling
 def test_coupling_within_tolerance(sector: SectorCondensation, kind: str, tolerance: float) -> None:
     """K_ij of every two teeth = T times the faces' displacements under Tᵀ on all of the faces, within the tolerance of
     the largest K_ij; with fewer modes than the surface has displacements, or nothing would be tested."""
-    answers, which = JOINED[kind](sector.stiffness).answers(sector.transfer.T)
-    exact = {(i, j): sector.transfer @ answers[which[i, j]] for i, j in np.ndindex(NAMED, NAMED)}
+    responses, which = JOINED[kind](sector.stiffness).responses(sector.transfer.T)
+    exact = {(i, j): sector.transfer @ responses[which[i, j]] for i, j in np.ndindex(NAMED, NAMED)}
     found = coupled(sector, kind, tolerance)
     largest = max(np.linalg.norm(K) for K in exact.values())
     for (i, j), K in exact.items():
@@ -75,7 +75,7 @@ def test_error_of_smooth_faces_is_of_second_order(sector: SectorCondensation, to
     pair = block_diag(faces, faces)
     transfer, stiffness = sector.transfer @ pair, pair.T @ sector.stiffness @ pair
     exact, found = (
-        T @ JOINED["ring"](S).answers(T.T)[0][NAMED - 1]
+        T @ JOINED["ring"](S).responses(T.T)[0][NAMED - 1]
         for T, S in ((sector.transfer, sector.stiffness), (transfer, stiffness))
     )
     assert np.linalg.norm(found - exact) < tolerance * np.linalg.norm(exact)

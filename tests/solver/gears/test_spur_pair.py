@@ -36,7 +36,8 @@ def curves(spur: GearModel) -> list[Curves]:
 
 
 def test_torque_ratio_without_friction_is_that_of_the_teeth(curves: list[Curves]) -> None:
-    """Exact: T_2/T_1 = z_2/z_1 for conjugate flanks; at a tip edge only nearly (prototype 2.2e-3), and that is said."""
+    """Exact: T_2/T_1 = z_2/z_1 for conjugate flanks; at a tip edge, which is flagged, only nearly (prototype
+    2.2e-3)."""
     smooth, error = curves[0], np.abs(curves[0].torque_ratio - 1.0)
     assert error[~smooth.tip_edge].max() < 2e-4
     assert 1e-3 < error[smooth.tip_edge].max() < 3e-3
@@ -44,7 +45,7 @@ def test_torque_ratio_without_friction_is_that_of_the_teeth(curves: list[Curves]
 
 
 def test_friction_work_is_the_lost_work(curves: list[Curves]) -> None:
-    """Exact: over a pitch friction work = input − output; and what is lost agrees with the prototype within 3 %."""
+    """Exact: over a pitch friction work = input − output; and the loss agrees with the prototype within 3 %."""
     for curve, loss in zip(curves, (0.0, 1.04e-2, 3.09e-2)):
         torques, work = curve.of("torques")[PITCH], curve.of("friction_loss")[PITCH].sum()
         lost = (torques[:, 0] - torques[:, 1]).sum()
@@ -54,7 +55,7 @@ def test_friction_work_is_the_lost_work(curves: list[Curves]) -> None:
 
 def test_energy_balances_over_the_pitch(curves: list[Curves]) -> None:
     """Problem: where a tip's edge bears, T_1 − T_2/u − friction is up to 0.2 % of the input. Exact: teeth store that
-    and give it back within the pitch. A wheel torque that is 1 % wrong is told apart."""
+    and give it back within the pitch. A wheel torque that is 1 % wrong is found."""
     for curve in curves:
         pitch = curve.results[PITCH]
         assert max(balance_error(result) for result in pitch) > 1e-3
@@ -147,8 +148,8 @@ def test_peak_pressure_is_that_of_hertz_away_from_tip_edges(
 
 
 def test_positions_one_pitch_apart_agree(curves: list[Curves]) -> None:
-    """Exact: at φ + 2π/z_1 pair −1 stands where pair 0 stood at φ. Also with friction once it has a past: prototype
-    2e-12 µm. A wrong tooth index, a wrong turn of a tooth or a drift would show."""
+    """Exact: at φ + 2π/z_1 pair −1 stands where pair 0 stood at φ. Also with friction once it has a history:
+    prototype 2e-12 µm. A wrong tooth index, a wrong rotation of a tooth or a drift would show."""
     for curve in curves:
         first, last = (curve.of("transmission_error")[here] for here in (slice(3, 6), slice(43, 46)))
         assert np.abs(first - last).max() < 1e-12

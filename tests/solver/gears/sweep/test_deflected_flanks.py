@@ -131,7 +131,7 @@ def test_displacements_of_deflected_flanks_turn_with_their_gears(bent: GearModel
 
 def test_coefficients_on_deflected_flanks_are_independent(bent: GearModel) -> None:
     """Problem: two friction coefficients, whose flanks deflect differently and are searched apart. Exact: each alone;
-    histories on windows of another width are told apart too."""
+    histories on windows of different width are interpolated apart too."""
     deflected = replace(bent, deflected=True)
     both, *alone = (_swept(deflected, frictions) for frictions in ([0.1, 0.3], [0.1], [0.3]))
     for i, own in enumerate(alone):

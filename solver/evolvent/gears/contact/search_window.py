@@ -26,7 +26,7 @@ def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) 
 
 def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
     """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
-    d = bodies[0].d
+    d = bodies[Member.PINION].d
     first, second = (
         body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in zip(Member, bodies)
     )

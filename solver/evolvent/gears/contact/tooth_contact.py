@@ -77,7 +77,7 @@ def tooth_contact(
         return None
     first, second = placed_flanks(bodies, stand, tooth)
     if displaced is not None:
-        first, second = _moved(first, displaced[0]), _moved(second, displaced[1])
+        first, second = (_moved(flank, u) for flank, u in zip((first, second), displaced))
     module = pinion.gear.normal_module
     pairing = pair_surfaces(first, second, GAP * module, PENETRATION * module, facets)
     if len(pairing.weight) == 0:
@@ -99,6 +99,7 @@ def _moved(flank: Surface, u: Floats) -> Surface:
 def _jump(pairing: Pairing, first: Surface, second: Surface, displaced: Displaced) -> Floats:
     """Jump (q, d) [mm] of the displacements at each pair of points. Not of their projection: what that smooths of them
     would come back as roughness of the gap."""
-    u1 = first.evaluate(displaced[0], pairing.facet1, pairing.xi1[:, None])[0]
-    u2 = second.evaluate(displaced[1], pairing.facet2, pairing.xi2[:, None])[0]
+    pinion, wheel = displaced
+    u1 = first.evaluate(pinion, pairing.facet1, pairing.xi1[:, None])[0]
+    u2 = second.evaluate(wheel, pairing.facet2, pairing.xi2[:, None])[0]
     return np.asarray((u1 - u2)[:, 0])

@@ -115,7 +115,8 @@ def _equilibrium(
     model: GearModel, contact: GearContact, patch: ContactPatch, friction: float, history: FrictionHistory | None,
     span: float,
 ) -> tuple[Equilibrium, float]:  # fmt: skip
-    """And the stiffness of the frictionless state."""
+    """Equilibrium of these flanks, started from a contact patch, and the stiffness without friction. Raises
+    NotConverged."""
     geometry = contact.geometry
     system = contact.system(model.load.on, model.load.torque, normal_only=history is None)
     normal = normal_part(system)

@@ -51,15 +51,14 @@ class FrictionHistory:
     def earlier(self, pitches: int) -> FrictionHistory:
         """The same so many base pitches earlier, where other teeth of both gears stand as these do. Teeth without load
         are left out: the contact need not look at them at that time."""
-        pair, d, back = self.stand.pair, self.flux.shape[1], 2.0 * np.pi * pitches
-        turns, step = (-back / pair.pinion.z, back / pair.wheel.z), np.array([pitches, 0])
-        pinion, wheel = (_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces))
-        return FrictionHistory(
-            replace(self.stand, angle=self.stand.angle + turns[0]),
-            (self.rows[0][pinion] + step, self.rows[1][wheel] - step),  # the wheel's teeth are counted the other way
-            (self.forces[0][pinion] @ turn(turns[0], d), self.forces[1][wheel] @ turn(turns[1], d)),
-            self.flux[pinion] @ turn(turns[0], d),
-        )
+        d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
+        turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
+        loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]
+        pinion_rows, wheel_rows = (self.rows[gear][loaded[gear]] + gear.sign * step for gear in Member)
+        pinion, wheel = (self.forces[gear][loaded[gear]] @ turn(turns[gear], d) for gear in Member)
+        flux = self.flux[loaded[Member.PINION]] @ turn(turns[Member.PINION], d)
+        stand = replace(self.stand, angle=self.stand.angle + turns[Member.PINION])
+        return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,12 @@
-"""Shared by all tests: quiet libraries, and scripts on a number of MPI ranks."""
+"""Shared by all tests: quiet libraries, scripts on a number of MPI ranks, and the order of files among workers."""
 
 from __future__ import annotations
 
-import fcntl
-import os
-import subprocess
-import sys
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.support.checkout import PYTHONPATH, ROOT
-
-Run = Callable[..., "subprocess.CompletedProcess[str]"]
+from tests.support import processes
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -27,45 +18,32 @@ def _quiet() -> None:
     dolfinx_compat.silence_logs()
 
 
+@pytest.fixture(autouse=True)
+def _may_start_mpirun(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tests marked `mpi` alone."""
+    if request.node.get_closest_marker("mpi"):
+        monkeypatch.setenv(processes.MARKED, "1")
+
+
 @pytest.fixture(scope="session")
-def run_script() -> Run:
-    """run_script(script, *arguments, ranks=1, timeout=300): the finished process with its output, status unchecked.
-
-    script: a path from the checkout's root, or "-c" with the program as the first argument.
-    """
-
-    def run(script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> subprocess.CompletedProcess[str]:
-        launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks)]
-        command = [*launcher, sys.executable, script, *arguments]
-        with one_at_a_time(ranks):
-            return subprocess.run(
-                command, cwd=ROOT, env=_environment(), capture_output=True, text=True, timeout=timeout, check=False
-            )
-
-    return run
+def run_script() -> processes.Run:
+    """See processes.run_script."""
+    return processes.run_script
 
 
-@contextmanager
-def one_at_a_time(ranks: int) -> Iterator[None]:
-    """Of the workers that run tests side by side one starts mpirun: its ranks want all cores."""
-    if ranks == 1:
-        yield
-        return
-    with open(Path(tempfile.gettempdir()) / f"evolvent-tests-{os.getuid()}.lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Where workers share the tests."""
+    if hasattr(config, "workerinput"):
+        from tests.support.schedule import longest_files_first
+
+        longest_files_first(items)
 
 
-def _environment() -> dict[str, str]:
-    """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
-    path = os.pathsep.join(filter(None, [PYTHONPATH, os.environ.get("PYTHONPATH")]))
-    return {
-        **os.environ,
-        "PYTHONPATH": path,
-        "OMP_NUM_THREADS": "1",
-        "MPLBACKEND": "Agg",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-    }
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> object:
+    """For `--dist loadfile`."""
+    if config.getoption("dist") != "loadfile":
+        return None
+    from tests.support.schedule import CollectedOrder
+
+    return CollectedOrder(config, log)

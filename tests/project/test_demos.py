@@ -6,10 +6,12 @@ import json
 
 import pytest
 
+from tests.support.processes import on_ranks
+
 DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 @pytest.mark.parametrize("demo", DEMOS)
 def test_demo(run_script, tmp_path, demo, ranks):
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
@@ -22,7 +24,7 @@ def test_demo(run_script, tmp_path, demo, ranks):
     assert sum(line.startswith(head) for line in done.stdout.splitlines()) == 1
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_gear_demo(run_script, tmp_path, ranks):
     """The paper's pair on a coarse mesh: status 0, tables, fields, pictures; the demo itself asserts the trend."""
     done = run_script("demos/yang2022.py", "--quick", "--out", str(tmp_path), ranks=ranks)

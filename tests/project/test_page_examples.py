@@ -16,9 +16,9 @@ from pathlib import Path
 import pytest
 
 from evolvent.scene.scene import scene_from_text
-from tests.conftest import one_at_a_time
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.page_commands import NAMES
+from tests.support.processes import one_at_a_time
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 LANGUAGES = {"sh", "python", "toml", "text"}
@@ -63,6 +63,7 @@ def environment(checkout: Path) -> dict[str, str]:
     }  # fmt: skip
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize("page", having("sh"), ids=lambda page: page.name)
 def test_shell_lines_run(page: Path, checkout: Path) -> None:
     """All shell blocks of a page, one after the other in one shell that stops at the first failure."""

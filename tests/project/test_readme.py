@@ -12,10 +12,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from evolvent import __version__
 from tests.support.checkout import ROOT
+from tests.support.processes import one_at_a_time
 
 
+@pytest.mark.mpi
 def test_mpirun_as_it_is_typed(tmp_path: Path) -> None:
     """The block with the exports, each `evolvent run ...` in it replaced by `evolvent --version`."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -24,8 +28,8 @@ def test_mpirun_as_it_is_typed(tmp_path: Path) -> None:
     assert sum(line.startswith("mpirun") for line in lines) == 2 and "evolvent run" not in " ".join(lines)
     paths = [str(Path(sys.executable).parent), "/usr/local/bin", "/usr/bin", "/bin"]
     clean = {"PATH": os.pathsep.join(paths), "HOME": str(tmp_path)}
-    done = subprocess.run(
-        ["sh", "-e", "-c", "\n".join(lines)], env=clean, cwd=ROOT, capture_output=True, text=True, timeout=120
-    )
+    shell = ["sh", "-e", "-c", "\n".join(lines)]
+    with one_at_a_time(2):
+        done = subprocess.run(shell, env=clean, cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [f"evolvent {__version__}"] * 2

@@ -15,7 +15,7 @@ import evolvent
 from evolvent.cli import main
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
-from tests.conftest import one_at_a_time
+from tests.support.processes import one_at_a_time
 from tests.support.abuses.malformed_scenes import MALFORMED
 from tests.support.checkout import PYTHONPATH, ROOT
 from tests.support.scene_texts import HE
@@ -161,6 +161,7 @@ def test_failures_of_run_have_their_exit_status(body: str, status: int, message:
     assert message in done.stderr
 
 
+@pytest.mark.mpi
 def test_failing_rank_ends_the_command_on_all_ranks(scene: Path) -> None:
     """Rank 1 fails while rank 0 waits for it in a collective call: its message, its status, no hang."""
     body = "assert MPI.COMM_WORLD.rank == 0, 'rank 1 broke'; MPI.COMM_WORLD.Barrier()"
@@ -170,6 +171,7 @@ def test_failing_rank_ends_the_command_on_all_ranks(scene: Path) -> None:
     assert "rank 1 broke" in done.stderr
 
 
+@pytest.mark.mpi
 def test_ranks_that_fail_alike_print_one_message(scene: Path) -> None:
     """All ranks raise NotConverged: one message, status 3."""
     done = run_with(STUCK.format("stuck"), scene, ranks=2)
@@ -177,6 +179,7 @@ def test_ranks_that_fail_alike_print_one_message(scene: Path) -> None:
     assert done.stderr.count("stuck") == 1
 
 
+@pytest.mark.mpi
 def test_bad_scene_under_mpirun_is_reported_once(scene: Path) -> None:
     """Status 2, and the message once."""
     scene.write_text(HE.replace("torque_Nm = 170.0", "torque_Nm = -1"), encoding="utf-8")

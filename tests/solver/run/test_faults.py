@@ -12,7 +12,7 @@ import pytest
 
 from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
 from evolvent.results.archive.archive import read_arrays
-from tests.conftest import Run
+from tests.support.processes import Run
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +38,7 @@ def test_comparison_of_runs_sees_another_torque(whole: Path, tmp_path: Path) -> 
     assert differs(tmp_path / "out", whole) > 1e-5
 
 
+@pytest.mark.mpi
 def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) -> None:
     """kill -9 of one of two ranks in its third turn, after two pairs of positions: the run ends at once with a status
     that is not 0, what was complete is whole, and resumed on one rank it is the undisturbed run."""

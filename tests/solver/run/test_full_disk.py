@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Run
+from tests.support.processes import Run
 
 STEP, LAST = 20, 440  # kB; the run takes 420, a position and the flanks in contact no less than a step
 

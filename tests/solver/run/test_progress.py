@@ -14,9 +14,9 @@ from rich.console import Console
 
 from evolvent.run.output import whereabouts
 from evolvent.run.progress import Progress
-from tests.conftest import Run
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene
+from tests.support.processes import Run
 
 STAGES = ("meshing", "condensing", "positions", "error bars", "tables and pictures")
 

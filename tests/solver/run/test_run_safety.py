@@ -16,8 +16,8 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.drawing.style import png, sheet, styled
 from evolvent_meshes.files import WriteError
 from evolvent_meshes.mesh.mesh_data import MeshError
-from tests.conftest import Run
 from tests.solver.results.archive.test_run_folder import hashes
+from tests.support.processes import Run
 
 SETTINGS = (
     "sweep.positions=3", "output.pictures=false", "output.animation=false", "output.error_bars=false",
@@ -280,6 +280,7 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
+@pytest.mark.mpi
 def test_serial_commands_under_mpirun_run_once(out: Path, run_script: Run, tmp_path: Path) -> None:
     """On two ranks: each is done once, by rank 0, and ends; each says what it says once."""
     done = run_script("-c", ALONE, "demos/he2022.toml", str(tmp_path / "a.msh"), str(out), ranks=2, timeout=100.0)

@@ -9,8 +9,9 @@ import pytest
 
 from evolvent.results.archive.archive import read_arrays
 from evolvent.run.certificates import BALANCE_LIMIT
-from tests.conftest import Run
+from tests.support.processes import Run
 from tests.support.gear_cases import HELICAL
+from tests.support.processes import Run, on_ranks
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -44,6 +45,7 @@ def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> li
     return positions(out)
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_results_do_not_depend_on_ranks(
     ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path
@@ -61,6 +63,7 @@ def test_results_do_not_depend_on_ranks(
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
 
 
+@pytest.mark.mpi
 def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
     one or two a rank: as on one rank within 1e-8. Two ranks have the last position at hand when one of two coefficients
@@ -80,6 +83,7 @@ def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path)
     assert_same(*found)
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize(("rank", "number", "complete"), [(0, 1, 0), (1, 3, 4)])
 def test_failing_rank_ends_the_run_on_all_ranks(
     rank: int, number: int, complete: int, run_script: Run, tmp_path: Path
@@ -97,7 +101,7 @@ def test_failing_rank_ends_the_run_on_all_ranks(
     assert not (out / "summary.json").exists()
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A position that fails its balance certificate: status 3, the numbers, and it is not written."""
     out = tmp_path / "out"
@@ -109,7 +113,7 @@ def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: 
     assert "failed: pinion at" in (out / "run.log").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A pitch that fails its balance certificate: status 3, the numbers, and no result."""
     out = tmp_path / "out"

@@ -16,8 +16,8 @@ from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn
-from tests.conftest import Run
 from tests.support.gear_cases import HELICAL
+from tests.support.processes import Run
 
 SPUR = "demos/he2022.toml"
 QUIET = (

@@ -26,8 +26,8 @@ from evolvent.scene.meshing.sector_meshes import sector_meshes
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, contact_teeth, skip_named, skipped, switched_off
-from tests.conftest import Run
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
+from tests.support.processes import Run
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")
 SMOOTH = "contact.friction=0"
@@ -239,6 +239,7 @@ def test_check_names_what_is_off(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert off.split("\n\n")[0].split() == ["window"]  # warnings come after it
 
 
+@pytest.mark.mpi
 def test_ranks_agree_the_long_way(run_script: Run, tmp_path: Path) -> None:
     """Whole gears, prepared again for each of two friction coefficients, on two ranks: as the usual way on one within
     1e-8."""

@@ -13,7 +13,7 @@ from evidence.robustness.campaigns.scene_outcomes import Verdict, outcome_of
 from evidence.robustness.campaigns.summaries import scene_summary
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.scene.scene import SceneError, scene_from_text
-from tests.conftest import ROOT
+from tests.support.checkout import ROOT
 
 PLANE, SOLID = range(40, 58), range(1, 5)
 CYCLED = (6, 75, 84)

@@ -9,7 +9,7 @@ from mpi4py import MPI
 from threadpoolctl import threadpool_info
 
 from evolvent.fem.parallel.cores import Cores
-from tests.conftest import Run
+from tests.support.processes import Run
 
 LEND = """
 import os, sys, time
@@ -50,6 +50,7 @@ sys.stdout.write("fine\\n")
 """
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_waiting_ranks_lend_their_cores(ranks: int, run_script: Run) -> None:
     """Each rank in turn works while the others wait: it has as many BLAS threads as there are ranks, and may run on

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evolvent.fem.parallel.memory import Stack, lazy_zeros
-from tests.conftest import Run
+from tests.support.processes import Run
 
 KEPT = """
 import numpy as np

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.fem.parallel import ranks
-from tests.conftest import Run
+from tests.support.processes import Run, on_ranks
 
 SHARE = """
 import numpy as np
@@ -59,7 +59,7 @@ except (ValueError, RuntimeError) as error:
 """
 
 
-@pytest.mark.parametrize("size", [1, 2, 3, 4])
+@pytest.mark.parametrize("size", on_ranks(1, 2, 3, 4))
 def test_shared_arrays_are_identical_on_all_ranks(size: int, run_script: Run) -> None:
     """Every kind of array arrives bit by bit from every root, on one node and on nodes of two ranks, in pieces; it is
     read-only, in shared memory, and the memory is given back with the last array."""
@@ -68,6 +68,7 @@ def test_shared_arrays_are_identical_on_all_ranks(size: int, run_script: Run) ->
     assert done.stdout.count("fine") == size
 
 
+@pytest.mark.mpi
 @pytest.mark.parametrize(("kind", "found"), [("plain", "ValueError one"), ("stubborn", "RuntimeError Stubborn: one")])
 def test_failure_of_a_rank_is_raised_on_all(kind: str, found: str, run_script: Run) -> None:
     """One rank's exception is raised on all, with a note of where; also one that cannot be pickled."""

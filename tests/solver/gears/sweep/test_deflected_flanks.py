@@ -27,8 +27,8 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.contact_slices import pitch_imbalance
 from evolvent_meshes.gears.member import Member
-from tests.conftest import Run
 from tests.support.gear_cases import model_of, spur_scene
+from tests.support.processes import Run, on_ranks
 
 BENT = 344
 """A seed of a helical steel pair under a tenth of a module of deflection, small enough for a second a pitch."""
@@ -176,7 +176,7 @@ def asked(scene: Path, run_script: Run, tmp_path_factory: pytest.TempPathFactory
     return solved(run_script, scene, tmp_path_factory.mktemp("asked"), "ok", "--no-skip=deflected-flanks")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
     ranks: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
 ) -> None:

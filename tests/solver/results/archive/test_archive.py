@@ -15,8 +15,8 @@ from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.results.archive.archive import Archive, ArchiveError, arrays_bytes, fingerprint, read_arrays
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.files import write_bytes
-from tests.conftest import Run
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
+from tests.support.processes import Run, on_ranks
 
 SCENE = "demos/he2022.toml"
 SETTINGS = (
@@ -82,14 +82,22 @@ def test_whole_run(whole: Path) -> None:
     assert (whole / "run.log").read_text(encoding="utf-8").count("balance") == 5
 
 
-@pytest.mark.parametrize("how", ["kill-mesh", "kill-before-1", "kill-half-4", "kill-before-8", "kill-before-11"])
-def test_killed_and_resumed(how: str, whole: Path, run_script: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("how", "ranks"),
+    [
+        ("kill-mesh", 1),
+        ("kill-before-1", 1),
+        ("kill-half-4", 1),
+        pytest.param("kill-before-8", 2, marks=pytest.mark.mpi),
+        ("kill-before-11", 1),
+    ],
+)
+def test_killed_and_resumed(how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
     """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
     resumed it is the undisturbed run. One is resumed on two ranks."""
     out = tmp_path / "out"
     assert run_script("tests/support/broken_run.py", how, *arguments(out)).returncode == -9
     assert not (out / "summary.json").exists()
-    ranks = 2 if how == "kill-before-8" else 1
     done = run_script("tests/support/broken_run.py", "ok", *arguments(out, "--resume"), ranks=ranks)
     assert done.returncode == 0, done.stderr
     assert_same(out, whole)
@@ -128,7 +136,7 @@ def snapshot(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_script: Run) -> None:
     """Status 2, a message that says what to do, and every file in the folder as before."""
     before = snapshot(whole)
@@ -159,7 +167,7 @@ def test_fresh_run_removes_what_an_earlier_one_left(whole: Path, run_script: Run
     assert torques == pytest.approx([100.0] * 8)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_full_disk(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
     """No space for the fourth file: status 1 and the reason, no half-written file, the positions before it intact, and
     once there is room --resume completes the run."""
@@ -192,7 +200,7 @@ def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
         os.system(f"umount {small}")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_folder_that_cannot_be_made(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A file where a folder is wanted: status 2 and the reason, on any number of ranks."""
     (tmp_path / "file").write_text("", encoding="utf-8")

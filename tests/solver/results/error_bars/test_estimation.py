@@ -36,8 +36,8 @@ from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
-from tests.conftest import Run
 from tests.support.gear_cases import spur_scene
+from tests.support.processes import Run
 from tests.support.synthetic_run import synthetic_run
 
 SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",
@@ -251,6 +251,7 @@ def fails(*_: object) -> None:
     raise NotConverged("it rained")
 
 
+@pytest.mark.mpi
 def test_ranks_agree(run_script: Run, tmp_path: Path) -> None:
     """He's pair, two friction coefficients on 1 and 2 ranks: the same bars within 1e-6 of them."""
     settings = [part for setting in (*SHORT, *OUTPUT) for part in ("--set", setting)]

@@ -21,8 +21,8 @@ from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
-from tests.conftest import Run
 from tests.support.gear_cases import ROOT, helical_scene, model_of, spur_scene, swept
+from tests.support.processes import Run
 
 MEBIBYTE = 1.048576
 
@@ -240,6 +240,7 @@ def test_relief_that_folds_the_mesh_is_refused(tmp_path: Path, capsys: pytest.Ca
     assert not out.exists()
 
 
+@pytest.mark.mpi
 def test_two_ranks_refuse_with_one_message(run_script: Run) -> None:
     """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
     code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"

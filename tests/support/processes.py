@@ -1,0 +1,70 @@
+"""Programs that tests start: in this checkout, on a number of MPI ranks, one mpirun at a time."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.checkout import PYTHONPATH, ROOT
+
+Done = subprocess.CompletedProcess[str]
+Run = Callable[..., Done]
+"""The fixture `run_script`, see `run_script` below."""
+MARKED = "EVOLVENT_TEST_STARTS_MPIRUN"
+"""Environment variable that is set while a test marked `mpi` runs; see conftest.py."""
+
+
+def run_script(script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> Done:
+    """run_script(script, *arguments, ranks=1, timeout=300): the finished process with its output, status unchecked.
+
+    script: a path from the checkout's root, or "-c" with the program as the first argument.
+    """
+    launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks)]
+    command = [*launcher, sys.executable, script, *arguments]
+    with one_at_a_time(ranks):
+        return subprocess.run(
+            command, cwd=ROOT, env=_environment(), capture_output=True, text=True, timeout=timeout, check=False
+        )
+
+
+@contextmanager
+def one_at_a_time(ranks: int) -> Iterator[None]:
+    """Of the workers that run tests side by side one starts mpirun: its ranks want all cores. Raises RuntimeError in a
+    test that is not marked `mpi`."""
+    if ranks == 1:
+        yield
+        return
+    if MARKED not in os.environ:
+        raise RuntimeError("wanted @pytest.mark.mpi on a test that starts mpirun, found none")
+    with open(Path(tempfile.gettempdir()) / f"evolvent-tests-{os.getuid()}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def on_ranks(*counts: int) -> list[Any]:
+    """Values for pytest.mark.parametrize: numbers of ranks, of which those above one start mpirun."""
+    return [count if count == 1 else pytest.param(count, marks=pytest.mark.mpi) for count in counts]
+
+
+def _environment() -> dict[str, str]:
+    """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
+    path = os.pathsep.join(filter(None, [PYTHONPATH, os.environ.get("PYTHONPATH")]))
+    return {
+        **os.environ,
+        "PYTHONPATH": path,
+        "OMP_NUM_THREADS": "1",
+        "MPLBACKEND": "Agg",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+    }

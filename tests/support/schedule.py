@@ -1,0 +1,36 @@
+"""The order in which pytest-xdist's workers get test files: those that take longest first.
+
+A worker that gets a long file last works alone at the end. How long a file takes is told by its markers.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+from xdist.scheduler import LoadFileScheduling
+
+SLOW, MPI, OTHER = 20.0, 5.0, 0.3
+"""Seconds of a test marked `slow`, of one marked `mpi`, and of any other, about."""
+
+
+def longest_files_first(items: list[pytest.Item]) -> None:
+    """Sorts collected tests; those of a file stay together, in their order."""
+    seconds: Counter[Path] = Counter()
+    for item in items:
+        marks = {mark.name for mark in item.iter_markers()}
+        seconds[item.path] += SLOW if "slow" in marks else MPI if "mpi" in marks else OTHER  # type: ignore[assignment]
+    items.sort(key=lambda item: (-seconds[item.path], str(item.path)))
+
+
+class CollectedOrder(LoadFileScheduling):  # type: ignore[misc]
+    """A file goes to one worker, for its tests share what is costly to compute; files go out as they were collected.
+    xdist itself sends those with the most tests first, in some of its versions."""
+
+    def _assign_work_unit(self, node: Any) -> None:
+        place = {name: number for number, name in enumerate(self.collection)}
+        first = min(self.workqueue, key=lambda file: place[next(iter(self.workqueue[file]))])
+        self.workqueue.move_to_end(first, last=False)
+        super()._assign_work_unit(node)

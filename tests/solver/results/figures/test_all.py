@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import QuadMesh
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
 
-from evidence.pages.tutorial import small
 from evolvent.cli import Exit, main
-from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.drawing.offscreen import off_screen
-from evolvent.results.drawing.style import ABOVE, OVER, PRESSURE_MAP, friction_colours, png, sheet, styled
+from evolvent.results.drawing.style import PRESSURE_MAP, friction_colours, sheet, styled
 from evolvent.results.engagement import engagement, engagements
 from evolvent.results.figures.all import figures, pictures
 from evolvent.results.figures.drive import even_share, line_load, load_sharing
-from evolvent.results.figures.flank import envelope, pressure_map, pressure_top
-from evolvent.results.figures.lines import at_point, path_points
+from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.stress import engagement_stress, running_median, smoothed, tooth_stress
-from evolvent.results.figures.yang import paper_points, paper_position
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -142,81 +136,6 @@ def _red(image: np.ndarray) -> int:
     return int((image[..., 0] > image[..., 2] + 70).sum())
 
 
-def test_envelope_is_hertz_over_the_path(run: RunData) -> None:
-    """Exact: with nearly even load the envelope falls from root to tip as the relative radius grows, p0 ∝ R^(−1/2)."""
-    ξ = np.linspace(-4.0, 5.0, 40)
-    _, peak = envelope(run, 0, ξ)
-    mean = np.nanmean(peak, axis=1)
-    radius = run.pair.relative_curvature_radius(ξ)
-    np.testing.assert_allclose(mean * np.sqrt(radius) / np.mean(mean * np.sqrt(radius)), 1.0, atol=0.03)
-
-
-def maps_of(run: RunData) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """(z, ξ, drawn pressures) of the maps of 02; the envelope first."""
-    with styled():
-        meshes = [ax.collections[0] for ax in pressure_map(run).axes[:4]]
-    found = []
-    for mesh in meshes:
-        assert isinstance(mesh, QuadMesh)
-        place = np.asarray(mesh._coordinates)
-        pressures = np.ma.filled(mesh.get_array(), np.nan).ravel()
-        flat = len(pressures) != place[..., 0].size  # one value a cell, not a corner
-        if flat:
-            place = 0.25 * (place[1:, 1:] + place[:-1, 1:] + place[1:, :-1] + place[:-1, :-1])
-        found.append((place[0, :, 0], place[:, 0, 1], pressures.reshape(place.shape[:2])))
-    return found
-
-
-def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
-    """Problem: the nodes' pressures are half as high again as the fitted peaks, as at a kink of the flank. Exact: also
-    then nothing that a map shows between the tip-edge zones is above the scale; what is above has the colour that the
-    scale names, also in the tutorial's pictures with their palette."""
-    raised = [
-        tuple(replace(each, result=replace(each.result, traction=1.5 * each.result.traction)) for each in position)
-        for position in run.positions
-    ]
-    kinked = replace(run, positions=raised)
-    low, high = kinked.inner_path
-    top = pressure_top(kinked, 0)
-    for _, ξ, pressures in maps_of(kinked)[1:]:
-        rows = (low < ξ) & (ξ < high)
-        assert 0.5 * top < pressures[rows].max() <= top
-    red, green, blue = to_rgb(OVER)
-    assert blue > 1.5 * max(red, green) and ABOVE.startswith("blue")
-    with styled(), Image.open(io.BytesIO(png(pressure_map(run)))) as picture:
-        colours = np.asarray(small(picture).convert("RGB")).reshape(-1, 3).astype(float)
-    assert np.abs(colours - 255.0 * np.array(to_rgb(OVER))).max(axis=1).min() < 4.0
-    assert (colours[0] == 255.0).all()
-
-
-def test_tip_edges_do_not_swamp_the_scale(run: RunData) -> None:
-    """Problem: in layers that bear on a tip edge the singular pressure, ten times the rest, reaches past the end of the
-    edge's zone. Exact: the scale ends where it ends without."""
-    solved = run.positions[0][0]
-    result, low = solved.result, run.inner_path[0]
-    bears = np.zeros(len(result.node), dtype=bool)
-    for tooth in np.unique(result.tooth):
-        bears |= (result.tooth == tooth) & on_tip_edge(solved.cut, int(tooth), run.flank.z[result.node])
-    singular = replace(result, traction=np.where(bears[:, None], 10.0, 1.0) * result.traction)
-    ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
-    assert singular.pressure[bears & (ξ > low)].max() > 2.0 * pressure_top(run, 0)
-    first = (replace(solved, result=singular), *run.positions[0][1:])
-    assert pressure_top(replace(run, positions=(first, *run.positions[1:])), 0) == pressure_top(run, 0)
-
-
-def test_envelope_has_straight_rims(run: RunData) -> None:
-    """Exact: the map of the envelope goes from rim to rim of the face and lies between the tip-edge zones; where it is
-    known begins and ends on lines without steps, within a tenth of a millimetre."""
-    z, ξ, pressures = maps_of(run)[0]
-    assert np.ptp(z) == pytest.approx(run.pair.face_width, rel=0.01)
-    low, high = run.inner_path
-    known = np.isfinite(pressures)
-    assert known.mean() > 0.9 and low - 0.05 < ξ.min() and ξ.max() < high + 0.05
-    step = np.ptp(ξ) / len(ξ)
-    for rows in (known, known[::-1]):
-        assert np.abs(np.diff(rows.argmax(axis=0))).max() * step < 0.1
-
-
 def test_a_tooth_takes_up_load_from_nothing() -> None:
     """Exact: each curve of load sharing begins and ends at 0; He's rigid pair jumps from 50 to 100 % within a five
     hundredth of a pitch, where a single pair begins to bear."""
@@ -251,17 +170,6 @@ def test_a_study_is_shown_where_it_is_asked_for(run: RunData) -> None:
     assert "pair 0 (at the pitch point, φ = 0)" in plain["04_stress_of_teeth"]
     assert "pair −1" in plain["06_pressure_along_lines"]
     assert "points of the path of contact" in plain["07_points_over_friction"]
-
-
-def test_points_of_the_path() -> None:
-    """He's pair: A and E at the tips, ε_α p_bt apart, C the pitch point; from B to D a single pair bears, so that they
-    are (2 − ε_α) p_bt apart. Zhang's pair, whose contact ratio is above 2, has no single pair contact."""
-    pair = synthetic_run(file="demos/he2022.toml").pair
-    at, pitch = dict(path_points(pair)), pair.pinion.transverse_base_pitch
-    assert list(at) == ["A", "B", "C", "D", "E"] and at["C"] == 0.0
-    assert at["E"] - at["A"] == pytest.approx(1.7547 * pitch, rel=1e-4)
-    assert at["D"] - at["B"] == pytest.approx((2.0 - 1.7547) * pitch, rel=1e-3)
-    assert [name for name, _ in path_points(synthetic_run(file="demos/zhang2023.toml").pair)] == ["A", "C", "E"]
 
 
 def test_labels_are_not_clipped_nor_crossed(run: RunData) -> None:
@@ -338,20 +246,6 @@ def test_a_single_pair_is_not_smoothed_away() -> None:
     known = np.isfinite(curve.max_pressure)
     np.testing.assert_allclose(line.max_pressure[known], curve.max_pressure[known], rtol=0.03)
     assert np.nanmax(running_median(curve.max_pressure)) < 0.9 * np.nanmax(curve.max_pressure)
-
-
-def test_points_lie_where_the_paper_says(run: RunData) -> None:
-    """A, B, C on the line through the pitch circle: below, at, above it; D on the line near the root. All on the flank
-    and under pressure."""
-    k = paper_position(run)
-    a, b, c, d = paper_points(run, k)
-    assert a.ξ < b.ξ == 0.0 < c.ξ
-    assert d.ξ < a.ξ
-    assert (a.tooth, b.tooth, c.tooth, d.tooth) == (0, 0, 0, -1)
-    for point in (a, b, c, d):
-        exact = run.pair.roll_distance(run.angles[k], point.tooth, point.z)
-        assert float(exact) == pytest.approx(point.ξ, abs=1e-9)
-        assert at_point(run.positions[k][0].cut, point) > 1000.0
 
 
 def test_colours() -> None:

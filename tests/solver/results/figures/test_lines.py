@@ -63,3 +63,14 @@ def test_labels_do_not_lie_on_each_other(run: RunData, monkeypatch: pytest.Monke
         assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
     assert label_rows([0.0, 5.0, 10.0], 1.0) == [0, 0, 0]
     assert label_rows([0.0, 0.5, 0.9, 1.2], 1.0) == [0, 1, 2, 0]
+
+
+def test_points_of_the_path() -> None:
+    """He's pair: A and E at the tips, ε_α p_bt apart, C the pitch point; from B to D a single pair bears, so that they
+    are (2 − ε_α) p_bt apart. Zhang's pair, whose contact ratio is above 2, has no single pair contact."""
+    pair = synthetic_run(file="demos/he2022.toml").pair
+    at, pitch = dict(path_points(pair)), pair.pinion.transverse_base_pitch
+    assert list(at) == ["A", "B", "C", "D", "E"] and at["C"] == 0.0
+    assert at["E"] - at["A"] == pytest.approx(1.7547 * pitch, rel=1e-4)
+    assert at["D"] - at["B"] == pytest.approx((2.0 - 1.7547) * pitch, rel=1e-3)
+    assert [name for name, _ in path_points(synthetic_run(file="demos/zhang2023.toml").pair)] == ["A", "C", "E"]

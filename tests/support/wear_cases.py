@@ -38,7 +38,7 @@ def cylinder(cells: float = 8.0, order: int = 2, friction: float = 0.0, material
     )
 
 
-def sphere(cells: float = 4.0) -> Problem:
+def sphere(cells: float = 3.0) -> Problem:
     """A quarter of a half sphere (body 0) on a slab, `cells` cells over the worn radius."""
     size, fine = SPHERE_WIDTH / cells, 1.25 * SPHERE_WIDTH
     ball = ring_sphere(RADIUS, 1.5, 1.5, SPHERE_WIDTH, size, fine, growth=1.7)

@@ -48,7 +48,7 @@ OUTPUT = ("output.pictures=false", "output.animation=false", "output.fields=fals
 
 @pytest.fixture(scope="module")
 def rows() -> list[BarRow]:
-    return measure_bars(spur_problem(widths=(1.7, 3.0, 6.0), positions=6, frictions=(0.0, 0.2)))
+    return measure_bars(spur_problem(widths=(1.7, 3.0, 6.0), positions=4, frictions=(0.0, 0.2)))
 
 
 def test_true_errors_are_inside(rows: list[BarRow]) -> None:

@@ -12,7 +12,7 @@
 release := $(shell . /etc/os-release; echo $${VERSION_ID:-unstable})
 ready := .venv/.ready-debian-$(release)
 
-# Whole modules go to a worker each, for their tests share what is costly to compute.
+# Whole files go to a worker each, for their tests share what is costly to compute; the longest first (tests/conftest.py).
 ON_ALL_CORES := -n auto --dist loadfile
 
 # One BLAS thread a process: two ranks with two threads each on two cores are slower than two with one.

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.support import processes
+from tests.support.running import processes
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -34,7 +34,7 @@ def run_script() -> processes.Run:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where workers share the tests."""
     if hasattr(config, "workerinput"):
-        from tests.support.schedule import longest_files_first
+        from tests.support.running.schedule import longest_files_first
 
         longest_files_first(items)
 
@@ -44,6 +44,6 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> object:
     """For `--dist loadfile`."""
     if config.getoption("dist") != "loadfile":
         return None
-    from tests.support.schedule import CollectedOrder
+    from tests.support.running.schedule import CollectedOrder
 
     return CollectedOrder(config, log)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.processes import Done, Run, on_ranks
+from tests.support.running.processes import Done, Run, on_ranks
 
 DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
 LARGER_CELLS = {"hertz_sphere": "demo.QUICK = (2, 3.5)", "yang2022": 'demo.SMALL += ("mesh.order=1",)'}
@@ -40,7 +40,7 @@ def alone(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Alone:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-@pytest.mark.parametrize("demo", DEMOS)
+@pytest.mark.parametrize("demo", [*DEMOS[:2], pytest.param(DEMOS[2], marks=pytest.mark.slow)])
 def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
     done, out = alone(demo) if ranks == 1 else (run_script(*started(demo, tmp_path, 2), ranks=2), tmp_path)
@@ -52,6 +52,7 @@ def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: i
     assert sum(line.startswith(head) for line in done.stdout.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_ball_profile_on_squares(alone: Alone) -> None:
     """Square cells of a/4, cut by the edge of contact at all angles: the skew method's profile with γ = 0.3 C is off by
     less than 4 %, and by less than half of what the symmetric one's is (13 %)."""
@@ -62,6 +63,7 @@ def test_ball_profile_on_squares(alone: Alone) -> None:
     assert error["squares, a/4, skew"] < min(4.0, 0.5 * error["squares, a/4"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
 def test_gear_demo(run_script, tmp_path, ranks):
     """The paper's pair on a coarse mesh: status 0, tables, fields, pictures; the demo itself asserts the trend."""
@@ -75,6 +77,7 @@ def test_gear_demo(run_script, tmp_path, ranks):
     assert len(list((tmp_path / "pictures").glob("*.png"))) >= 10
 
 
+@pytest.mark.slow
 def test_wear_demo(run_script, tmp_path):
     """Status 0, a table of at least ten rows and a picture; the demo itself asserts what Archard's law asks for."""
     done = run_script("demos/pin_on_disc.py", "--quick", "--out", str(tmp_path))
@@ -83,6 +86,7 @@ def test_wear_demo(run_script, tmp_path):
     assert len((tmp_path / "table.csv").read_text().splitlines()) > 10
 
 
+@pytest.mark.slow
 def test_gear_wear_demo(run_script, tmp_path):
     """He's pair on a coarse mesh: status 0, the run's pictures and the paper's, a table over the profile, a line a
     figure; the demo itself asserts its bounds."""

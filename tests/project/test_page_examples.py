@@ -17,8 +17,8 @@ import pytest
 
 from evolvent.scene.scene import scene_from_text
 from tests.support.checkout import PYTHONPATH, ROOT
-from tests.support.page_commands import NAMES
-from tests.support.processes import one_at_a_time
+from tests.support.running.page_commands import NAMES
+from tests.support.running.processes import one_at_a_time
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 LANGUAGES = {"sh", "python", "toml", "text"}
@@ -48,7 +48,8 @@ def checkout(tmp_path: Path) -> Path:
     (commands / "activate").touch()
     for name in NAMES:
         program = commands / name
-        program.write_text(f'#!/bin/sh\nexec {sys.executable} {ROOT}/tests/support/page_commands.py {name} "$@"\n')
+        script = ROOT / "tests/support/running/page_commands.py"
+        program.write_text(f'#!/bin/sh\nexec {sys.executable} {script} {name} "$@"\n')
         program.chmod(program.stat().st_mode | stat.S_IEXEC)
     return tmp_path
 
@@ -64,6 +65,7 @@ def environment(checkout: Path) -> dict[str, str]:
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 @pytest.mark.parametrize("page", having("sh"), ids=lambda page: page.name)
 def test_shell_lines_run(page: Path, checkout: Path) -> None:
     """All shell blocks of a page, one after the other in one shell that stops at the first failure."""

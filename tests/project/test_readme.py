@@ -16,7 +16,7 @@ import pytest
 
 from evolvent import __version__
 from tests.support.checkout import ROOT
-from tests.support.processes import one_at_a_time
+from tests.support.running.processes import one_at_a_time
 
 
 @pytest.mark.mpi

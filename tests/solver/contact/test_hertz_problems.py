@@ -20,6 +20,8 @@ from demos import hertz_cylinder as line
 from demos import hertz_sphere as point
 from evolvent import Nitsche, NotConverged, hertz, solve
 
+pytestmark = pytest.mark.slow  # the solutions on fine meshes that all are compared with
+
 
 @pytest.mark.parametrize("ratio", [1.0, 0.73, 1.37])
 @pytest.mark.parametrize("first", ["block", "cylinder"])

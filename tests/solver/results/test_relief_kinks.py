@@ -17,7 +17,7 @@ from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats
-from tests.solver.results.tables.test_run_warnings import GOOD
+from tests.support.run_parts import GOOD
 
 LIGHT = """
 [pair]

@@ -20,8 +20,8 @@ from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import load_scene
-from tests.solver.results.tables.test_run_warnings import GOOD
 from tests.support.gear_cases import QUIET
+from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
 from evolvent.results.archive.archive import read_arrays
-from tests.support.processes import Run
+from tests.support.running.processes import BROKEN_RUN, Run
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +24,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_run_killed_at_random_times_is_resumed(whole: Path, tmp_path: Path) -> None:
     """kill -9 at four random moments, each time resumed: every number is that of the undisturbed run within 1e-7, and
     before the end there is no table."""
@@ -43,7 +44,7 @@ def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) 
     """kill -9 of one of two ranks in its third turn, after two pairs of positions: the run ends at once with a status
     that is not 0, what was complete is whole, and resumed on one rank it is the undisturbed run."""
     out = tmp_path / "out"
-    script = "tests/support/broken_run.py"
+    script = BROKEN_RUN
     done = run_script(script, "killrank-1-3", *arguments(out), ranks=2)
     assert done.returncode != 0
     assert not (out / "summary.json").exists()
@@ -73,7 +74,7 @@ def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: Run, 
     """A compliance that turns into NaN at the first or third position: status 3 and "not a number", no table, the
     checkpoint before it intact, and once healed --resume completes the run."""
     out = tmp_path / "out"
-    done = run_script("tests/support/broken_run.py", f"nan-{at}", *arguments(out))
+    done = run_script(BROKEN_RUN, f"nan-{at}", *arguments(out))
     assert done.returncode == 3
     assert "not a number" in done.stderr and "Traceback" not in done.stderr
     assert not (out / "summary.json").exists()

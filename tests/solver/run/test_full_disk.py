@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 STEP, LAST = 20, 440  # kB; the run takes 420, a position and the flanks in contact no less than a step
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
 def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) -> None:
     """From a disk without room for the scene to one with room for all: status 1 and one line with file, size, reason
@@ -24,7 +25,8 @@ def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) ->
         pytest.skip("mounting is not allowed here")
     subprocess.run(["umount", str(tmp_path)], check=True)
     settings = ("output.fields=true", "sweep.positions=2", "contact.friction=[0.0, 0.1, 0.2]", "output.error_bars=true")
-    done = run_script("tests/support/full_disks.py", str(tmp_path), str(STEP), str(LAST), *settings, timeout=300.0)
+    sizes = str(STEP), str(LAST)
+    done = run_script("tests/support/running/full_disks.py", str(tmp_path), *sizes, *settings, timeout=300.0)
     assert done.returncode == 0, done.stderr
     disks = [json.loads(line) for line in done.stdout.splitlines()]
     assert len(disks) == LAST // STEP

@@ -16,7 +16,7 @@ from evolvent.run.output import whereabouts
 from evolvent.run.progress import Progress
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import spur_scene
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 STAGES = ("meshing", "condensing", "positions", "error bars", "tables and pictures")
 

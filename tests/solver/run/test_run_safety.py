@@ -16,8 +16,8 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.drawing.style import png, sheet, styled
 from evolvent_meshes.files import WriteError
 from evolvent_meshes.mesh.mesh_data import MeshError
-from tests.solver.results.archive.test_run_folder import hashes
-from tests.support.processes import Run
+from tests.support.run_parts import hashes
+from tests.support.running.processes import Run
 
 SETTINGS = (
     "sweep.positions=3", "output.pictures=false", "output.animation=false", "output.error_bars=false",

@@ -11,7 +11,7 @@ from evolvent.results.archive.archive import read_arrays
 from evolvent.run.certificates import BALANCE_LIMIT
 from tests.support.processes import Run
 from tests.support.gear_cases import HELICAL
-from tests.support.processes import Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -40,7 +40,7 @@ def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]])
 @pytest.fixture(scope="module")
 def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, object]]:
     out = tmp_path_factory.mktemp("one") / "out"
-    done = run_script("tests/support/broken_run.py", "ok", SPUR, "--out", str(out), *QUIET, *SHORT)
+    done = run_script(BROKEN_RUN, "ok", SPUR, "--out", str(out), *QUIET, *SHORT)
     assert done.returncode == 0, done.stderr
     return positions(out)
 
@@ -54,7 +54,7 @@ def test_results_do_not_depend_on_ranks(
     once, its coarse companion too; every position of both is searched once, the odd ones of four by rank 0, the others
     by rank 1, and two more, a rank each, where the first of them closes the pitch."""
     out = tmp_path / "out"
-    done = run_script("tests/support/broken_run.py", "count", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    done = run_script(BROKEN_RUN, "count", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
     assert done.returncode == 0, done.stderr
     assert_same(positions(out), on_one_rank)
     for rank in range(ranks):
@@ -63,6 +63,7 @@ def test_results_do_not_depend_on_ranks(
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
@@ -75,7 +76,7 @@ def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path)
         out = tmp_path / str(count)
         mixed = "--set", "contact.friction=[0.0, 0.5, 0.9]", "--set", "sweep.positions=10"
         where = str(scene), "--out", str(out)
-        done = run_script("tests/support/broken_run.py", "ok", *where, *QUIET, *mixed, ranks=count)
+        done = run_script(BROKEN_RUN, "ok", *where, *QUIET, *mixed, ranks=count)
         assert done.returncode == 0, done.stderr
         found.append(positions(out))
         solved = [int(read_arrays(path)["count"]) for path in sorted((out / "results").glob("position_*.npz"))]
@@ -92,7 +93,7 @@ def test_failing_rank_ends_the_run_on_all_ranks(
     of the turns before are kept, two of each."""
     out = tmp_path / "out"
     how = f"raise-{rank}-{number}"
-    done = run_script("tests/support/broken_run.py", how, SPUR, "--out", str(out), *QUIET, *SHORT, ranks=3, timeout=60)
+    done = run_script(BROKEN_RUN, how, SPUR, "--out", str(out), *QUIET, *SHORT, ranks=3, timeout=60)
     assert done.returncode == 1
     assert f"ArithmeticError: rank {rank} broke" in done.stderr
     assert f"on rank {rank} of 3" in done.stderr
@@ -105,7 +106,7 @@ def test_failing_rank_ends_the_run_on_all_ranks(
 def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A position that fails its balance certificate: status 3, the numbers, and it is not written."""
     out = tmp_path / "out"
-    done = run_script("tests/support/broken_run.py", "unbalanced", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    done = run_script(BROKEN_RUN, "unbalanced", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
     assert done.returncode == 3
     assert "wanted a balance error of at most 1e-09, found" in done.stderr
     assert not list((out / "results").glob("position_*.npz"))
@@ -117,7 +118,7 @@ def test_unbalanced_position_is_an_error(ranks: int, run_script: Run, tmp_path: 
 def test_unbalanced_pitch_is_an_error(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A pitch that fails its balance certificate: status 3, the numbers, and no result."""
     out = tmp_path / "out"
-    done = run_script("tests/support/broken_run.py", "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
+    done = run_script(BROKEN_RUN, "leaking", SPUR, "--out", str(out), *QUIET, *SHORT, ranks=ranks)
     assert done.returncode == 3
     assert "wanted an energy balance within 1e-09 of the input, found" in done.stderr
     assert "solved again, on deflected flanks" in (out / "run.log").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn
 from tests.support.gear_cases import HELICAL
-from tests.support.processes import Run
+from tests.support.running.processes import BROKEN_RUN, Run
 
 SPUR = "demos/he2022.toml"
 QUIET = (
@@ -33,7 +33,7 @@ WEAR = (
 
 def computed(run_script: Run, out: Path, *settings: str, how: str = "ok", ranks: int = 1, scene: str = SPUR) -> int:
     """The status of a run."""
-    done = run_script("tests/support/broken_run.py", how, scene, "--out", str(out), *QUIET, *settings, ranks=ranks)
+    done = run_script(BROKEN_RUN, how, scene, "--out", str(out), *QUIET, *settings, ranks=ranks)
     assert how != "ok" or done.returncode == 0, done.stderr
     return done.returncode
 
@@ -74,6 +74,7 @@ def followed(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("friction", ["0.0", "0.1"])
 def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
@@ -88,6 +89,7 @@ def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_scrip
         assert_same(tmp_path / str(ranks), alone, 1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
 def test_interrupted_wear_study_is_resumed(how: str, followed: Path, run_script: Run, tmp_path: Path) -> None:
@@ -150,6 +152,7 @@ def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: Run, tmp_
         assert study.pairs[-1].worn[gear].depth.max() < b.max()  # what was there before is not the study's
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("blocks_", ["implicit", "explicit"])
 def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair in 3D with friction: depths nowhere negative, both gears' volumes in the ratio of their

@@ -27,7 +27,7 @@ from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, contact_teeth, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")
 SMOOTH = "contact.friction=0"

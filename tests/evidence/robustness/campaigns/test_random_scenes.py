@@ -23,6 +23,7 @@ HARD = (102, 450)
 point, slip of a hundred times the flanks' displacements, which taken for stuck at first tears them apart."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID), (None, HARD)])
 def test_random_scenes_converge(plane: bool | None, seeds: range | tuple[int, ...]) -> None:
     """Every scene converges and balances its energy over the pitch; none crashes, hangs, or is refused."""

@@ -42,12 +42,14 @@ def test_corners_converge_to_hertz(name: str) -> None:
     assert CORNERS[name].cell().error < 5e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["μ = 1", "θ = −1"])
 def test_corners_of_the_ball_converge_to_hertz(name: str) -> None:
     """A steel ball on a steel block, second-order hexahedra of a/4: p0 of Hertz within 0.1 %."""
     assert SETTINGS[name].cell().error < 1e-3
 
 
+@pytest.mark.slow
 def test_theta_does_not_matter_to_gears() -> None:
     """He's pair as two whole bodies, θ = −1: the wheel's moment and the transmission error of the sweep, which has
     θ = 1 and one condensed sector a gear, within 0.5 %; p0 within 2 %, as it is fitted to the pressures of two elements
@@ -70,6 +72,7 @@ def test_symmetric_method_below_its_limit_is_refused() -> None:
     assert "Nitsche's γ" in attempt(Cylinder(safety=0.5).cell).refused
 
 
+@pytest.mark.slow
 def test_parameters_of_the_method_do_not_matter() -> None:
     """γ from 1.25 to 50 times the inverse-trace constant and θ = 1, −1: p0 of the cylinder is Hertz' within 0.5 %;
     torque and transmission error of the spur pair change by less than that, and so does its p0 at 6 elements across the

@@ -6,14 +6,10 @@ import numpy as np
 import pytest
 
 from evolvent import (
-    Body,
     Contact,
-    Fixed,
     Freedom,
-    Material,
     NotConverged,
     Problem,
-    Rigid,
     Step,
     StepSystem,
     condense_bodies,
@@ -31,33 +27,7 @@ from evolvent.contact.newton.equilibrium import (
     stuck,
 )
 from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
-from evolvent_meshes.shapes.blocks import cylinder_2d, graded_box, graded_rectangle, sphere_quarter
-
-FRICTION = 0.2
-
-
-def cylinder(friction: float = FRICTION, first: int = 0, order: int = 2, extra: tuple[Freedom, ...] = ()) -> Problem:
-    """A steel cylinder of 50 mm radius on an aluminium block, 5 kN/mm, a = 2.35 mm, cells of a/3 on a/4."""
-    bodies = (
-        Body(cylinder_2d(50.0, 0.8, 3.0, order, growth=1.6), rigid=Rigid("top", (Freedom("y", load=-5e3), *extra))),
-        Body(graded_rectangle(60.0, 40.0, 0.63, 3.0, order, growth=1.6), Material(70e3, 0.3), (Fixed("bottom"),)),
-    )
-    sides = ((0, "arc"), (1, "top"))
-    return Problem(bodies, (Contact(sides[first], sides[1 - first], friction, reach=0.5),))
-
-
-def ball(friction: float = FRICTION) -> Problem:
-    """A quarter of a ball of 8 mm radius on a block, coarse."""
-    symmetry = (Fixed("symmetry_x", "x"), Fixed("symmetry_y", "y"))
-    bodies = (
-        Body(
-            sphere_quarter(8.0, 2.0, 2.0, 0.2, 0.4, 1),
-            supports=symmetry,
-            rigid=Rigid("top", (Freedom("z", load=-500.0),)),
-        ),
-        Body(graded_box(2.0, 2.0, 0.17, 0.4, 1), Material(70e3, 0.3), (*symmetry, Fixed("bottom"))),
-    )
-    return Problem(bodies, (Contact((0, "arc"), (1, "top"), friction, reach=0.1),))
+from tests.support.contact_cases import FRICTION, ball, cylinder
 
 
 def _position(problem: Problem) -> StepSystem:

@@ -10,7 +10,7 @@ import pytest
 from evolvent import Freedom, Nitsche, Placement, Step, StepSystem, condense_bodies
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
-from tests.solver.contact.newton.test_equilibrium import ball, cylinder
+from tests.support.contact_cases import ball, cylinder
 
 CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) for μ in (0.0, 0.1)]
 

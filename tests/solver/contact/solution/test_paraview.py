@@ -24,7 +24,7 @@ from evolvent import (
 from evolvent.contact.solution.paraview import vtu_bytes
 from evolvent_meshes.files import PART, WriteError, write_bytes
 from evolvent_meshes.shapes.blocks import box, rectangle
-from tests.solver.contact.newton.test_equilibrium import cylinder
+from tests.support.contact_cases import cylinder
 
 SHAPES = [(s, o) for s in ("triangle", "quadrilateral", "tetrahedron", "hexahedron") for o in (1, 2)]
 TURN = np.array([[0.8, -0.6], [0.6, 0.8]])

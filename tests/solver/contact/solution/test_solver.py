@@ -29,8 +29,8 @@ from evolvent import (
 )
 from evolvent.contact.solution.full_system import full_solution
 from evolvent_meshes.shapes.blocks import rectangle
-from tests.solver.contact.newton.test_equilibrium import FRICTION, cylinder
 from tests.support.checkout import ROOT
+from tests.support.contact_cases import FRICTION, cylinder
 
 
 def test_programs_of_the_page_on_own_problems_run(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.fresh_process import FORM, NOWHERE, python
+from tests.support.running.fresh_process import FORM, NOWHERE, python
 
 
 def left_in(folder: Path) -> list[Path]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.fem.backend.form_compiler import logging_kept
-from tests.support.fresh_process import FORM, python
+from tests.support.running.fresh_process import FORM, python
 
 
 def test_compilation_is_silent(tmp_path: Path) -> None:

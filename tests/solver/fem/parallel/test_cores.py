@@ -9,7 +9,7 @@ from mpi4py import MPI
 from threadpoolctl import threadpool_info
 
 from evolvent.fem.parallel.cores import Cores
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 LEND = """
 import os, sys, time

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evolvent.fem.parallel.memory import Stack, lazy_zeros
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 KEPT = """
 import numpy as np

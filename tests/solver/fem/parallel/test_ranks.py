@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.fem.parallel import ranks
-from tests.support.processes import Run, on_ranks
+from tests.support.running.processes import Run, on_ranks
 
 SHARE = """
 import numpy as np

@@ -28,7 +28,7 @@ from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.contact_slices import pitch_imbalance
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene
-from tests.support.processes import Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 
 BENT = 344
 """A seed of a helical steel pair under a tenth of a module of deflection, small enough for a second a pitch."""
@@ -164,7 +164,7 @@ def solved(run_script: Run, scene: Path, out: Path, *how: str, ranks: int = 1, r
     settings = "sweep.positions=4", "contact.friction=[0.0, 0.1]"
     more = [*(f"--set={setting}" for setting in settings), *how[1:], *(["--resume"] if resume else [])]
     where = str(scene), "--out", str(out), "--quiet"
-    done = run_script("tests/support/broken_run.py", how[0], *where, *more, ranks=ranks)
+    done = run_script(BROKEN_RUN, how[0], *where, *more, ranks=ranks)
     assert done.returncode == 0, done.stderr
     summary: dict[str, Any] = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     return summary
@@ -200,7 +200,7 @@ def test_a_run_killed_on_deflected_flanks_is_resumed(
     deflection, is written: resumed it is the same."""
     out = tmp_path / "out"
     settings = "--set=sweep.positions=4", "--set=contact.friction=[0.0, 0.1]"
-    command = "tests/support/broken_run.py", f"strict-{number}", str(scene), "--out", str(out), "--quiet", *settings
+    command = BROKEN_RUN, f"strict-{number}", str(scene), "--out", str(out), "--quiet", *settings
     assert run_script(*command).returncode == -9
     found = solved(run_script, scene, out, "strict", resume=True)
     assert differences(asked, found).largest < 1e-8

@@ -16,7 +16,7 @@ from evolvent.results.archive.archive import Archive, ArchiveError, arrays_bytes
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.files import write_bytes
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
-from tests.support.processes import Run, on_ranks
+from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 
 SCENE = "demos/he2022.toml"
 SETTINGS = (
@@ -68,7 +68,7 @@ def table(out: Path) -> dict[str, float]:
 def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run that nothing happened to."""
     out = tmp_path_factory.mktemp("whole") / "out"
-    done = run_script("tests/support/broken_run.py", "ok", *arguments(out))
+    done = run_script(BROKEN_RUN, "ok", *arguments(out))
     assert done.returncode == 0, done.stderr
     return out
 
@@ -96,9 +96,9 @@ def test_killed_and_resumed(how: str, ranks: int, whole: Path, run_script: Run, 
     """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
     resumed it is the undisturbed run. One is resumed on two ranks."""
     out = tmp_path / "out"
-    assert run_script("tests/support/broken_run.py", how, *arguments(out)).returncode == -9
+    assert run_script(BROKEN_RUN, how, *arguments(out)).returncode == -9
     assert not (out / "summary.json").exists()
-    done = run_script("tests/support/broken_run.py", "ok", *arguments(out, "--resume"), ranks=ranks)
+    done = run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"), ranks=ranks)
     assert done.returncode == 0, done.stderr
     assert_same(out, whole)
 
@@ -125,7 +125,7 @@ def test_complete_run_is_only_drawn_again(whole: Path, run_script: Run, tmp_path
     out = tmp_path / "out"
     shutil.copytree(whole, out)
     (out / "summary.json").unlink()
-    done = run_script("tests/support/broken_run.py", "count", *arguments(out, "--resume", "--set", "title='again'"))
+    done = run_script(BROKEN_RUN, "count", *arguments(out, "--resume", "--set", "title='again'"))
     assert done.returncode == 0, done.stderr
     assert "condensed 0, searched 0" in done.stdout
     assert_same(out, whole)
@@ -141,7 +141,7 @@ def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_scr
     """Status 2, a message that says what to do, and every file in the folder as before."""
     before = snapshot(whole)
     more = ("--resume", "--set", "load.torque_Nm=171")
-    done = run_script("tests/support/broken_run.py", "ok", *arguments(whole, *more), ranks=ranks)
+    done = run_script(BROKEN_RUN, "ok", *arguments(whole, *more), ranks=ranks)
     assert done.returncode == 2
     assert "found those of another one: this one has load.torque_Nm = 171 (kept: 170); resume with" in done.stderr
     assert "--out" in done.stderr
@@ -155,13 +155,13 @@ def test_fresh_run_removes_what_an_earlier_one_left(whole: Path, run_script: Run
     shutil.copytree(whole, out)
     (out / "notes.txt").write_text("mine", encoding="utf-8")
     more = ("--set", "load.torque_Nm=100")
-    killed = run_script("tests/support/broken_run.py", "kill-after-5", *arguments(out, *more, "--overwrite"))
+    killed = run_script(BROKEN_RUN, "kill-after-5", *arguments(out, *more, "--overwrite"))
     assert killed.returncode == -9
     names = {path.name for path in (out / "results").glob("*.npz")}
     assert names == {"gears.npz", "state.npz", "position_0000.npz", "position_0001.npz"}
     assert not (out / "summary.json").exists()
     assert (out / "notes.txt").read_text(encoding="utf-8") == "mine"
-    done = run_script("tests/support/broken_run.py", "ok", *arguments(out, *more, "--resume"))
+    done = run_script(BROKEN_RUN, "ok", *arguments(out, *more, "--resume"))
     assert done.returncode == 0, done.stderr
     torques = [row["torque_pinion_Nm"] for row in json.loads((out / "summary.json").read_text())["positions"]]
     assert torques == pytest.approx([100.0] * 8)
@@ -172,14 +172,14 @@ def test_full_disk(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> 
     """No space for the fourth file: status 1 and the reason, no half-written file, the positions before it intact, and
     once there is room --resume completes the run."""
     out = tmp_path / "out"
-    done = run_script("tests/support/broken_run.py", "full-4", *arguments(out), ranks=ranks)
+    done = run_script(BROKEN_RUN, "full-4", *arguments(out), ranks=ranks)
     assert done.returncode == 1
     wanted = r"position_0001\.npz: wanted to write \S+ MB, found No space left on device; make room"
     assert re.search(wanted, done.stderr)
     assert "--resume" in done.stderr
     assert not list(out.rglob("*.evolvent-part*"))
     assert read_arrays(out / "results" / "state.npz")["complete"] == 1
-    assert run_script("tests/support/broken_run.py", "ok", *arguments(out, "--resume"), ranks=ranks).returncode == 0
+    assert run_script(BROKEN_RUN, "ok", *arguments(out, "--resume"), ranks=ranks).returncode == 0
     assert_same(out, whole)
 
 
@@ -191,7 +191,7 @@ def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
     if os.system(f"mount -t tmpfs -o size=64k tmpfs {small} 2>/dev/null") != 0:
         pytest.skip("mounting is not allowed here")
     try:
-        done = run_script("tests/support/broken_run.py", "ok", *arguments(small / "out"))
+        done = run_script(BROKEN_RUN, "ok", *arguments(small / "out"))
         assert done.returncode == 1
         assert "No space left on device" in done.stderr
         assert "Traceback" not in done.stderr
@@ -204,7 +204,7 @@ def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
 def test_folder_that_cannot_be_made(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A file where a folder is wanted: status 2 and the reason, on any number of ranks."""
     (tmp_path / "file").write_text("", encoding="utf-8")
-    done = run_script("tests/support/broken_run.py", "ok", *arguments(tmp_path / "file" / "out"), ranks=ranks)
+    done = run_script(BROKEN_RUN, "ok", *arguments(tmp_path / "file" / "out"), ranks=ranks)
     assert done.returncode == 2
     assert "(Not a directory); allowed: a directory that can be made and written to" in done.stderr
 

@@ -15,16 +15,9 @@ from evolvent.results.archive.run_lock import locked
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.files import PART, WriteError, part_of, write_text
 from tests.support.checkout import ROOT
+from tests.support.run_parts import hashes
 
 THEIRS = ("photo.png", "pictures/photo.png", "results/measured.npz", "fields/contact_mine.vtp", "worn_1000/a.txt")
-
-
-def hashes(folder: Path) -> dict[str, str]:
-    """SHA-256 of every file below a folder but Evolvent's own list."""
-    return {
-        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(folder.rglob("*")) if path.is_file() and path != folder / MANIFEST
-    }  # fmt: skip
 
 
 @pytest.fixture

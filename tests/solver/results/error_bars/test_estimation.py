@@ -37,7 +37,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 from tests.support.gear_cases import spur_scene
-from tests.support.processes import Run
+from tests.support.running.processes import BROKEN_RUN, Run
 from tests.support.synthetic_run import synthetic_run
 
 SHORT = ("mesh.level=quick", "contact.friction=[0.0, 0.2]", "sweep.positions=4",
@@ -51,6 +51,7 @@ def rows() -> list[BarRow]:
     return measure_bars(spur_problem(widths=(1.7, 3.0, 6.0), positions=4, frictions=(0.0, 0.2)))
 
 
+@pytest.mark.slow
 def test_true_errors_are_inside(rows: list[BarRow]) -> None:
     """Problem: He's spur pair on 12 meshes (1.7, 3 and 6 elements across the contact, quadrilaterals and triangles,
     orders 1 and 2), μ = 0 and 0.2. Exact: 48 second-order elements across, within a few per cent of the bars. Nine in
@@ -62,6 +63,7 @@ def test_true_errors_are_inside(rows: list[BarRow]) -> None:
         assert hit_rate([row for row in rows if row.figure == figure]) >= 0.9, figure
 
 
+@pytest.mark.slow
 def test_bars_are_of_use(rows: list[BarRow]) -> None:
     """A bar that is always far too wide would hold everything: of second-order meshes, with 3 and 6 elements across,
     no bar is above 6 % of its figure, and in the median one is at most 6 times the true error."""
@@ -258,7 +260,7 @@ def test_ranks_agree(run_script: Run, tmp_path: Path) -> None:
     found = []
     for ranks in (1, 2):
         out = tmp_path / str(ranks)
-        arguments = ("tests/support/broken_run.py", "ok", "demos/he2022.toml", "--out", str(out), "--quiet", *settings)
+        arguments = (BROKEN_RUN, "ok", "demos/he2022.toml", "--out", str(out), "--quiet", *settings)
         done = run_script(*arguments, ranks=ranks)
         assert done.returncode == 0, done.stderr
         found.append([row["estimated_error"] for row in summary(out)["frictions"]])

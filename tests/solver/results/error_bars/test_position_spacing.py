@@ -34,7 +34,7 @@ from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import load_scene
-from tests.solver.results.tables.test_run_warnings import GOOD
+from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run
 
 COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")

@@ -26,7 +26,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.redraw import plot_folder
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.gears.member import Member
-from tests.solver.results.tables.test_tables import store
+from tests.support.run_parts import store
 from tests.support.synthetic_run import synthetic_run
 
 
@@ -74,6 +74,7 @@ def test_pictures_name_the_same_largest_pressure(run: RunData) -> None:
                 assert wanted in " ".join(text.get_text() for text in draw(run).findobj(Text)), name
 
 
+@pytest.mark.slow
 def test_pictures_of_a_directory(run: RunData, tmp_path: Path) -> None:
     """A run on disk is drawn whole: all figures, the pair and an animation of as many frames as positions."""
     store(run, tmp_path)

@@ -21,11 +21,10 @@ from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.plain_text import brief
-from tests.solver.results.tables.test_tables import FACTS
 from tests.support.gear_cases import spur_scene
+from tests.support.run_parts import FACTS, GOOD
 from tests.support.synthetic_run import synthetic_run
 
-GOOD = MeshFacts(0.3, 3.1, 2.0)
 BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 0.1, 0.1, 0.1, 0.1),), "", "")
 
 

@@ -10,20 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
-from evolvent.results.archive.archive import Archive
-from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import degrees, friction_rows, position_rows
-from evolvent.results.tables.summary_rows import RunFacts
 from evolvent.results.tables.tables import summary, write_tables
+from tests.support.run_parts import FACTS, store
 from tests.support.synthetic_run import PEAK_TO_PEAK, STIFFNESS, synthetic_run
 
-FACTS = RunFacts(
-    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
-)
 KEYS = {"scene", "versions", "ranks", "dofs", "cells", "mesh", "skipped", "timings_s", "peak_memory_MB", "positions"}
 POSITION_KEYS = {
     "pinion_angle_deg", "friction", "torque_pinion_Nm", "torque_gear_Nm", "transmission_error_um", "max_pressure_MPa",
@@ -147,17 +140,6 @@ def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
     again = read_run(tmp_path)
     assert repr(position_rows(again)) == repr(position_rows(run))  # repr is exact, and NaN equals NaN in it
     np.testing.assert_array_equal(again.flank.points, run.flank.points)
-
-
-def store(run: RunData, folder: Path) -> None:
-    """Archives a run as a real one would be."""
-    archive = Archive(folder, run.scene)
-    archive.write_gears(run.shapes)
-    (folder / "scene.toml").write_text(run.scene.resolved_toml(), encoding="utf-8")
-    results = [tuple(solved.result for solved in each) for each in run.positions]
-    state = SweepState((0.0, 0.0), tuple(None for _ in run.frictions))
-    for k, each in enumerate(results):
-        archive.write_position(k, SweptPosition(each[0].stand.angle, each, state))
 
 
 def test_angles_without_round_off(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
 from tests.support.gear_cases import ROOT, helical_scene, model_of, spur_scene, swept
-from tests.support.processes import Run
+from tests.support.running.processes import Run
 
 MEBIBYTE = 1.048576
 

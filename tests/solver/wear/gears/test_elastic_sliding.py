@@ -67,7 +67,10 @@ def apart(model: GearModel, here: ContactGeometry, found: SharedPosition) -> Flo
     return np.asarray(places[0] - places[1])
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), [("steel", 0.02), ("plastic", 0.06), ("helical", 0.08)])
+@pytest.mark.parametrize(
+    ("kind", "tolerance"),
+    [("steel", 0.02), ("plastic", 0.06), pytest.param("helical", 0.08, marks=pytest.mark.slow)],
+)
 def test_elastic_sliding_of_followed_material_points(kind: str, tolerance: float) -> None:
     """A steel pinion on a wheel of steel or of plastic, and a helical pair, without friction. Two states TURN before
     and after a position say how its pairs of material points slide over one another. At each tooth the pressure's mean

@@ -19,6 +19,8 @@ from tests.support.checkout import PYTHONPATH, ROOT
 Done = subprocess.CompletedProcess[str]
 Run = Callable[..., Done]
 """The fixture `run_script`, see `run_script` below."""
+BROKEN_RUN = "tests/support/running/broken_run.py"
+"""Script that runs a scene with something going wrong, for `run_script`."""
 MARKED = "EVOLVENT_TEST_STARTS_MPIRUN"
 """Environment variable that is set while a test marked `mpi` runs; see conftest.py."""
 

@@ -10,7 +10,7 @@ import pytest
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.sector.section import SectorResolution, section_mesh
-from tests.support.sector_cases import gear_and_start
+from tests.support.meshes.sector_cases import gear_and_start
 
 
 def test_size_function_grades_the_flank() -> None:

@@ -13,8 +13,8 @@ from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.sector.section import SectorResolution, section_mesh
 from evolvent_meshes.sector.sector import layer_heights, sector_mesh
-from tests.support.mesh_measures import covers_boundary, measure
-from tests.support.sector_cases import COARSE, GEARS, gear_and_start, nodes_of, sector, turned
+from tests.support.meshes.mesh_measures import covers_boundary, measure
+from tests.support.meshes.sector_cases import COARSE, GEARS, gear_and_start, nodes_of, sector, turned
 
 
 @pytest.mark.parametrize("name", GEARS)

@@ -8,7 +8,7 @@ import pytest
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_box, graded_rectangle, rectangle, sphere_quarter
-from tests.support.mesh_measures import covers_boundary, measure
+from tests.support.meshes.mesh_measures import covers_boundary, measure
 
 A = 6.2146  # half-width of the NAFEMS cylinder's contact, mm
 FLAT = ("quadrilateral", "triangle")

@@ -10,7 +10,7 @@ from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, surface_of
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
-from tests.support.surface_shapes import curve, lattice
+from tests.support.meshes.surface_shapes import curve, lattice
 
 CELLS = [(s, o) for s in ("interval", "quadrilateral", "triangle") for o in (1, 2)]
 FACES = [c for c in CELLS if c[0] != "interval"]

@@ -35,7 +35,7 @@ from evolvent.contact.solution.full_system import FullContact
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.surface import surface_of
 from evolvent_meshes.shapes.blocks import box, rectangle
-from tests.support.merged_mesh import Merged
+from tests.support.meshes.merged_mesh import Merged
 
 STEEL, ALUMINIUM = Material(210e3, 0.3), Material(70e3, 0.35)
 FRICTION = 0.2

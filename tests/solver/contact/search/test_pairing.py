@@ -10,7 +10,7 @@ from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, hats
-from tests.support.surface_shapes import cap, curve, facing, lattice, rectangle, shaken
+from tests.support.meshes.surface_shapes import cap, curve, facing, lattice, rectangle, shaken
 
 Kind = tuple[str, int]
 """Shape and order of facets."""

@@ -8,7 +8,7 @@ import pytest
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.surface import Surface, hats
-from tests.support.surface_shapes import cap, curve, facing, lattice
+from tests.support.meshes.surface_shapes import cap, curve, facing, lattice
 
 Kind = tuple[str, int]
 """Shape and order of facets."""

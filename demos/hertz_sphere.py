@@ -52,7 +52,6 @@ RADIUS, LOAD, SIDE = 8.0, 2000.0, 4.0  # mm, N, mm
 MODULUS = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
 HERTZ = hertz.point_contact(LOAD, RADIUS, MODULUS)
 SYMMETRIC, SKEW = Nitsche(), Nitsche(safety=0.3, theta=-1.0)
-QUICK, FULL = (2, 4), (2, 4, 6, 8)  # cells on Hertz' radius
 
 
 @dataclass(frozen=True)
@@ -118,7 +117,7 @@ def ball_on_block(
 
 def cases(quick: bool) -> dict[str, Problem]:
     """Name -> problem; the last but two is the finest mesh of rings."""
-    cells = QUICK if quick else FULL
+    cells = (2, 4) if quick else (2, 4, 6, 8)
     squares = f"squares, a/{cells[-1]}"
     return {
         "rings, a/2, friction 0.2": ball_on_block(2, friction=0.2),

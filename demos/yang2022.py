@@ -39,10 +39,10 @@ def main(out: Path, quick: bool = False) -> None:
 
 def friction_effect(run: RunData) -> tuple[float, float]:
     """Relative change of the mean line load from the lowest to the highest μ, before and after the pitch point."""
-    loads = []
+    loads, names = [], ("roll_distance", "line_load", "width")
     for index in (0, -1):
         cuts = [each[index].cut for each in run.positions]
-        ξ, load, width = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "line_load", "width"))
+        ξ, load, width = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in names)
         loads.append([np.sum((load * width)[side]) for side in (ξ < 0.0, ξ > 0.0)])
     change = np.array(loads[1]) / np.array(loads[0]) - 1.0
     return float(change[0]), float(change[1])

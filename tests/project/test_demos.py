@@ -13,8 +13,8 @@ import pytest
 from tests.support.running.processes import Done, Run, on_ranks
 
 DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
-LARGER_CELLS = {"hertz_sphere": "demo.QUICK = (2, 3.5)", "yang2022": 'demo.SMALL += ("mesh.order=1",)'}
-"""Of demos that take long: what makes their small size smaller, to see that they run on two ranks too."""
+LARGER_CELLS = {"yang2022": 'demo.SMALL += ("mesh.order=1",)'}
+"""Of a demo that takes long: what makes its small size smaller, to see that it runs on two ranks too."""
 
 Alone = Callable[[str], tuple[Done, Path]]
 

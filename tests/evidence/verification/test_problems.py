@@ -24,6 +24,7 @@ def solved(name: str) -> Verification:
     return PROBLEMS[name]()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_claims_of_the_problem_hold(name: str) -> None:
     """Every claim holds; one that is known to be missed still fails, so that it is noticed when it holds. The figure
@@ -37,6 +38,7 @@ def test_claims_of_the_problem_hold(name: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.slow
 def test_at_most_half_of_the_claims_are_regressions() -> None:
     """At least half of all claims are held against something that was not computed here before."""
     claims = [claim for name in PROBLEMS for claim in solved(name).claims]
@@ -45,6 +47,7 @@ def test_at_most_half_of_the_claims_are_regressions() -> None:
     assert 2 * regression <= len(claims)
 
 
+@pytest.mark.slow
 def test_problems_have_names_of_their_own() -> None:
     """The name of a problem is that of its module and of its figure."""
     assert [solved(name).name for name in PROBLEMS] == list(PROBLEMS)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from evidence.benchmarks.gears.wear import BLOCKS, SMALL_CASES, cost_rows, precision_rows
 
 
+@pytest.mark.slow
 def test_wear_studies_are_timed_and_compared() -> None:
     """A coarse spur pair: twenty blocks and one sweep are timed; the tighter tolerance makes more blocks and a smaller
     error, and the volume's error is not larger than that of the depths."""

@@ -9,7 +9,6 @@ import pytest
 
 from evolvent.results.archive.archive import read_arrays
 from evolvent.run.certificates import BALANCE_LIMIT
-from tests.support.processes import Run
 from tests.support.gear_cases import HELICAL
 from tests.support.running.processes import BROKEN_RUN, Run, on_ranks
 

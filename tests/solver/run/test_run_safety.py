@@ -271,7 +271,7 @@ from evolvent.cli import main
 if MPI.COMM_WORLD.rank == 0:
     from evolvent.run import redraw
     from evolvent.results.drawing.picture_files import Picture
-    run_plot.pictures = lambda run: [Picture("01_a.png", lambda: b"a")]
+    redraw.pictures = lambda run: [Picture("01_a.png", lambda: b"a")]
 scene, out, folder = sys.argv[1:]
 statuses = [main(["--version"]), main(["check", scene]), main(["plot", folder]), main(["plot", folder + "/nowhere"])]
 statuses.append(main(["mesh", scene, "--level", "quick", "--out", out]))

@@ -26,7 +26,7 @@ from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
-from evolvent.run.output import peak_memory_MB
+from evolvent.run.context import peak_memory_MB
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene

@@ -17,7 +17,7 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.results.contact_slices import pitch_imbalance
-from evolvent.run.output import BalanceError, PitchImbalance, certify, certify_pitch
+from evolvent.run.certificates import BalanceError, PitchImbalance, certify, certify_pitch
 from evolvent.scene.scene import Scene
 from evolvent_meshes.mesh.mesh_data import MeshError
 

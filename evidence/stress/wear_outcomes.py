@@ -23,7 +23,7 @@ from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.run.output import BalanceError
+from evolvent.run.certificates import BalanceError
 from evolvent.run.wear_run import certify_positions, law_of, settings_of
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import VolumeLost

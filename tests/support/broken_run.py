@@ -28,7 +28,7 @@ from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
 from evolvent.results.archive.archive import Archive
-from evolvent.run import output
+from evolvent.run import certificates
 from evolvent_meshes import files
 
 
@@ -132,11 +132,11 @@ def break_it(how: str) -> None:
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":
-        output.STORED_LIMIT = 1e-9
+        certificates.STORED_LIMIT = 1e-9
     elif how == "leaking":
-        output.BALANCE_LIMIT = 1e-9
+        certificates.BALANCE_LIMIT = 1e-9
     elif kind == "strict":
-        output.BALANCE_LIMIT = 2e-3
+        certificates.BALANCE_LIMIT = 2e-3
         if numbers:
             at_archive_file(int(numbers[0]), kill_before_renaming)
 

@@ -1,65 +1,70 @@
-"""A run's coarse companion: the same scene on meshes of twice the element size, at the same positions.
+"""The coarse companion of a run: the same scene and positions on meshes of twice the element size, for error bars.
 
-It has a quarter of the degrees of freedom, towards an eighth with more of them (a half in 2D), so condensing it is ten
-times cheaper and more; what is felt are its positions. In processor time it took 12 % of a helical run of 100,000
-degrees of freedom, less of larger ones, and half of a 2D run, which takes seconds. All friction coefficients are
-solved: each has its own history and its own error, and beside a shared search they cost little.
+It has a quarter of the run's degrees of freedom, an eighth in the limit of fine meshes (a half in 2D). Condensing it is
+at least ten times cheaper, so most of its cost are the positions. In processor time it took 12 % of a helical run of
+100,000 degrees of freedom, less of larger ones, and half of a 2D run, which takes seconds. It solves all friction
+coefficients, because each has its own history and its own error; with a shared search they cost little.
 """
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
 
 from mpi4py import MPI
 
-from evolvent.fem.parallel.ranks import on_first, together
+from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
-from evolvent.results.archive.archive import Archive, gear_shape
+from evolvent.results.archive.archive import gear_shape
 from evolvent.results.archive.error_bar_data import kept_errors
 from evolvent.results.run_data import Companion, RunData, run_data
+from evolvent.run.context import RunContext
+from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene
+from evolvent_meshes.errors import EvolventError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
 Mesher = Callable[[Scene, Member], MeshData]
-"""Makes the sector of a scene's pinion (0) or wheel (1)."""
+"""Makes the sector mesh of a scene's pinion or wheel."""
 COARSENING = 2.0
-LEAST_LAYERS = 2  # of a gear's face width: the ends of the face need their own
+"""Element size of the companion over that of the run."""
+LEAST_LAYERS = 2
+"""Layers of elements over the face width, at least: both ends of the face need their own."""
 
-LOG = logging.getLogger("evolvent")
 
-
-
-def companion_of(scene: Scene, archive: Archive, pitch: Pitch, comm: MPI.Comm) -> Companion | None:
-    """The companion solved, or None where its error bars are in the archive already. All ranks must call it."""
-    if on_first(comm, lambda: kept_errors(archive)) is not None:
+def companion_of(run: RunContext, scene: Scene) -> Companion | None:
+    """The solved companion, None where its error bars are in the archive already. Collective."""
+    if run.on_first(lambda: kept_errors(run.archive(scene))) is not None:
         return None
-    companion = solve_companion(scene, pitch, comm)
-    LOG.info("coarse companion for the error bars in %.1f s", companion.seconds)
+    companion = solve_companion(scene, pitch_of(scene), run.comm)
+    if companion.failure:
+        run.log.info("%s", companion.failure)
+    run.log.info("coarse companion for the error bars in %.1f s", companion.seconds)
     return companion
 
 
 def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm) -> Companion:
-    """Meshes, condenses and sweeps the companion; all ranks must call it. Raises nothing that a solver raises: a run
-    is not lost for its error bars."""
+    """Meshes, condenses and sweeps the companion. Collective.
+
+    An error of meshing or solving becomes `Companion.failure`: a run is not lost for its error bars. Every other
+    exception is a bug and is raised.
+    """
     begin, run, failure = time.perf_counter(), None, ""
     try:
         run = solved_run(scene, pitch, comm, companion_mesh)
-    except Exception as error:  # alike on all ranks: the parts below fail together
+    except EvolventError as error:  # the same on all ranks: `solved_run` fails on all together
         failure = f"The coarse companion that error bars come from could not be solved: {error}"
-        LOG.info("%s", failure)
     return Companion(run, failure, time.perf_counter() - begin)
 
 
 def coarser(fine: SectorResolution) -> SectorResolution:
-    """The same grading with elements of twice the size, as far as counts can be halved."""
+    """The same grading with elements of `COARSENING` times the size, as far as counts can be divided."""
 
     def half(count: int, least: int = 1) -> int:
         return max(least, round(count / COARSENING))
@@ -85,13 +90,15 @@ def companion_mesh(scene: Scene, member: Member) -> MeshData:
 
 
 def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:
-    """A scene on meshes of one's own, nothing written: the run on rank 0. Raises NotConverged, MeshError,
-    NotPositiveDefinite, OutOfMemory."""
+    """A scene solved on the sectors that `mesh` makes, without writing anything: the run on rank 0, None on the others.
+
+    Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite, OutOfMemory, on all ranks.
+    """
     model, frictions = prepare_model(scene, comm, mesh).model, scene.contact.friction
     swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), comm))
 
-    def joined() -> RunData:
+    def assembled() -> RunData:
         shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]
         return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept))
 
-    return together(comm, lambda: joined() if comm.rank == 0 else None)
+    return together(comm, lambda: assembled() if comm.rank == 0 else None)

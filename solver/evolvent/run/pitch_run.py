@@ -1,54 +1,147 @@
-"""All positions of a scene into its archive, certified; once more on deflected flanks where energy asks for it."""
+"""The positions of a scene: solved, certified, archived; again on deflected flanks where energy is not conserved."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
-from mpi4py import MPI
-
-from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Preparation, prepare_model
+from evolvent.gears.gear_model import Preparation
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
-from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.archive import Archive, Meshes
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
 from evolvent.results.contact_slices import balance_error
-from evolvent.run.output import PitchImbalance, Sweep, certify, certify_pitch, peak_memory_MB, timings_of
-from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
-from evolvent.run.run_log import RunLog
-from evolvent.run.start import Start, open_archive, same_meshes
+from evolvent.run.certificates import PitchImbalance, certify, certify_pitch
+from evolvent.run.context import RunContext
+from evolvent.run.progress import POSITIONS
+from evolvent.run.start import ResumePoint, checked_meshes, open_archive, prepare_gears, timings_of
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import pitches, skips, switched_off, with_deflected_flanks
+from evolvent.scene.skips import pitches, skips, with_deflected_flanks
+from evolvent_meshes.arrays import Floats
 
 
-def sweep_scene(
-    scene: Scene, out: Path, start: Start | None, earlier: Cost, comm: MPI.Comm, progress: Progress, log: RunLog
-) -> tuple[Scene, Sweep]:
-    """The scene whose positions are then in its archive: this one, or, where the energy of its pitch does not balance,
-    the one on deflected flanks. earlier: what earlier parts of the run have cost. Raises what `run_scene` does, on all
-    ranks."""
-    gears = _Gears(scene, earlier, comm, progress, log)
-    sweep = _swept(scene, out, start, gears)
-    loss = on_first(comm, lambda: _imbalance(scene, out))
-    if loss is None:
-        return scene, sweep
+@dataclass(frozen=True)
+class SweepRecord:
+    """Meshes that positions were solved on, and the wall time that it took."""
+
+    meshes: Meshes
+    timings: Timings
+
+
+class ScenePitch:
+    """The positions of a scene's pitch. `generate` solves and certifies them, `solve` also archives them.
+
+    All friction coefficients share the gears and the search. Where the scene switches that off, each coefficient has
+    its own gears and is solved alone; the positions are put together at the end, because pitches at different
+    coefficients close after different numbers of positions.
+
+    run, scene: what is computed.
+    resume:     completed positions, None for the beginning.
+    gears:      condensed before for this scene, None to condense them.
+    """
+
+    def __init__(
+        self, run: RunContext, scene: Scene, resume: ResumePoint | None = None, gears: Preparation | None = None
+    ) -> None:
+        self.run, self.scene, self.archive, self.pitch = run, scene, run.archive(scene), pitch_of(scene)
+        self.groups = friction_groups(scene)
+        self.resume = resume if len(self.groups) == 1 else None  # several groups leave nothing before the end
+        self.gears = gears
+        self.meshes: Meshes | None = None
+        self.preparing = Timings()
+
+    def solve(self) -> SweepRecord:
+        """Solves and archives the positions. Collective; raises what `run_scene` does, on all ranks."""
+        begin = time.perf_counter()
+        for index, position in enumerate(self.generate(), len(self.completed)):
+            cost = self.run.cost(self._timings(begin), self.run.memory_MB())
+            self.run.on_first(partial(_keep, self.archive, index, position, cost))
+            self.run.log.info(_log_line(position))
+            self.run.progress.advance(more=not position.closes)
+        assert self.meshes is not None
+        return SweepRecord(self.meshes, self._timings(begin))
+
+    def generate(self) -> Iterator[SweptPosition]:
+        """The positions that are still missing, one after the other, each certified."""
+        if self.completed:
+            self.run.log.info("resumed after %d positions", len(self.completed))
+        if len(self.groups) == 1:
+            yield from self._group(self.groups[0])
+        else:
+            yield from _joined_groups([list(self._group(group)) for group in self.groups])
+
+    @property
+    def completed(self) -> Sequence[Floats]:
+        """Transmission errors of the positions that are archived already."""
+        return () if self.resume is None else self.resume.errors
+
+    def _group(self, group: slice) -> Iterator[SweptPosition]:
+        """The positions at some of the friction coefficients."""
+        gears, frictions = self._prepared(), self.scene.contact.friction[group]
+        self.run.progress.stage(POSITIONS, len(self.pitch.angles), len(self.completed))
+        state = initial_state(frictions) if self.resume is None else self.resume.state
+        for position in sweep_closed(gears.model, self.pitch, frictions, state, self.run.comm, self.completed):
+            certify(position.results)
+            yield position
+
+    def _prepared(self) -> Preparation:
+        """The condensed gears; the archive is opened for their meshes."""
+        gears = self.gears
+        if gears is None:
+            gears = prepare_gears(self.run, self.scene)
+            self.preparing += timings_of(gears)
+            self.gears = gears if len(self.groups) == 1 else None
+        if self.meshes is None:
+            pinion, wheel = gears.model.bodies
+            self.meshes = meshes = pinion.mesh, wheel.mesh
+            resumed = self.resume is not None
+            self.run.on_first(lambda: open_archive(self.scene, self.archive, meshes, resumed))
+        return gears
+
+    def _timings(self, begin: float) -> Timings:
+        """Wall time since `begin`: whatever was not preparation was solving."""
+        seconds = time.perf_counter() - begin
+        return replace(self.preparing, positions=seconds - self.preparing.total, total=seconds)
+
+
+def sweep_scene(run: RunContext, scene: Scene, resume: ResumePoint | None) -> tuple[Scene, SweepRecord]:
+    """Solves and archives all positions. Returns the scene that they belong to: `scene`, or, where the energy of its
+    pitch does not balance, the same scene on deflected flanks.
+
+    Collective; raises what `run_scene` does, on all ranks.
+    """
+    if resume is not None and resume.is_end:
+        first, record = None, _finished(run, scene, resume)
+    else:
+        first = ScenePitch(run, scene, resume)
+        record = first.solve()
+    imbalance = run.on_first(lambda: _imbalance(run, scene))
+    if imbalance is None:
+        return scene, record
     deflected = with_deflected_flanks(scene)
     if deflected is scene:
-        raise loss
-    log.info("%s", loss)
-    log.info("solved again, on deflected flanks")
-    again = _swept(deflected, out, None, replace(gears, scene=deflected, earlier=earlier + Cost(sweep.timings)))
-    if loss := on_first(comm, lambda: _imbalance(deflected, out)):
-        raise loss
-    return deflected, Sweep(again.meshes, sweep.timings + again.timings)
+        raise imbalance
+    run.log.info("%s", imbalance)
+    run.log.info("solved again, on deflected flanks")
+    gears = None if first is None or first.gears is None else _on_deflected_flanks(first.gears)
+    again = ScenePitch(replace(run, earlier=run.earlier + Cost(record.timings)), deflected, gears=gears).solve()
+    if imbalance := run.on_first(lambda: _imbalance(run, deflected)):
+        raise imbalance
+    return deflected, SweepRecord(again.meshes, record.timings + again.timings)
 
 
-def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
-    positions = Archive(out, scene).read_positions(scene.gear_pair())
+def _finished(run: RunContext, scene: Scene, resume: ResumePoint) -> SweepRecord:
+    """A sweep that an earlier run has completed: the gears need not be condensed."""
+    run.log.open()
+    run.log.info("resumed after all of %d positions", len(resume.errors))
+    return SweepRecord(run.on_first(lambda: checked_meshes(scene, run.archive(scene))), Timings())
+
+
+def _imbalance(run: RunContext, scene: Scene) -> PitchImbalance | None:
+    """Why the archived pitch is not certified, None where it is."""
+    positions = run.archive(scene).read_positions(scene.gear_pair())
     try:
         certify_pitch(position.results for position in positions)
     except PitchImbalance as error:
@@ -56,106 +149,28 @@ def _imbalance(scene: Scene, out: Path) -> PitchImbalance | None:
     return None
 
 
-@dataclass(frozen=True)
-class _Gears:
-    """A scene's gears on some ranks. earlier: what earlier parts of the run have cost. kept: those that all friction
-    coefficients share, for a second sweep."""
-
-    scene: Scene
-    earlier: Cost
-    comm: MPI.Comm
-    progress: Progress
-    log: RunLog
-    kept: list[Preparation] = field(default_factory=list)
-
-    def prepared(self) -> tuple[Preparation, Timings]:
-        """And what it took now."""
-        if self.kept:
-            deflected = "deflected-flanks" in switched_off(self.scene)
-            return replace(self.kept[0], model=replace(self.kept[0].model, deflected=deflected)), Timings()
-        self.progress.stage(MESHING)
-        preparation = prepare_model(self.scene, self.comm, meshed=self._meshed)
-        self.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
-        if len(friction_groups(self.scene)) == 1:
-            self.kept.append(preparation)
-        return preparation, timings_of(preparation)
-
-    def cost(self, timings: Timings) -> Cost:
-        """Of the run so far, this part of it included; all ranks must call it."""
-        return self.earlier + Cost(timings, self.comm.allreduce(peak_memory_MB()))
-
-    def _meshed(self) -> None:
-        self.log.begin()
-        self.progress.stage(CONDENSING)
-
-
-def _swept(scene: Scene, out: Path, start: Start | None, gears: _Gears) -> Sweep:
-    """All positions in the archive. Where they are there already the gears are not even condensed."""
-    comm, log, archive = gears.comm, gears.log, Archive(out, scene)
-    groups, begun = friction_groups(scene), time.perf_counter()
-    if start is not None and start.is_end:
-        log.begin()
-        log.info("resumed after all of %d positions", len(start.errors))
-        return Sweep(on_first(comm, lambda: same_meshes(scene, archive)), Timings())
-    if start is not None and len(groups) > 1:
-        start = None  # groups are written together, once all are solved
-    done = start.errors if start is not None else ()
-    if done:
-        log.info("resumed after %d positions", len(done))
-    made: list[Sweep] = []
-
-    def solved(group: slice) -> Iterator[SweptPosition]:
-        """Positions of some friction coefficients, each certified, on gears of their own where these are not kept."""
-        preparation, timings = gears.prepared()
-        pinion, wheel = (body.mesh for body in preparation.model.bodies)
-        if not made:
-            on_first(comm, lambda: open_archive(scene, archive, (pinion, wheel), start))
-        made.append(Sweep((pinion, wheel), timings))
-        gears.progress.stage(POSITIONS, len(pitch_of(scene).angles), len(done))
-        frictions = scene.contact.friction[group]
-        state = start.state if start is not None else initial_state(frictions)
-        for position in sweep_closed(preparation.model, pitch_of(scene), frictions, state, comm, done):
-            certify(position.results)
-            yield position
-
-    for k, position in enumerate(_together([solved(group) for group in groups]), len(done)):
-        cost = gears.cost(_total(made, time.perf_counter() - begun).timings)
-        on_first(comm, partial(_keep, archive, k, position, cost))
-        log.info(_line(position))
-        gears.progress.advance(more=not position.closes)
-    return _total(made, time.perf_counter() - begun)
+def _on_deflected_flanks(gears: Preparation) -> Preparation:
+    return replace(gears, model=replace(gears.model, deflected=True))
 
 
 def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> None:
-    """On disk. Raises WriteError, FolderError."""
+    """Archives a position. Raises WriteError, FolderError."""
     archive.write_position(index, position)
     keep_cost(archive.files, cost)
 
 
 def friction_groups(scene: Scene) -> list[slice]:
-    """Which friction coefficients share gears, search and compliance: all, or each its own."""
+    """The friction coefficients that share gears, search and compliance: all in one group, or each in its own."""
     count = len(scene.contact.friction)
     shared = count == 1 or skips(scene, "reuse")
     return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
 
 
-def _together(sweeps: Sequence[Iterator[SweptPosition]]) -> Iterator[SweptPosition]:
-    """The positions of all groups of friction coefficients: of a single one as it comes, of several, which close their
-    pitches after different numbers of them, what each has found in the end."""
-    if len(sweeps) == 1:
-        yield from sweeps[0]
-        return
-    found = [joined(parts) for parts in zip(*(one_pitch(list(sweep)) for sweep in sweeps), strict=True)]
-    for position in found:
-        yield replace(position, again=False, closes=position is found[-1])
-
-
-def _total(made: list[Sweep], seconds: float) -> Sweep:
-    """Of all groups; what was not preparing was solving."""
-    mesh, assemble, factor, preparing = (
-        sum(getattr(each.timings, name) for each in made) for name in ("mesh", "assemble", "factor", "total")
-    )
-    return Sweep(made[0].meshes, Timings(mesh, assemble, factor, positions=seconds - preparing, total=seconds))
+def _joined_groups(groups: Sequence[list[SweptPosition]]) -> Iterator[SweptPosition]:
+    """The pitch at all friction coefficients, from the positions of each group."""
+    pitch = [joined(parts) for parts in zip(*(one_pitch(positions) for positions in groups), strict=True)]
+    for position in pitch:
+        yield replace(position, again=False, closes=position is pitch[-1])
 
 
 def pitch_of(scene: Scene) -> Pitch:
@@ -163,8 +178,8 @@ def pitch_of(scene: Scene) -> Pitch:
     return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches(scene))
 
 
-def _line(position: SweptPosition) -> str:
-    """One line of the log."""
+def _log_line(position: SweptPosition) -> str:
+    """Angle, iterations, balance and wall time of a position."""
     first = position.results[0]
     iterations = max(r.iterations for r in position.results)
     worst = max(balance_error(r) for r in position.results)

@@ -1,4 +1,4 @@
-"""OUT/run.log: held in memory until the run has meshed its gears, so that bad input leaves no file behind."""
+"""OUT/run.log: buffered until the gears are meshed, so that bad input leaves no file behind."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from evolvent.results.archive.run_folder import LOG, RunFolder
 from evolvent_meshes.errors import InputError
 
 LOGGER = "evolvent"
+"""Name of the standard logger to which all modules log; the log file of a run is a handler of it."""
 
 
 class LogFile(logging.Handler):
-    """A handler that keeps its lines until `begin`, then writes them and what follows to OUT/run.log.
+    """A handler that buffers its lines until `begin`, then writes these and all later ones to OUT/run.log.
 
-    A log without room is no reason to lose a run: what cannot be written is said once on stderr.
+    A disk without room for the log does not end the run: one message on stderr says where the log ends.
     """
 
     def __init__(self, folder: RunFolder, append: bool) -> None:
@@ -35,13 +36,13 @@ class LogFile(logging.Handler):
         return self._folder.out / LOG
 
     def begin(self) -> None:
-        """From here on the run leaves files."""
+        """Opens the file and writes the buffered lines; further calls do nothing."""
         if not self._begun:
             self._begun = True
             self._guarded(self._open)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """A line."""
+        """Buffers or writes a line."""
         line = self.format(record) + "\n"
         if self._begun:
             self._guarded(lambda: self._append(line))
@@ -68,13 +69,13 @@ class LogFile(logging.Handler):
 
 
 class RunLog:
-    """The log of a run: a file on rank 0, nothing elsewhere."""
+    """The log of a run: a file on rank 0, nothing on the other ranks."""
 
     def __init__(self, handler: LogFile | None) -> None:
         self._handler, self._logger = handler, logging.getLogger(LOGGER)
 
-    def begin(self) -> None:
-        """The run begins to leave files: what was held is written."""
+    def open(self) -> None:
+        """Opens the log file: from now on the run writes files."""
         if self._handler is not None:
             self._handler.begin()
 
@@ -83,19 +84,22 @@ class RunLog:
         self._logger.info(message, *values)
 
     def warning(self, message: str) -> None:
-        """A line of the log that is also said on stderr."""
+        """A line of the log, also printed on stderr."""
         self._logger.warning("warning: %s", message)
         if self._handler is not None:
             print(f"evolvent: warning: {message}", file=sys.stderr)
 
     def error(self, message: str, *values: object) -> None:
-        """A line of the log on what ended the run."""
+        """A line of the log on why the run ended."""
         self._logger.error(message, *values)
 
 
 @contextmanager
 def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool) -> Iterator[RunLog]:
-    """The run's log, to which a resumed run adds; with the reason where the run does not end well."""
+    """Context with the log of a run. Where the run fails, its last line is the reason. resumed: append to the file.
+
+    Collective over `comm`.
+    """
     logger = logging.getLogger(LOGGER)
     level, propagate = logger.level, logger.propagate
     logger.setLevel(logging.INFO)
@@ -107,7 +111,7 @@ def logged(folder: RunFolder, comm: MPI.Comm, resumed: bool) -> Iterator[RunLog]
         yield log
     except BaseException as error:
         if not isinstance(error, InputError):
-            log.begin()
+            log.open()
         with contextlib.suppress(Exception):
             log.error("%s", str(error) if isinstance(error, KeyboardInterrupt) else f"failed: {error}")
         raise

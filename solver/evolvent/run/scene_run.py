@@ -1,4 +1,4 @@
-"""A scene from start to finish: model, sweep, archive, tables, pictures. The command line calls only this."""
+"""A scene from start to finish: gears, positions or wear, archive, tables, pictures. `evolvent run` calls only this."""
 
 from __future__ import annotations
 
@@ -11,17 +11,16 @@ from mpi4py import MPI
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.results.archive.archive import Archive
-from evolvent.results.archive.run_cost import Cost, kept_cost
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.fields.deformation import deformation_of
 from evolvent.run.coarse_run import companion_of
+from evolvent.run.context import RunContext, run_context
 from evolvent.run.folder_checks import check_folder, others
-from evolvent.run.output import Companions, Part, peak_memory_MB, write_output
-from evolvent.run.pitch_run import pitch_of, sweep_scene
-from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT, Progress
-from evolvent.run.run_log import logged
-from evolvent.run.start import continued, kept_start, nothing_kept
+from evolvent.run.output import ExtraResults, write_output
+from evolvent.run.pitch_run import sweep_scene
+from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
+from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.meshing.modifications import modification_warnings
 from evolvent.scene.scene import Scene
@@ -36,57 +35,60 @@ def run_scene(
     overwrite: bool = False,
     source: Path | None = None,
 ) -> None:
-    """Computes a scene and writes everything to `out`; the same on any number of ranks.
+    """Computes a scene and writes everything to `out`. Collective; the results do not depend on the number of ranks.
 
-    resume: go on after the positions, or the blocks of wear, that `out` holds, where it holds none from the start, with
-    a warning. overwrite: remove an earlier run's files
-    (those that nobody has changed since) once the gears are ready. With neither, `out` may hold no results. source: the
-    scene's file, which is never written over. A pitch whose energy does not balance is solved again on deflected
-    flanks, as the scene that asks for these. Raises FolderError before anything is touched, NotConverged,
-    BalanceError, MeshError, ArchiveError, WearStopped, VolumeLost, WriteError, on all ranks; nothing unconverged is
-    ever written.
+    resume: continue after the positions, or the blocks of wear, in `out`; where there are none, begin with a warning.
+    overwrite: once the gears are condensed, remove the files of an earlier run that nobody has changed since. With
+    neither, `out` must not hold results. quiet: no progress is displayed. source: the scene's file, which is never
+    overwritten.
+
+    A pitch whose energy does not balance is solved again on deflected flanks. Unconverged positions are never written.
+    Raises FolderError before any file is touched; NotConverged, SearchError, BalanceError, MeshError, ArchiveError,
+    WearStopped, VolumeLost, WriteError; all on all ranks.
     """
+    comm, begin, folder = MPI.COMM_WORLD, time.perf_counter(), RunFolder(out)
     with ExitStack() as lock:
-        on_first(MPI.COMM_WORLD, lambda: lock.enter_context(locked(out)))
-        on_first(MPI.COMM_WORLD, lambda: check_folder(scene, out, resume, overwrite, source))
-        _run(scene, out, resume, quiet)
+        on_first(comm, lambda: lock.enter_context(locked(out)))
+        on_first(comm, lambda: check_folder(scene, out, resume, overwrite, source))
+        dolfinx_compat.silence_logs()
+        solved = on_first(comm, lambda: scene_to_solve(scene, Archive(out, scene), resume))
+        completed = on_first(comm, lambda: resume_point(solved, Archive(out, solved), resume))
+        with run_context(folder, comm, resume, quiet, begin) as run:  # no file has been touched yet
+            _log_beginning(run, solved)
+            _compute(run, solved, completed)
 
 
-def _run(scene: Scene, out: Path, resume: bool, quiet: bool) -> None:
-    """The run in a folder that is its own."""
-    comm, begin = MPI.COMM_WORLD, time.perf_counter()
-    dolfinx_compat.silence_logs()
-    scene = on_first(comm, lambda: continued(scene, Archive(out, scene), resume))
-    start = on_first(comm, lambda: kept_start(scene, Archive(out, scene), resume))  # before the first file is touched
-    earlier = on_first(comm, lambda: kept_cost(RunFolder(out)) if resume else Cost())
-    with logged(RunFolder(out), comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
-        if left := on_first(comm, lambda: others(out)):
-            log.info("%s", left)
-        if anew := on_first(comm, lambda: nothing_kept(scene, Archive(out, scene)) if resume else ""):
-            log.warning(anew)
-        for skip in skipped(scene):
-            log.info("skipped, %s: %s", skip.name, skip.sentence)
-        for name in switched_off(scene):
-            log.info("not skipped: %s", name)
-        for sentence in modification_warnings(scene):
-            log.warning(sentence)
-        if scene.wear is None:
-            scene, sweep = sweep_scene(scene, out, start, earlier, comm, progress, log)
-        else:
-            sweep = wear_scene(scene, Archive(out, scene), resume, earlier, comm, progress, log)
-        archive, pitch = Archive(out, scene), pitch_of(scene)
-        companion = None
-        if wanted_output(scene).error_bars:
-            progress.stage(ERROR_BARS)
-            companion = companion_of(scene, archive, pitch, comm)
-        deformation = None
-        if wanted_output(scene).deformation:
-            progress.stage(DEFORMATION)
-            deformation = deformation_of(scene, archive, comm)
-        progress.stage(OUTPUT)
-        part = Part(comm.size, begin, comm.allreduce(peak_memory_MB()), earlier)
-        more = Companions(companion, deformation)
-        on_first(comm, lambda: write_output(scene, archive, sweep, more, part, log))
-        if scene.wear is not None:
-            on_first(comm, lambda: write_wear(scene, out, log))
-        on_first(comm, RunFolder(out).remove_parts)
+def _log_beginning(run: RunContext, scene: Scene) -> None:
+    """Logs what is known of a run before anything is computed."""
+    if left := run.on_first(lambda: others(run.folder.out)):
+        run.log.info("%s", left)
+    if anew := run.on_first(lambda: no_results_warning(scene, run.archive(scene)) if run.resume else ""):
+        run.log.warning(anew)
+    for skip in skipped(scene):
+        run.log.info("skipped, %s: %s", skip.name, skip.sentence)
+    for name in switched_off(scene):
+        run.log.info("not skipped: %s", name)
+    for sentence in modification_warnings(scene):
+        run.log.warning(sentence)
+
+
+def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> None:
+    """Computes and writes everything that the scene asks for."""
+    if scene.wear is None:
+        scene, record = sweep_scene(run, scene, completed)
+    else:
+        record = wear_scene(run, scene)
+    companion = None
+    if wanted_output(scene).error_bars:
+        run.progress.stage(ERROR_BARS)
+        companion = companion_of(run, scene)
+    deformation = None
+    if wanted_output(scene).deformation:
+        run.progress.stage(DEFORMATION)
+        deformation = deformation_of(scene, run.archive(scene), run.comm)
+    run.progress.stage(OUTPUT)
+    memory = run.memory_MB()
+    run.on_first(lambda: write_output(run, scene, record, ExtraResults(companion, deformation), memory))
+    if scene.wear is not None:
+        run.on_first(lambda: write_wear(run, scene))
+    run.on_first(run.folder.remove_parts)

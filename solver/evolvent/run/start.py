@@ -1,14 +1,18 @@
-"""How a run begins: in an empty folder, or after the positions that an earlier one has left there."""
+"""How a run begins: what earlier results it continues, its condensed gears, its folder."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from evolvent.gears.gear_model import Preparation, prepare_model
 from evolvent.gears.sweep.periodic_pitch import errors_of
 from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
+from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import SCENE_FILES, keep_scene
+from evolvent.run.context import RunContext
+from evolvent.run.progress import CONDENSING, MESHING
 from evolvent.scene.meshing.sector_meshes import sector_meshes
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import with_deflected_flanks
@@ -16,58 +20,81 @@ from evolvent_meshes.arrays import Floats
 
 
 @dataclass(frozen=True)
-class Start:
-    """Where a run begins: after positions with these transmission errors (`errors_of`), in this state. is_end: nothing
-    is left to be solved."""
+class ResumePoint:
+    """The last position that an earlier run has completed."""
 
     errors: tuple[Floats, ...]
+    """Transmission errors of the completed positions (`errors_of`), (frictions,) [mm] each."""
     is_end: bool
+    """Whether no position is left to be solved."""
     state: SweepState
+    """State of the sweep after these positions."""
 
 
-def kept_start(scene: Scene, archive: Archive, resume: bool) -> Start | None:
-    """Where to go on, None for the beginning. Raises ArchiveError where another scene's results are to be resumed."""
+def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | None:
+    """Where to continue, None for the beginning. Raises ArchiveError where the results belong to another scene."""
     pair = scene.gear_pair()
     state = archive.read_state(pair) if resume else None
     if state is None:
         return None
     swept = archive.read_sweep(pair)
     errors = tuple(errors_of(position, scene.contact.friction) for position in swept)
-    return Start(errors, bool(swept) and swept[-1].closes, state)
+    return ResumePoint(errors, bool(swept) and swept[-1].closes, state)
 
 
-def nothing_kept(scene: Scene, archive: Archive) -> str:
-    """A sentence where nothing is there to be resumed, empty where there is. A run that was stopped early has left
-    nothing, so that is no error."""
+def no_results_warning(scene: Scene, archive: Archive) -> str:
+    """A sentence where there is nothing to resume, empty where there is.
+
+    This is no error: a run that was stopped early has left no results.
+    """
     name = "state.npz" if scene.wear is None else "wear.npz"
     if (archive.folder / name).exists():
         return ""
     return f"--resume found nothing to go on from in {archive.out} (no results/{name}); the run begins from the start."
 
 
-def continued(scene: Scene, archive: Archive, resume: bool) -> Scene:
-    """The scene as it is to be solved: on deflected flanks where an earlier run, to be resumed, has come to that."""
-    other = with_deflected_flanks(scene)
-    return other if resume and Archive(archive.out, other).is_own() else scene
+def scene_to_solve(scene: Scene, archive: Archive, resume: bool) -> Scene:
+    """The scene, on deflected flanks where the run to be resumed had switched to them."""
+    deflected = with_deflected_flanks(scene)
+    return deflected if resume and Archive(archive.out, deflected).is_own() else scene
 
 
-def same_meshes(scene: Scene, archive: Archive) -> Meshes:
-    """The scene's meshes; raises ArchiveError where the results stand on others."""
+def prepare_gears(run: RunContext, scene: Scene) -> Preparation:
+    """Meshes and condenses both gears. From then on the run writes files. Collective; raises as `prepare_model`."""
+
+    def meshed() -> None:
+        run.log.open()
+        run.progress.stage(CONDENSING)
+
+    run.progress.stage(MESHING)
+    preparation = prepare_model(scene, run.comm, meshed=meshed)
+    run.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
+    return preparation
+
+
+def timings_of(preparation: Preparation) -> Timings:
+    """Wall time of a preparation [s]."""
+    parts = preparation.mesh_seconds, preparation.assemble_seconds, preparation.condense_seconds
+    return Timings(*parts, total=preparation.mesh_seconds + preparation.seconds)
+
+
+def checked_meshes(scene: Scene, archive: Archive) -> Meshes:
+    """The meshes of the scene. Raises ArchiveError where the results in the archive belong to other meshes."""
     meshes = sector_meshes(scene)
     archive.check_gears(gear_shapes(meshes))
     return meshes
 
 
-def open_archive(scene: Scene, archive: Archive, meshes: Meshes, start: Start | None) -> None:
-    """Makes the folder ready for this scene's positions. Raises ArchiveError, OSError."""
-    if start is None:
+def open_archive(scene: Scene, archive: Archive, meshes: Meshes, resumed: bool) -> None:
+    """Prepares the folder for the positions of this scene. Raises ArchiveError, OSError."""
+    if resumed:
+        archive.check_gears(gear_shapes(meshes))
+    else:
         clear(archive.files)
         archive.write_gears(gear_shapes(meshes))
-    else:
-        archive.check_gears(gear_shapes(meshes))
     keep_scene(scene, archive.files)
 
 
 def clear(folder: RunFolder) -> None:
-    """Removes an earlier run, but not its scene, from which this run may have come. Raises OSError."""
+    """Removes an earlier run except its scene files, which this run may have read. Raises OSError."""
     folder.clear(keep=[folder.out / name for name in SCENE_FILES])

@@ -17,7 +17,7 @@ import typer
 from mpi4py import MPI
 
 from evolvent import __version__
-from evolvent.failures import Exit, leave, reported, silent_unless_first, write_whatever_the_terminal_shows
+from evolvent.failures import Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
     Force,
@@ -236,8 +236,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if MPI.COMM_WORLD.rank > 0 and given[:1] != [SHARED]:
         return Exit.DONE
     if arguments is None:
-        write_whatever_the_terminal_shows()
-    with silent_unless_first():
+        tolerate_terminal_encoding()
+    with silent_except_on_first():
         keep_fonts()
         try:
             status = app(args=given, prog_name="evolvent", standalone_mode=False)

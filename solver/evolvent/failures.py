@@ -1,7 +1,7 @@
 """How a command ends: one message on stderr and an exit status, on any number of ranks.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Rank 0 speaks; a rank that fails alone says so
-and ends the run on all ranks.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else; an EvolventError carries its own status. Only
+rank 0 prints, but a rank that fails alone prints its own message and ends all ranks.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from enum import IntEnum
 import typer
 from mpi4py import MPI
 
-from evolvent.run.stopping import stoppable
 from evolvent.scene.schema.errors import SceneError
+from evolvent.stopping import stoppable
 from evolvent_meshes.errors import EvolventError
 
 
@@ -34,65 +34,69 @@ class Exit(IntEnum):
 
 @contextlib.contextmanager
 def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
-    """Turn exceptions and signals into one message on stderr and an exit status; in a parallel run end the other ranks
-    too. advice: what is said beside a signal's name."""
+    """Context that turns exceptions and signals into one message on stderr and an exit status.
+
+    parallel: all ranks take part; then a failure ends the others too. advice: appended to the name of a signal.
+    Raises typer.Exit.
+    """
     try:
         with stoppable(advice, _end_all if parallel else lambda: None):
             yield
     except (typer.Exit, typer.Abort, typer.BadParameter):
         raise
-    except SceneError as error:  # the same on all ranks
+    except SceneError as error:  # raised on all ranks: they end by themselves
         raise leave(str(error), Exit.BAD_INPUT) from error
-    except KeyboardInterrupt as error:  # `stoppable` has said so
+    except KeyboardInterrupt as error:  # `stoppable` has printed the message
         if parallel:
             _end_all()
         raise typer.Exit(int(Exit.FAILED)) from error
     except Exception as error:
         status = Exit(error.exit_status) if isinstance(error, EvolventError) else Exit.FAILED
-        plain = isinstance(error, (EvolventError, OSError, MemoryError))
-        message = str(error) if plain else f"{_details(error)}\n{type(error).__name__}: {error}"
+        expected = isinstance(error, (EvolventError, OSError, MemoryError))
+        message = str(error) if expected else f"{_traceback(error)}\n{type(error).__name__}: {error}"
         _abort_others(parallel, message, status)
         raise leave(message, status) from error
 
 
-def _details(error: Exception) -> str:
-    """The traceback, and the one of the rank on which the error arose, which is its note."""
+def _traceback(error: Exception) -> str:
+    """The traceback, followed by that of the rank on which the error arose, which the error carries as a note."""
     return "\n".join(["".join(traceback.format_tb(error.__traceback__)).rstrip(), *getattr(error, "__notes__", ())])
 
 
 def leave(message: str, status: Exit) -> typer.Exit:
-    message = message.encode(errors="backslashreplace").decode()  # names of files may have bytes that are no text
+    """Prints the message on stderr; returns what to raise for the exit status."""
+    message = message.encode(errors="backslashreplace").decode()  # names of files may hold bytes that are not UTF-8
     typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
     return typer.Exit(int(status))
 
 
 def _end_all() -> None:
-    """End all ranks, if there are several."""
+    """Ends all ranks, if there are several."""
     if MPI.COMM_WORLD.size > 1:
         MPI.COMM_WORLD.Abort(int(Exit.FAILED))
 
 
 def _abort_others(parallel: bool, message: str, status: Exit) -> None:
-    """End all ranks: one that waits in a collective call would wait for ever."""
+    """Prints the message and ends all ranks: one that waits in a collective call would wait for ever."""
     world = MPI.COMM_WORLD
     if not parallel or world.size == 1:
         return
     if world.rank > 0:
-        time.sleep(1.0)  # if all ranks fail alike, rank 0 speaks for them
+        time.sleep(1.0)  # if all ranks fail alike, only rank 0 prints
     print(f"evolvent, rank {world.rank} of {world.size}: {message}", file=sys.__stderr__, flush=True)
     world.Abort(int(status))
 
 
-def write_whatever_the_terminal_shows() -> None:
-    """Greek letters on a terminal without them come out as question marks, not as an error."""
+def tolerate_terminal_encoding() -> None:
+    """Prints question marks instead of Greek letters on a terminal without them, instead of raising an error."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
 
 
 @contextlib.contextmanager
-def silent_unless_first() -> Iterator[None]:
-    """Rank 0 speaks; the others' usage messages and reports would only repeat it."""
+def silent_except_on_first() -> Iterator[None]:
+    """Context in which only rank 0 prints: messages of the other ranks would repeat its own."""
     if MPI.COMM_WORLD.rank == 0:
         yield
         return

@@ -23,7 +23,7 @@ from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.progress import CYCLES
 from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.wear import Wear
+from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import wanted_output
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
@@ -93,12 +93,12 @@ def write_wear(run: RunContext, scene: Scene) -> None:
         log_pictures(draw(pictures(study), run.folder), run.log)
 
 
-def law_of(wear: Wear) -> Archard:
+def law_of(wear: WearSection) -> Archard:
     """Archard's law with the wear coefficients of pinion and wheel."""
     return Archard(wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)
 
 
-def settings_of(wear: Wear) -> BlockSettings:
+def settings_of(wear: WearSection) -> BlockSettings:
     """How the study is divided into blocks of cycles."""
     first = wear.first_block_cycles or FIRST_BLOCK * wear.cycles
     return BlockSettings(first, wear.tolerance, wear.blocks == "implicit")

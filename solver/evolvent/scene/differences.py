@@ -7,7 +7,7 @@ from typing import Any
 
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.schema.errors import shown
-from evolvent.scene.schema.output import Output, Skipping
+from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.skips import OF_OUTPUT, with_deflected_flanks
 
 MOST = 3
@@ -17,9 +17,9 @@ NOT_GIVEN = "not given"
 
 def essence(scene: Scene) -> Scene:
     """The scene without its title, what says what else is written, and where its charts lie."""
-    ways = Skipping(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
+    ways = SkipSection(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
-    return scene.model_copy(update={"title": "", "output": Output(), "skip": ways, **bare})
+    return scene.model_copy(update={"title": "", "output": OutputSection(), "skip": ways, **bare})
 
 
 def charts(scene: Scene) -> list[str]:

@@ -1,4 +1,4 @@
-"""From the scene's sections to a GearPair, with the defaults that depend on the geometry."""
+"""The GearPair of a scene, with the defaults that are derived from other keys."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import math
 
 from scipy.optimize import brentq
 
-from evolvent.scene.schema.core import ALTERNATIVES, Gear, Pair
-from evolvent.scene.schema.errors import NOTHING, Problem, shown
+from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
+from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters
@@ -15,8 +15,9 @@ from evolvent_meshes.gears.gear_geometry import Modifications, involute
 from evolvent_meshes.gears.pair import GearPair
 
 ADDENDUM, DEDENDUM, RACK_TIP_RADIUS = 1.0, 1.25, 0.38
-"""ISO 53 profile A, in normal modules."""
+"""Rack of ISO 53, profile A, in normal modules."""
 HANDS = {"right": 1, "left": -1}
+"""Direction of the helix -> its sign."""
 
 SHARED_KEYS = {
     "normal_module": "normal_module_mm",
@@ -26,6 +27,7 @@ SHARED_KEYS = {
     "contact ratio": "centre_distance_mm",
     "misalignment_um": "misalignment_um",
 }
+"""Quantity of a GeometryError -> key of [pair]."""
 GEAR_KEYS = {
     "z": "teeth",
     "hand": "hand",
@@ -39,17 +41,18 @@ GEAR_KEYS = {
     "tip_relief_start_diameter": "tip_relief_start_diameter_mm",
     "lead_crowning_um": "lead_crowning_um",
 }
+"""Quantity of a GeometryError -> key of [pinion] or [wheel]."""
 
 
 class ImpossibleGears(InputError):
-    """The gears of a scene can't exist or can't mesh; carries the Problem in the scene's own keys."""
+    """The gears of a scene cannot exist or cannot mesh. problem: what is wrong, in keys of the scene."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: InputProblem) -> None:
         super().__init__(str(problem))
         self.problem = problem
 
 
-def make_pair(pair: Pair, pinion: Gear, wheel: Gear) -> GearPair:
+def make_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> GearPair:
     """The gear pair of a scene. Raises ImpossibleGears."""
     sections = {"pinion": pinion, "wheel": wheel}
     distance = centre_distance(pair, pinion, wheel)
@@ -66,8 +69,11 @@ def make_pair(pair: Pair, pinion: Gear, wheel: Gear) -> GearPair:
         raise ImpossibleGears(_in_scene_keys(error, "wheel.", pair, sections)) from error
 
 
-def make_gear(pair: Pair, gear: Gear, hand: int, shortening: float) -> GearParameters:
-    """One gear; hand is +1 (right) or −1 (left), shortening Δy in normal modules. Raises GeometryError."""
+def make_gear(pair: PairSection, gear: GearSection, hand: int, shortening: float) -> GearParameters:
+    """One gear of a scene.
+
+    hand: +1 right, −1 left. shortening: tip shortening Δy in normal modules. Raises GeometryError.
+    """
     module = pair.normal_module_mm
     reference = _reference_diameter(pair, gear)
     addendum = gear.profile_shift + _or(gear.addendum_coefficient, ADDENDUM) - shortening
@@ -95,8 +101,8 @@ def make_gear(pair: Pair, gear: Gear, hand: int, shortening: float) -> GearParam
     )
 
 
-def centre_distance(pair: Pair, pinion: Gear, wheel: Gear) -> float:
-    """a [mm] as given, else that without backlash. Raises ImpossibleGears if there is none."""
+def centre_distance(pair: PairSection, pinion: GearSection, wheel: GearSection) -> float:
+    """Centre distance a [mm]: the given one, else that without backlash. Raises ImpossibleGears where none exists."""
     if pair.centre_distance_mm is not None:
         return pair.centre_distance_mm
     normal, helix = math.radians(pair.normal_pressure_angle_deg), math.radians(pair.helix_angle_deg)
@@ -106,42 +112,48 @@ def centre_distance(pair: Pair, pinion: Gear, wheel: Gear) -> float:
     except ValueError as error:
         allowed = "profile shifts with which the flanks can touch without backlash"
         remedy = "bring the sum of pinion.profile_shift and wheel.profile_shift nearer to 0"
-        raise ImpossibleGears(Problem("wheel.profile_shift", f"a sum of {shift:g}", allowed, remedy)) from error
+        raise ImpossibleGears(InputProblem("wheel.profile_shift", f"a sum of {shift:g}", allowed, remedy)) from error
     reference = (_reference_diameter(pair, pinion) + _reference_diameter(pair, wheel)) / 2
     return reference * math.cos(angle) / math.cos(working)
 
 
 def working_angle(normal: float, transverse: float, shift_per_tooth: float) -> float:
-    """α_wt [rad] without backlash: inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 + z2) (ISO 21771, 5.5).
+    """Working pressure angle α_wt [rad] without backlash: inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 + z2)
+    (ISO 21771, 5.5).
 
-    normal α_n and transverse α_t pressure angle [rad]. Raises ValueError if no angle from 0 to 60° satisfies that.
+    normal, transverse: pressure angles α_n and α_t [rad]. shift_per_tooth: (x1 + x2)/(z1 + z2). Raises ValueError where
+    no angle from 0 to 60° satisfies the equation.
     """
     wanted, steepest = involute(transverse) + 2 * math.tan(normal) * shift_per_tooth, math.radians(60)
     return float(brentq(lambda angle: involute(angle) - wanted, 0.0, steepest, xtol=1e-15))
 
 
 def working_angle_of(pinion: GearParameters, wheel: GearParameters) -> float:
-    """α_wt [rad] of two gears without backlash."""
+    """Working pressure angle α_wt [rad] of two gears without backlash."""
     shift = (pinion.profile_shift + wheel.profile_shift) / (pinion.z + wheel.z)
     return working_angle(pinion.normal_pressure_angle, pinion.transverse_pressure_angle, shift)
 
 
-def tip_shortening(pair: Pair, pinion: Gear, wheel: Gear, distance: float) -> float:
-    """Δy = x1 + x2 − (a − a0)/m_n ≥ 0: by how many modules the tips stay short so that the clearance is the racks'."""
+def tip_shortening(pair: PairSection, pinion: GearSection, wheel: GearSection, distance: float) -> float:
+    """Tip shortening Δy = x1 + x2 − (a − a0)/m_n ≥ 0 in normal modules, with which the clearance is that of the racks.
+    """
     reference = (_reference_diameter(pair, pinion) + _reference_diameter(pair, wheel)) / 2
     shift = pinion.profile_shift + wheel.profile_shift
     return max(0.0, shift - (distance - reference) / pair.normal_module_mm)
 
 
-def _usual_rack_tip(pair: Pair, gear: Gear, depth: float) -> float:
-    """0.38 m_n, or the full round of a rack tooth of this depth [mm] below the pitch line."""
+def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float:
+    """Default tip radius of the rack [mm]: 0.38 m_n, or the full round of a rack tooth if that is less.
+
+    depth: of the rack tooth below the pitch line [mm].
+    """
     angle = math.radians(pair.normal_pressure_angle_deg)
     half_space = pair.normal_module_mm * (math.pi / 4 - gear.profile_shift * math.tan(angle))
     full_round = (half_space - depth * math.tan(angle)) * math.cos(angle) / (1 - math.sin(angle))
     return max(0.0, min(RACK_TIP_RADIUS * pair.normal_module_mm, (1 - 1e-9) * full_round))
 
 
-def _reference_diameter(pair: Pair, gear: Gear) -> float:
+def _reference_diameter(pair: PairSection, gear: GearSection) -> float:
     return gear.teeth * pair.normal_module_mm / math.cos(math.radians(pair.helix_angle_deg))
 
 
@@ -149,23 +161,26 @@ def _or(value: float | None, default: float) -> float:
     return default if value is None else value
 
 
-def _in_scene_keys(error: GeometryError, prefix: str, pair: Pair, sections: dict[str, Gear]) -> Problem:
-    """A GeometryError in the words of the scene: its keys, and its values where the found one was derived."""
+def _in_scene_keys(
+    error: GeometryError, prefix: str, pair: PairSection, sections: dict[str, GearSection]
+) -> InputProblem:
+    """A GeometryError in terms of the scene: its keys, and the given values where the one found is derived from them.
+    """
     remedy = error.remedy[0].lower() + error.remedy[1:].rstrip(".")
     name = error.key
     if name in SHARED_KEYS:
         return _named(f"pair.{SHARED_KEYS[name]}", getattr(pair, SHARED_KEYS[name]), name, error, remedy)
     if "." in name:
         prefix, name = f"{name.split('.')[0]}.", name.split(".")[1]
-    gear, own = sections[prefix[:-1]], GEAR_KEYS[name]
-    if getattr(gear, own) is None and getattr(gear, ALTERNATIVES.get(own, own)) is not None:
-        own = ALTERNATIVES[own]
-    return _named(prefix + own, getattr(gear, own), name, error, remedy)
+    gear, scene_key = sections[prefix[:-1]], GEAR_KEYS[name]
+    if getattr(gear, scene_key) is None and getattr(gear, ALTERNATIVES.get(scene_key, scene_key)) is not None:
+        scene_key = ALTERNATIVES[scene_key]
+    return _named(prefix + scene_key, getattr(gear, scene_key), name, error, remedy)
 
 
-def _named(key: str, given: object, name: str, error: GeometryError, remedy: str) -> Problem:
-    """The given value is what was found; a derived one is added behind it with its name."""
+def _named(key: str, given: object, name: str, error: GeometryError, remedy: str) -> InputProblem:
+    """The given value is what was found; a value derived from it is added with its name."""
     same = isinstance(given, (int, float)) and f"{given:.6g}" == error.found
     derived = f"{name.replace('_', ' ')} {error.found}"
     found = shown(given) if same else f"{NOTHING if given is None else shown(given)} (so {derived})"
-    return Problem(key, found, error.allowed, remedy)
+    return InputProblem(key, found, error.allowed, remedy)

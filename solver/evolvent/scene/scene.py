@@ -1,7 +1,6 @@
-"""The scene: read, overridden, checked, written back with its defaults.
+"""The scene: a TOML file, validated into frozen models, and written back with its defaults.
 
-A scene is TOML, read into frozen models. Whatever is wrong with it is said in one `SceneError` before anything is
-computed or written.
+Everything that is wrong with a scene is reported in one `SceneError` before anything is computed or written.
 """
 
 from __future__ import annotations
@@ -21,10 +20,13 @@ from evolvent.scene.estimates import HertzEstimate
 from evolvent.scene.flank_deviations import DEEPEST, FlankChart
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
-from evolvent.scene.schema.core import Contact, Gear, Load, Materials, Mesh, Pair, Section, Sweep, key
-from evolvent.scene.schema.errors import Problem, SceneError, problems_of, scene_problem, section_of, shown
-from evolvent.scene.schema.output import Output, Skipping
-from evolvent.scene.schema.wear import Wear
+from evolvent.scene.schema.bodies import MaterialSection, MeshSection
+from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
+from evolvent.scene.schema.gears import GearSection, PairSection
+from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
+from evolvent.scene.schema.output import OutputSection, SkipSection
+from evolvent.scene.schema.section import SceneSection, key
+from evolvent.scene.schema.wear import WearSection
 from evolvent_meshes.gears.pair import GearPair
 
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
@@ -32,36 +34,36 @@ __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_v
 GearName = Literal["pinion", "wheel"]
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 WIDEST_CONTACT = 0.2
-"""Largest Hertz half-width over the radius of curvature: beyond it neither Hertz nor small strain holds."""
+"""Largest Hertz half-width over the radius of curvature: beyond it neither Hertz' theory nor small strain holds."""
 NARROWEST_CONTACT = 1e-5
-"""Smallest Hertz half-width [mm]: a hundred times what a mesh takes for one point (`section.WELD`), and thirty atoms of
-iron."""
+"""Smallest Hertz half-width [mm]: a hundred times the distance within which a mesh merges points (`section.WELD`), and
+thirty atoms of iron."""
 LARGEST_DEFLECTION = 0.1
-"""Largest deflection of a tooth pair in modules, estimated with one pair carrying all: of 112 random scenes below
-it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel stays far below."""
+"""Largest deflection of a tooth pair in modules, estimated with the whole load on one pair: of 112 random scenes below
+it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel gears stay far below."""
 
 
-class Scene(Section):
-    """A scene, valid and complete with its defaults.
+class Scene(SceneSection):
+    """A valid scene, complete with its defaults.
 
-    Raises ValidationError when made directly; `load_scene` and `scene_from_text` raise SceneError with one sentence a
-    problem, and also check that the gears can exist and mesh.
+    Raises pydantic.ValidationError when it is constructed directly; `load_scene` and `scene_from_text` raise SceneError
+    with one line per problem.
     """
 
     title: str = key(
         "a name for reports and pictures", "a text of up to 200 characters", default="gear pair", max_length=200
     )
-    pair: Pair
-    pinion: Gear
-    wheel: Gear
-    material: Materials = Materials()
-    mesh: Mesh = Mesh()
-    contact: Contact = Contact()
-    load: Load
-    sweep: Sweep = Sweep()
-    wear: Wear | None = None
-    output: Output = Output()
-    skip: Skipping = Skipping()
+    pair: PairSection
+    pinion: GearSection
+    wheel: GearSection
+    material: MaterialSection = MaterialSection()
+    mesh: MeshSection = MeshSection()
+    contact: ContactSection = ContactSection()
+    load: LoadSection
+    sweep: SweepSection = SweepSection()
+    wear: WearSection | None = None
+    output: OutputSection = OutputSection()
+    skip: SkipSection = SkipSection()
 
     @model_validator(mode="after")
     def _gears_mesh(self) -> Self:
@@ -69,11 +71,11 @@ class Scene(Section):
         if self.pair.helix_angle_deg > 0 and wheel == pinion:
             allowed = f"the opposite of pinion.hand, which is {shown(pinion)}"
             remedy = "delete the key, the wheel's hand follows from the pinion's"
-            raise scene_problem(Problem("wheel.hand", shown(wheel), allowed, remedy))
+            raise validation_error(InputProblem("wheel.hand", shown(wheel), allowed, remedy))
         try:
             self.gear_pair()
         except ImpossibleGears as error:
-            raise scene_problem(error.problem) from error
+            raise validation_error(error.problem) from error
         return self
 
     @model_validator(mode="after")
@@ -85,7 +87,7 @@ class Scene(Section):
             found = f"{shown(self.load.torque_Nm)} (Hertz half-width {half_width:.3g} mm)"
             allowed = f"from {least:.3g} N·m on for these gears, a half-width of {NARROWEST_CONTACT:g} mm"
             remedy = "raise the torque, or check that it is in N·m and material.E_GPa in GPa"
-            raise scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+            raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
         return self
 
     @model_validator(mode="after")
@@ -102,11 +104,11 @@ class Scene(Section):
         return self
 
     def _too_loaded(self, why: str, most: float) -> PydanticCustomError:
-        """The torque is too large; `most` [N·m] is allowed."""
+        """The torque is too large. most: the largest torque that is allowed [N·m]."""
         found = f"{shown(self.load.torque_Nm)} ({why})"
         allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
         remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
-        return scene_problem(Problem("load.torque_Nm", found, allowed, remedy))
+        return validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
 
     @model_validator(mode="after")
     def _flanks_are_charted(self) -> Self:
@@ -115,7 +117,7 @@ class Scene(Section):
                 self.flank_chart(name)
             except TableError as error:
                 found, remedy = f"{error.place}: {error.found}", f"{error.remedy}; or delete the key"
-                raise scene_problem(Problem(f"{name}.flank_csv", found, error.wanted, remedy)) from error
+                raise validation_error(InputProblem(f"{name}.flank_csv", found, error.wanted, remedy)) from error
         return self
 
     @model_validator(mode="after")
@@ -129,29 +131,30 @@ class Scene(Section):
             found = f"{shown(most)} (about {worn:.2g} modules of wear at the root)"
             allowed = f"up to {most * DEEPEST / worn:.3g} for these K/H, where {DEEPEST:g} modules are gone"
             remedy = "give fewer cycles, or check that K/H is in mm²/N"
-            raise scene_problem(Problem("wear.cycles", found, allowed, remedy))
+            raise validation_error(InputProblem("wear.cycles", found, allowed, remedy))
         return self
 
     @model_validator(mode="after")
     def _one_pitch_at_one_friction_wears(self) -> Self:
         if self.wear is not None and len(self.contact.friction) > 1:
-            found, remedy = shown(self.contact.friction), "give one coefficient, and a scene for each other one"
-            raise scene_problem(Problem("contact.friction", found, "a single one where the flanks wear", remedy))
+            found, allowed = shown(self.contact.friction), "a single one where the flanks wear"
+            remedy = "give one coefficient, and a scene for each other one"
+            raise validation_error(InputProblem("contact.friction", found, allowed, remedy))
         needed = ("one-pitch", "one pitch is one tooth's passage"), ("deflected-flanks", "they wear undeflected")
         for name, why in needed:
             if self.wear is not None and name in self.skip.off:
                 allowed = f"the other skips where the flanks wear: {why}"
-                raise scene_problem(Problem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
+                raise validation_error(InputProblem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
         return self
 
     def flank_chart(self, name: GearName) -> FlankChart | None:
-        """What is missing of a gear's designed flank, None where nothing was charted. Raises TableError."""
-        given: Gear = getattr(self, name)
+        """The measured or worn flank of a gear, None where the scene has none. Raises TableError."""
+        given: GearSection = getattr(self, name)
         if given.flank_csv is None:
             return None
-        pair, path, own = self.gear_pair(), Path(given.flank_csv), GEARS.index(name)
-        active = pair.active_start_diameters[own], pair.gears[own].tip_diameter
-        return FlankChart.read(path).checked(path, pair.gears[own], active)
+        pair, path, index = self.gear_pair(), Path(given.flank_csv), GEARS.index(name)
+        active = pair.active_start_diameters[index], pair.gears[index].tip_diameter
+        return FlankChart.read(path).checked(path, pair.gears[index], active)
 
     def gear_pair(self) -> GearPair:
         """The two gears at their centre distance, with every derived quantity."""
@@ -163,25 +166,25 @@ class Scene(Section):
         return HertzEstimate.of(pair, self.materials(), torque if self.load.on == "pinion" else torque / pair.ratio)
 
     def materials(self) -> tuple[Material, Material]:
-        """(pinion's, wheel's)."""
+        """Materials of (pinion, wheel)."""
         common = self.material
         pairs = [
-            (common.E_GPa if own.E_GPa is None else own.E_GPa, common.nu if own.nu is None else own.nu)
-            for own in (common.pinion, common.wheel)
+            (common.E_GPa if gear.E_GPa is None else gear.E_GPa, common.nu if gear.nu is None else gear.nu)
+            for gear in (common.pinion, common.wheel)
         ]
         pinion, wheel = (Material(1e3 * modulus, ratio) for modulus, ratio in pairs)
         return pinion, wheel
 
     def resolved_toml(self) -> str:
-        """The scene as TOML with all its defaults, each key with its meaning; reading it gives the same scene.
+        """The scene as TOML with all its defaults and the meaning of each key; reading it gives the same scene.
 
-        A default that follows from other keys stands in a comment, so that it still follows when these are changed.
+        A default that is derived from other keys is a comment, so that it is derived again when these are changed.
         """
         return "\n".join(_toml_lines(self, derived_values(self))) + "\n"
 
 
 def derived_values(scene: Scene) -> dict[str, Any]:
-    """Dotted key -> the value that it has when it isn't given."""
+    """Dotted key -> the default that is derived from other keys."""
     pair = scene.gear_pair()
     values: dict[str, Any] = {"pair.centre_distance_mm": pair.centre_distance}
     for name, gear, material in zip(("pinion", "wheel"), pair.gears, scene.materials(), strict=True):
@@ -203,28 +206,28 @@ def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") 
     if name:
         yield f"\n[{name}]"
     subsections = []
-    for own, field in type(section).model_fields.items():
-        value, dotted = getattr(section, own), f"{name}.{own}" if name else own
+    for key_name, field in type(section).model_fields.items():
+        value, dotted = getattr(section, key_name), f"{name}.{key_name}" if name else key_name
         if optional := section_of(field):
             subsections.append((dotted, value if value is not None else optional))
         elif value is not None:
-            yield f"{own} = {_toml_value(value)}  # {field.description}"
+            yield f"{key_name} = {_toml_value(value)}  # {field.description}"
         elif dotted in derived:
-            yield f"# {own} = {_toml_value(derived[dotted])}  # {field.description}"
+            yield f"# {key_name} = {_toml_value(derived[dotted])}  # {field.description}"
         else:
-            yield f"# {own}: not given  # {field.description}"
+            yield f"# {key_name}: not given  # {field.description}"
     for subname, value in subsections:
         yield from _toml_lines(value, derived, subname) if isinstance(value, BaseModel) else _not_given(value, subname)
 
 
 def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
-    """The lines of a section that a scene can do without."""
+    """The lines of an optional section that the scene does not have."""
     yield f"\n# [{name}]: not given"
-    yield from (f"# {own}: not given  # {field.description}" for own, field in section.model_fields.items())
+    yield from (f"# {key_name}: not given  # {field.description}" for key_name, field in section.model_fields.items())
 
 
 def _toml_value(value: object) -> str:
-    """A text, number, truth value or tuple of them as TOML; JSON's escapes of texts are TOML's."""
+    """A text, number, truth value or tuple of them as TOML, which has the same escape sequences as JSON."""
     if isinstance(value, tuple):
         return "[" + ", ".join(map(_toml_value, value)) + "]"
     if isinstance(value, (str, bool)):
@@ -233,9 +236,9 @@ def _toml_value(value: object) -> str:
 
 
 def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
-    """Read, override and check a scene file.
+    """Reads, overrides and validates a scene file.
 
-    overrides: "key=value" with a dotted key and a TOML value, as `--set` takes them. Raises SceneError.
+    overrides: "section.key=value" with a TOML value, as `--set` takes them. Raises SceneError.
     """
     path = Path(path)
     return scene_from_text(scene_text(path), overrides, str(path), path.parent)
@@ -244,8 +247,11 @@ def load_scene(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
 def scene_from_text(
     text: str, overrides: Sequence[str] = (), source: str = "", folder: Path = Path()
 ) -> Scene:
-    """A scene from TOML text; see load_scene. folder: where the files that the text names are looked for; those of
-    overrides are looked for where the program runs."""
+    """A scene from TOML text; see load_scene.
+
+    source: named in messages. folder: to which paths in the text are relative; paths in overrides are relative to the
+    current folder.
+    """
     try:
         return scene_from_values(nested_values(text, overrides, folder))
     except SceneError as error:

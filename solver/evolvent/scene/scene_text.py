@@ -1,4 +1,4 @@
-"""From the text of a scene file and the overrides of the command line to nested values, not yet checked."""
+"""Parses the text of a scene file and the overrides of the command line into nested values, not yet validated."""
 
 from __future__ import annotations
 
@@ -8,30 +8,33 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from evolvent.scene.schema.errors import Problem, SceneError, dotted_part, shown
+from evolvent.scene.schema.errors import InputProblem, SceneError, dotted_part, shown
 from evolvent.scene.text_files import UnreadableText, read_text
 
 EXAMPLE = "demos/yang2022.toml is a complete example"
 LARGEST = 1
-"""Megabytes of a scene file."""
+"""Largest size of a scene file [MB]."""
 DEEPEST = 8
-"""Tables and lists within one another; a scene needs three."""
+"""Largest nesting depth of tables and lists; a scene needs three."""
 UNDECODABLE = (tomllib.TOMLDecodeError, ValueError, RecursionError)
-"""ValueError: Python reads no number of more than 4300 digits. RecursionError: brackets within brackets."""
+"""Exceptions of tomllib: ValueError for integers of more than 4300 digits, RecursionError for deep nesting."""
 
 
 def scene_text(path: Path) -> str:
-    """The text of a scene file. Raises SceneError."""
+    """Reads a scene file. Raises SceneError where it cannot be read as text."""
     try:
         return read_text(path, "TOML", LARGEST)
     except UnreadableText as error:
         remedy = f"{error.remedy}; {EXAMPLE}"
-        raise SceneError([Problem("scene file", error.found, error.allowed, remedy)], str(path)) from error
+        raise SceneError([InputProblem("scene file", error.found, error.allowed, remedy)], str(path)) from error
 
 
 def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str, Any]:
-    """Sections and keys of a scene. folder: where the files that the text names are looked for; those of overrides are
-    looked for where the program runs. Raises SceneError."""
+    """Sections and keys of a scene as nested dictionaries.
+
+    overrides: "section.key=value", as `--set` takes them. folder: to which paths in `text` are relative; paths in
+    overrides are relative to the current folder. Raises SceneError.
+    """
     try:
         values = tomllib.loads(text)
     except UNDECODABLE as error:
@@ -45,46 +48,48 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
     return values
 
 
-def _no_toml(error: Exception) -> Problem:
-    """What keeps a text from being TOML."""
+def _no_toml(error: Exception) -> InputProblem:
+    """Why a text cannot be parsed as TOML."""
     remedy = f'mend that line; texts stand in "quotes", every key only once; {EXAMPLE}'
     if isinstance(error, tomllib.TOMLDecodeError):
-        return Problem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)
+        return InputProblem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)
     if isinstance(error, RecursionError):
-        return Problem("scene file", "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
-    return Problem("scene file", "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
+        return InputProblem("scene file", "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
+    return InputProblem("scene file", "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
 
 
 def _require_shallow(values: dict[str, Any]) -> None:
-    """Raises SceneError where tables and lists lie too deep within one another for what reads them."""
+    """Raises SceneError where tables and lists are nested deeper than `DEEPEST`: validation is recursive."""
     waiting: list[tuple[str, Any, int]] = [(name, value, 1) for name, value in values.items()]
     while waiting:
         name, value, depth = waiting.pop()
         if depth > DEEPEST:
             allowed, remedy = f"tables and lists up to {DEEPEST} deep", "see docs/scene.md for the keys"
-            raise SceneError([Problem(dotted_part(name), f"values nested more than {DEEPEST} deep", allowed, remedy)])
+            found = f"values nested more than {DEEPEST} deep"
+            raise SceneError([InputProblem(dotted_part(name), found, allowed, remedy)])
         inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         waiting += [(name, each, depth + 1) for each in inner if isinstance(each, (dict, list))]
 
 
 def _apply(values: dict[str, Any], override: str) -> None:
-    """Put one "section.key=value" into the nested values."""
+    """Sets one "section.key=value" in the nested values. Raises SceneError."""
     name, equals, text = override.partition("=")
     names = [part.strip() for part in name.split(".")]
     if not equals or not all(names) or len(names) > DEEPEST:
         remedy = "write for example --set load.torque_Nm=300"
-        raise SceneError([Problem("--set", shown(override), "section.key=value", remedy)])
+        raise SceneError([InputProblem("--set", shown(override), "section.key=value", remedy)])
     table = values
     for depth, part in enumerate(names[:-1]):
         inner = table.setdefault(part, {})
         if not isinstance(inner, dict):
             found = f"a key below {'.'.join(names[: depth + 1])}, which has the value {shown(inner)}"
-            raise SceneError([Problem(name, found, "section.key=value", "see docs/scene.md for the keys")])
+            raise SceneError([InputProblem(name, found, "section.key=value", "see docs/scene.md for the keys")])
         table = inner
     table[names[-1]] = _parsed(name, text.strip())
 
 
 def _parsed(name: str, text: str) -> Any:
+    """The value of an override, TOML or text without quotes. Raises SceneError."""
     try:
         parsed = tomllib.loads(f"value = {text}")
     except UNDECODABLE:
@@ -94,4 +99,4 @@ def _parsed(name: str, text: str) -> Any:
     if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
         return text
     remedy = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
-    raise SceneError([Problem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])
+    raise SceneError([InputProblem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from evolvent.scene.scene import GEARS, Scene
-from evolvent.scene.schema.output import Output, SkipName, Skipping
+from evolvent.scene.schema.output import OutputSection, SkipName, SkipSection
 
 ROUND_OFF = 1e-8
 """Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
@@ -184,7 +184,7 @@ def with_deflected_flanks(scene: Scene) -> Scene:
     """The same, with its flanks touching as they have deflected; as it is where that does not apply."""
     if not skips(scene, "deflected-flanks"):
         return scene
-    off = Skipping(off=(*scene.skip.off, "deflected-flanks"))
+    off = SkipSection(off=(*scene.skip.off, "deflected-flanks"))
     return scene.model_copy(update={"skip": off})
 
 
@@ -221,12 +221,12 @@ def contact_teeth(scene: Scene) -> list[int]:
     return list(range(first, first + count))
 
 
-def wanted_output(scene: Scene) -> Output:
+def wanted_output(scene: Scene) -> OutputSection:
     """What is written beside the tables."""
     off = scene.skip.off
     asked = scene.output
     drawn = "pictures" in off
-    return Output(
+    return OutputSection(
         pictures=asked.pictures or drawn,
         animation=asked.animation or drawn,
         fields=asked.fields or "fields" in off,

@@ -22,7 +22,7 @@ from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.position import PositionResult
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.output import Skipping
+from evolvent.scene.schema.output import SkipSection
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -98,7 +98,7 @@ class Deformation:
 def deformation_of(scene: Scene, archive: Archive, comm: MPI.Comm) -> Deformation | None:
     """Of the run in the archive, on rank 0; None on the others. All ranks must call it. Raises what preparing a model
     does, and ArchiveError."""
-    ways = Skipping(off=tuple(name for name in scene.skip.off if name != "one-sector"))
+    ways = SkipSection(off=tuple(name for name in scene.skip.off if name != "one-sector"))
     bodies = prepare_model(scene.model_copy(update={"skip": ways}), comm).model.bodies
 
     def made() -> Deformation:

@@ -16,7 +16,7 @@ from evolvent.scene.gear_pair import working_angle_of
 from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sector_resolutions
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import GEARS, Scene
-from evolvent.scene.schema.wear import Wear
+from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import is_plane, pitches, skipped, switched_off, touching_teeth
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
@@ -199,7 +199,7 @@ def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
     )
 
 
-def _wear_rows(wear: Wear, estimate: HertzEstimate) -> list[Row]:
+def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:
     coefficients = wear.pinion_mm2_per_N, wear.wheel_mm2_per_N
     depths = [1e3 * wear.cycles * rate for rate in estimate.wear_per_cycle(*coefficients)]
     return [

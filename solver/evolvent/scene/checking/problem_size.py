@@ -12,9 +12,9 @@ from mpi4py import MPI
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.scene.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolutions
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.core import FEWEST_ELEMENTS, Level
-from evolvent.scene.schema.errors import Problem, SceneError, shown
-from evolvent.scene.schema.output import Skipping
+from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
+from evolvent.scene.schema.errors import InputProblem, SceneError, shown
+from evolvent.scene.schema.output import SkipSection
 from evolvent.scene.skips import contact_teeth, is_plane, pitches, skips
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -126,7 +126,7 @@ def _square_megabytes(rows: int) -> float:
     return 8e-6 * rows**2
 
 
-def room_problem(scene: Scene, needed: Need, processes: int = 1) -> Problem | None:
+def room_problem(scene: Scene, needed: Need, processes: int = 1) -> InputProblem | None:
     """What is wrong where the memory that a command needs is more than this machine's, or that of the container; None
     where it fits. processes: how many of the program run on this machine."""
     there, wanted = machine_megabytes(), needed(scene, processes)
@@ -137,12 +137,12 @@ def room_problem(scene: Scene, needed: Need, processes: int = 1) -> Problem | No
         count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
         found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
         remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
-        return Problem("sweep.positions", found, allowed, remedy)
+        return InputProblem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
     dofs, ranks = sum(size.dofs for size in sector_sizes(scene)), f" on {processes} ranks" if processes > 1 else ""
     needs = f"{counted(dofs)} degrees of freedom that want about {gigabytes(wanted)}{ranks}"
     found = f"{shown(getattr(scene.mesh, name))}, {needs}"
-    return Problem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
+    return InputProblem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
 
 
 def require_room(scene: Scene, needed: Need, comm: MPI.Comm) -> None:
@@ -188,7 +188,7 @@ def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
     levels, then with fewer elements across the contact, down to the fewest."""
     long_ways = [name for name in ("one-sector", "coarse-body", "plane") if name in scene.skip.off]
     if long_ways:
-        kept = Skipping(off=tuple(name for name in scene.skip.off if name not in long_ways))
+        kept = SkipSection(off=tuple(name for name in scene.skip.off if name not in long_ways))
         scene = scene.model_copy(update={"skip": kept})
         yield f"{' and '.join(long_ways)} out of skip.off (--no-skip)", scene
     if (count := scene.mesh.elements_per_contact_width) is None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.scene.scene import GEARS, Scene
-from evolvent.scene.schema.errors import Problem
+from evolvent.scene.schema.errors import InputProblem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines, separation
 from evolvent_meshes.gears.gear import GearParameters
@@ -100,7 +100,7 @@ def folding_warnings(scene: Scene, resolutions: tuple[SectorResolution, SectorRe
             yield f"The mesh may fold, which `run` then refuses: {problem}."
 
 
-def too_much_relief(scene: Scene, member: Member, resolution: SectorResolution) -> Problem | None:
+def too_much_relief(scene: Scene, member: Member, resolution: SectorResolution) -> InputProblem | None:
     """What is wrong where relief and crowning take most of the thin layers away that lie below the flank; else None."""
     name, depth = member.label, 1e3 * sum(resolution.layer_depths)
     gear = getattr(scene, name)
@@ -110,7 +110,7 @@ def too_much_relief(scene: Scene, member: Member, resolution: SectorResolution) 
     key = "tip_relief_um" if gear.tip_relief_um >= gear.lead_crowning_um else "lead_crowning_um"
     found = f"{getattr(gear, key):g} (relief and crowning take {taken:.4g} µm off)"
     allowed = f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine"
-    return Problem(f"{name}.{key}", found, allowed, "lower it, raise the torque, or take a chart as flank_csv")
+    return InputProblem(f"{name}.{key}", found, allowed, "lower it, raise the torque, or take a chart as flank_csv")
 
 
 def _given(scene: Scene) -> Mapping[str, float]:

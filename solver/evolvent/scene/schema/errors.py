@@ -28,7 +28,7 @@ LONGEST_TEXT = 60
 
 
 @dataclass(frozen=True)
-class Problem:
+class InputProblem:
     """One error of a scene. `key` is dotted, as `--set` takes it; the other three are phrases without a full stop."""
 
     key: str
@@ -46,27 +46,27 @@ class SceneError(InputError):
     problems: at least one; source: the file, if there is one.
     """
 
-    def __init__(self, problems: Iterable[Problem], source: str = "") -> None:
+    def __init__(self, problems: Iterable[InputProblem], source: str = "") -> None:
         self.problems = tuple(problems)
         self.source = source
         super().__init__("\n".join(f"{source}: {problem}" if source else str(problem) for problem in self.problems))
 
-    def __reduce__(self) -> tuple[type[SceneError], tuple[tuple[Problem, ...], str]]:
+    def __reduce__(self) -> tuple[type[SceneError], tuple[tuple[InputProblem, ...], str]]:
         return SceneError, (self.problems, self.source)
 
 
-def scene_problem(problem: Problem) -> PydanticCustomError:
+def validation_error(problem: InputProblem) -> PydanticCustomError:
     """The exception that a validator of the scene raises; the problem's key is relative to what is validated."""
     return PydanticCustomError("scene", "scene", {"problem": problem})
 
 
-def problems_of(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+def problems_of(error: ValidationError, model: type[BaseModel]) -> list[InputProblem]:
     """The problems of a failed validation, in the words of the schema `model`: all, or the first `MOST`."""
     details = error.errors(include_url=False)
     problems = [_problem(each, model) for each in details[:MOST]]
     if len(details) > MOST:
         more, remedy = len(details) - MOST, "mend these first; is this a scene file at all?"
-        problems.append(Problem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
+        problems.append(InputProblem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
     return problems
 
 
@@ -89,10 +89,10 @@ def _short(text: str, limit: int = LONGEST_TEXT) -> str:
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
-def _problem(details: ErrorDetails, model: type[BaseModel]) -> Problem:
+def _problem(details: ErrorDetails, model: type[BaseModel]) -> InputProblem:
     path = list(details["loc"])
     if details["type"] == "scene":
-        problem: Problem = details["ctx"]["problem"]
+        problem: InputProblem = details["ctx"]["problem"]
         return replace(problem, key=dotted([*path, problem.key] if problem.key else path))
     if details["type"] == "extra_forbidden":
         return _unknown_key(path, details["input"], model)
@@ -104,12 +104,12 @@ def _problem(details: ErrorDetails, model: type[BaseModel]) -> Problem:
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
     allowed, remedy = str(extra["allowed"]), str(extra["remedy"])
     if missing:
-        return Problem(dotted(path), NOTHING, allowed, remedy)
+        return InputProblem(dotted(path), NOTHING, allowed, remedy)
     value, meant = details["input"], meant_value(details["input"], field)
     with_point = isinstance(value, float) and (meant is not None or details["type"] == "int_type")
     found = repr(value) if with_point else shown(value)  # 20.0 is refused where 20 is not
     fitting = f"write {shown(meant)}" if meant is not None else expected(details["type"], value)
-    return Problem(dotted(path), found, allowed, fitting or remedy)
+    return InputProblem(dotted(path), found, allowed, fitting or remedy)
 
 
 def dotted(path: Iterable[str | int]) -> str:
@@ -137,7 +137,7 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
     return keys
 
 
-def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> Problem:
+def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> InputProblem:
     """An unknown key or section: the nearest one is named, or that nothing like it is supported."""
     name, parents = str(path[-1]), [str(part) for part in path[:-1]]
     kind = "section" if isinstance(value, dict) else "key"
@@ -147,9 +147,9 @@ def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> P
     words = not_supported(name)
     similar = _similar(name, parents, model, strict=bool(words))
     if words and not similar:
-        return Problem(dotted(path), found, f"{allowed}; {words}", "delete it")
+        return InputProblem(dotted(path), found, f"{allowed}; {words}", "delete it")
     remedy = f"did you mean {similar}? Else delete it" if similar else "delete it, or see docs/scene.md"
-    return Problem(dotted(path), found, allowed, remedy)
+    return InputProblem(dotted(path), found, allowed, remedy)
 
 
 def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
@@ -163,15 +163,15 @@ def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool
     return nearest_key(name, here, everywhere, strict)
 
 
-def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> Problem:
+def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> InputProblem:
     keys = ", ".join(section.model_fields)
     name = dotted(path)
-    return Problem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
+    return InputProblem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
 
 
-def _missing_section(path: list[str | int], section: type[BaseModel]) -> Problem:
+def _missing_section(path: list[str | int], section: type[BaseModel]) -> InputProblem:
     required = ", ".join(name for name, field in section.model_fields.items() if field.is_required())
-    return Problem(dotted(path), NOTHING, f"a section with at least {required}", f"add a section [{dotted(path)}]")
+    return InputProblem(dotted(path), NOTHING, f"a section with at least {required}", f"add a section [{dotted(path)}]")
 
 
 def _declaration(names: list[str], model: type[BaseModel]) -> FieldInfo:

@@ -1,4 +1,4 @@
-"""The sections of a scene file that say what is written, and what is computed although a scene could do without."""
+"""The sections [output] and [skip]: what a run writes, and which shortcuts it must not take."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import BeforeValidator, field_validator
 
-from evolvent.scene.schema.core import Section, as_tuple, key
+from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 
-class Output(Section):
-    """[output]."""
+class OutputSection(SceneSection):
+    """[output]: the results that are written beside the tables."""
 
     pictures: bool = key("draw the PNG pictures", "true or false", default=True)
     animation: bool = key("draw the animation", "true or false", default=True)
@@ -34,12 +34,12 @@ class Output(Section):
 
 SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
                    "deflected-flanks", "coarse-body", "reuse", "error-bars", "fields", "pictures"]  # fmt: skip
-"""What a run leaves out where a scene does not need it: `evolvent.scene.skips`."""
+"""Shortcuts that a run takes where its scene allows them: `evolvent.scene.skips`."""
 SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
 
 
-class Skipping(Section):
-    """[skip]: for tests and benchmarks."""
+class SkipSection(SceneSection):
+    """[skip]: shortcuts that are switched off; for tests and benchmarks."""
 
     off: Annotated[tuple[SkipName, ...], BeforeValidator(as_tuple)] = key(
         "skips that are switched off: what they leave out is computed the long way",
@@ -51,5 +51,5 @@ class Skipping(Section):
     @field_validator("off")
     @classmethod
     def _each_once(cls, names: tuple[SkipName, ...]) -> tuple[SkipName, ...]:
-        """In one order, so that a scene does not depend on theirs."""
+        """Sorts the names, so that scenes with the same names are equal."""
         return tuple(name for name in SKIP_NAMES if name in names)

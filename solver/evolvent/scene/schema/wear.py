@@ -1,4 +1,4 @@
-"""The section of a scene file that lets the flanks wear."""
+"""The section [wear]: Archard's wear of the flanks."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from evolvent.scene.schema.core import Section, as_tuple, key
-from evolvent.scene.schema.errors import Problem, scene_problem, shown
+from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 QUARTERS = 4
+"""Default number of reports."""
 SMALLEST, LARGEST = 1e-16, 1e-5
-"""K/H [mm²/N]: dry mild steel has 4e-6 (see wear.coefficient), lubricated gears down to 1e-12."""
+"""Limits of K/H [mm²/N]: dry mild steel has 4e-6 (evolvent.wear.pin_on_disc), lubricated gears down to 1e-12."""
 
 
 def _coefficient(gear: str) -> Any:
+    """The key of a wear coefficient."""
     return key(
         f"Archard's K/H of the {gear}, wear coefficient over hardness; 0: it does not wear",
         f"0, or a number from {SMALLEST:g} to {LARGEST:g}, in mm²/N",
@@ -28,15 +30,15 @@ def _coefficient(gear: str) -> Any:
 Cycles = Annotated[float, Field(ge=1, le=1e13)]
 MOST_REPORTS = 100
 SHORTEST_BLOCK = 1e-4
-"""Of wear.cycles."""
+"""Shortest first block, over wear.cycles."""
 
 
 def _points(value: Any) -> Any:
-    """A list of cycles, or one number of them."""
+    """A list of cycles, or a single one, as a tuple."""
     return None if value is None else as_tuple(value)
 
 
-class Wear(Section):
+class WearSection(SceneSection):
     """[wear]: Archard's wear of both flanks. Without this section nothing wears."""
 
     cycles: Cycles = key("revolutions of the pinion", "a number from 1 to 1e13")
@@ -72,10 +74,11 @@ class Wear(Section):
             value = getattr(self, name)
             if 0.0 < value < SMALLEST:
                 remedy = "mind the unit: 1 m²/N is 1e6 mm²/N, 1/Pa is 1e6 mm²/N"
-                raise scene_problem(Problem(name, shown(value), f"0, or a number from {SMALLEST:g} on", remedy))
+                raise validation_error(InputProblem(name, shown(value), f"0, or a number from {SMALLEST:g} on", remedy))
         if self.pinion_mm2_per_N == self.wheel_mm2_per_N == 0.0:
             found, remedy = "0 on both gears", "give K/H of the pinion or of the wheel, or delete the section [wear]"
-            raise scene_problem(Problem("pinion_mm2_per_N", found, "a K/H above 0 on one gear at least", remedy))
+            allowed = "a K/H above 0 on one gear at least"
+            raise validation_error(InputProblem("pinion_mm2_per_N", found, allowed, remedy))
         return self
 
     @model_validator(mode="after")
@@ -84,17 +87,17 @@ class Wear(Section):
         if any(a >= b for a, b in zip(points, (*points[1:], self.cycles))):
             allowed = f"rising numbers from 1 on and below wear.cycles, {self.cycles:g}"
             remedy = "sort them and leave out repeated ones and the last"
-            raise scene_problem(Problem("report_at_cycles", shown(points), allowed, remedy))
+            raise validation_error(InputProblem("report_at_cycles", shown(points), allowed, remedy))
         first, least = self.first_block_cycles, SHORTEST_BLOCK * self.cycles
         if first is not None and not least <= first <= self.cycles:
             allowed = f"from {least:g} to wear.cycles, {self.cycles:g}"
             remedy = "give a shorter block" if first > self.cycles else "give a longer one: there would be too many"
-            raise scene_problem(Problem("first_block_cycles", shown(first), allowed, remedy))
+            raise validation_error(InputProblem("first_block_cycles", shown(first), allowed, remedy))
         return self
 
     @property
     def reports(self) -> tuple[float, ...]:
-        """Cycles after which the pair is written out, the last included."""
+        """Cycles after which the worn pair is written, the last included."""
         if self.report_at_cycles is None:
             return tuple(self.cycles * k / QUARTERS for k in range(1, QUARTERS + 1))
         return (*self.report_at_cycles, self.cycles)

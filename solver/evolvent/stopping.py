@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM and SIGHUP end a command cleanly: said once, in the log too, and soon, whatever is being computed."""
+"""SIGINT, SIGTERM and SIGHUP end a command in order: one message, also in the log, and soon, whatever it computes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from contextlib import contextmanager
 from functools import partial
 from types import FrameType
 
+from evolvent.run.run_log import LOGGER
+
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PATIENCE = 3.0
-"""Seconds until a process that is deep in a factorisation is ended where it stands: what it keeps, it keeps whole.
-Those who ask wait longer (docker stop: 10 s) or hardly (mpirun: 1 s)."""
-
-
-GLANCE = 0.3  # seconds that the main thread, where it computes in Python, needs to say so in the log
+"""Time until a process that does not return to Python is ended where it is [s]; files are written whole or not at all.
+`docker stop` waits 10 s before it kills, `mpirun` 1 s."""
+GLANCE = 0.3
+"""Time that the main thread needs to log the signal itself where it computes in Python [s]."""
 
 
 class Stopped(KeyboardInterrupt):
@@ -30,8 +31,8 @@ class Stopped(KeyboardInterrupt):
 def stoppable(advice: str, end: Callable[[], None]) -> Iterator[None]:
     """Raises Stopped in the main thread when a signal asks the process to end.
 
-    advice: what is said beside the signal's name. end: ends the process where Stopped does not reach the main thread
-    within PATIENCE. Does nothing in other threads than the main one.
+    advice: appended to the signal's name in the message. end: called before the process is ended where Stopped does not
+    reach the main thread within `PATIENCE`. In other threads than the main one the context does nothing.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -55,20 +56,28 @@ def stoppable(advice: str, end: Callable[[], None]) -> Iterator[None]:
         reader.close()
 
 
+def _message(number: int, advice: str) -> str:
+    return f"stopped by {signal.Signals(number).name}{advice}"
+
+
 def _raise(advice: str, number: int, frame: FrameType | None) -> None:
-    for own in SIGNALS:
-        signal.signal(own, signal.SIG_IGN)  # a second one must not cut short what the first one has begun
-    raise Stopped(f"stopped by {signal.Signals(number).name}{advice}")
+    """The handler of `SIGNALS`."""
+    for each in SIGNALS:
+        signal.signal(each, signal.SIG_IGN)  # a second signal must not interrupt the cleaning up after the first
+    raise Stopped(_message(number, advice))
 
 
 def _watch(reader: socket.socket, done: threading.Event, advice: str, end: Callable[[], None]) -> None:
-    """Says at once that the process will end, and ends it if it has not ended by itself. The operating system writes
-    the signal's number, also while the main thread computes outside Python."""
+    """Prints the message at once, and ends the process if it does not end by itself.
+
+    Runs in a thread of its own. The operating system writes the signal's number to the socket, also while the main
+    thread computes outside Python.
+    """
     while number := reader.recv(1):
         if number[0] in SIGNALS:
-            message = f"stopped by {signal.Signals(number[0]).name}{advice}"
+            message = _message(number[0], advice)
             print(f"evolvent: {message}", file=sys.stderr, flush=True)
-            if not done.wait(GLANCE) and (log := logging.getLogger("evolvent")).hasHandlers():
+            if not done.wait(GLANCE) and (log := logging.getLogger(LOGGER)).hasHandlers():
                 log.error("%s", message)  # in place of the main thread
             if not done.wait(PATIENCE):
                 end()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from evidence.stress.faults import GLANCE, differs, run, started
-from evolvent.run.stopping import Stopped, stoppable
+from evolvent.stopping import Stopped, stoppable
 from tests.support.checkout import ROOT
 
 PLAIN = ("--set", "output.error_bars=false")
@@ -67,7 +67,7 @@ def test_deep_in_a_computation(tmp_path: Path) -> None:
     compiler = ["gcc", "-shared", "-fPIC", "-x", "c", "-o", str(library), "-"]
     subprocess.run(compiler, input=DEAF, text=True, check=True)
     code = (
-        "import ctypes, sys\nfrom evolvent.run.stopping import stoppable\n"
+        "import ctypes, sys\nfrom evolvent.stopping import stoppable\n"
         "with stoppable('; go on later', lambda: print('ended', flush=True)):\n"
         f"    ctypes.CDLL({str(library)!r}).deaf()\n"
     )

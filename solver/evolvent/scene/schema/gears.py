@@ -1,0 +1,161 @@
+"""The sections [pair], [pinion] and [wheel]: the geometry of the gears. Every key with a unit has it in its name."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import field_validator, model_validator
+
+from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.section import SceneSection, key
+
+LONGEST = 1e6
+"""Largest diameter and distance [mm]: a gear with 1000 teeth of module 50 has 71 m."""
+LEAST_HELIX = 1e-3
+"""Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
+LENGTH = "a number above 0 up to 1e6, in mm"
+
+
+class PairSection(SceneSection):
+    """[pair]: the data that both gears share."""
+
+    normal_module_mm: float = key(
+        "normal module m_n",
+        "a number from 0.05 to 50, in mm",
+        "give the normal (not the transverse) module",
+        ge=0.05,
+        le=50,
+    )
+    normal_pressure_angle_deg: float = key(
+        "normal pressure angle α_n of the rack", "a number from 10 to 32, in degrees", default=20.0, ge=10, le=32
+    )
+    helix_angle_deg: float = key(
+        "helix angle β at the reference circle, 0 for spur gears",
+        f"0, or a number from {LEAST_HELIX:g} to 45, in degrees",
+        "give it without a sign and say the direction with pinion.hand",
+        default=0.0,
+        ge=0,
+        le=45,
+    )
+    centre_distance_mm: float | None = key(
+        "centre distance a; by default that of zero backlash",
+        LENGTH,
+        "delete the key for the centre distance without backlash",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    misalignment_um: float = key(
+        "opening of the flanks over the face width by misalignment in the plane of action, positive: open at z > 0",
+        "a number from -1000 to 1000, in µm over the face width",
+        default=0.0,
+        ge=-1000,
+        le=1000,
+    )
+
+    @field_validator("helix_angle_deg")
+    @classmethod
+    def _helical_or_spur(cls, value: float) -> float:
+        if 0.0 < value < LEAST_HELIX:
+            allowed = f"0, or a number from {LEAST_HELIX:g} to 45, in degrees"
+            raise validation_error(InputProblem("", shown(value), allowed, "give 0 for spur gears"))
+        return value
+
+
+ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}
+"""Key of a diameter -> key of the coefficient that may be given instead."""
+
+
+class GearSection(SceneSection):
+    """[pinion] and [wheel]: one gear."""
+
+    teeth: int = key("number of teeth z", "a whole number from 5 to 1000", "external gears only", ge=5, le=1000)
+    face_width_mm: float = key("face width b", "a number from 0.1 to 1000, in mm", ge=0.1, le=1000)
+    profile_shift: float = key(
+        "profile shift coefficient x, times m_n", "a number from -2 to 2", default=0.0, ge=-2, le=2
+    )
+    tip_diameter_mm: float | None = key(
+        "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
+    )
+    addendum_coefficient: float | None = key(
+        "addendum h_a*, d_a = d + 2 m_n (h_a* + x − Δy), Δy ≥ 0 the tip shortening; 1 if there is no tip_diameter_mm",
+        "a number from 0.1 to 3, times m_n",
+        default=None,
+        ge=0.1,
+        le=3,
+    )
+    root_diameter_mm: float | None = key(
+        "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
+    )
+    dedendum_coefficient: float | None = key(
+        "dedendum h_f*, d_f = d − 2 m_n (h_f* − x); 1.25 if there is no root_diameter_mm",
+        "a number from 0.1 to 3, times m_n",
+        default=None,
+        ge=0.1,
+        le=3,
+    )
+    rack_tip_radius_mm: float | None = key(
+        "tip radius of the generating rack in its normal section; 0.38 m_n, or the full round if that is less",
+        "a number from 0 to 1e6, in mm",
+        "delete the key for the default",
+        default=None,
+        ge=0,
+        le=LONGEST,
+    )
+    hand: Literal["right", "left"] | None = key(
+        "direction of the helix; the pinion's is right by default, the wheel's the other one",
+        '"right" or "left"',
+        "delete the key for the default",
+        default=None,
+    )
+    bore_diameter_mm: float | None = key(
+        "diameter of the bore, where the gear sits rigidly on its shaft; half of the root diameter by default",
+        LENGTH,
+        "delete the key for the default",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    tip_relief_um: float = key(
+        "tip relief: material taken off the flank at the tip",
+        "a number from 0 to 500, in µm",
+        default=0.0,
+        ge=0,
+        le=500,
+    )
+    tip_relief_start_diameter_mm: float | None = key(
+        "diameter at which the tip relief starts; d_a − m_n by default",
+        LENGTH,
+        "delete the key for the default",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    tip_relief_form: Literal["linear", "parabolic"] = key(
+        "how the tip relief grows with the roll distance", '"linear" or "parabolic"', default="linear"
+    )
+    lead_crowning_um: float = key(
+        "lead crowning: material taken off the flank at its ends",
+        "a number from 0 to 500, in µm",
+        default=0.0,
+        ge=0,
+        le=500,
+    )
+    flank_csv: str | None = key(
+        "chart of the loaded flank as measured or worn, what is missing of the designed one; looked for in the "
+        "scene's folder, or, where --set names it, in the folder where the program runs",
+        "the name of a CSV file with diameter_mm, depth_um and perhaps z_mm",
+        "delete the key for flanks as designed",
+        default=None,
+        min_length=1,
+        max_length=1000,
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        for first, second in ALTERNATIVES.items():
+            one, two = getattr(self, first), getattr(self, second)
+            if one is not None and two is not None:
+                found = f"{shown(one)} and also {second} = {shown(two)}"
+                raise validation_error(InputProblem(first, found, "one of the two", f"delete {first} or {second}"))
+        return self

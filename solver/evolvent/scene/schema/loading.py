@@ -1,0 +1,70 @@
+"""The sections [contact], [load] and [sweep]: friction, torque and the positions to be solved."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, field_validator
+
+from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.section import SceneSection, as_tuple, key
+
+Coefficient = Annotated[float, Field(ge=0, le=1)]
+MOST_COEFFICIENTS = 50
+"""Largest number of friction coefficients of a scene."""
+COEFFICIENTS = f"a number from 0 to 1, or a list of up to {MOST_COEFFICIENTS} different ones"
+
+
+class ContactSection(SceneSection):
+    """[contact]: friction of the flanks."""
+
+    friction: Annotated[tuple[Coefficient, ...], BeforeValidator(as_tuple)] = key(
+        "Coulomb friction coefficient μ, or a list that is computed one after the other",
+        COEFFICIENTS,
+        "0 is frictionless, lubricated steel gears 0.03 to 0.12, dry steel up to 0.3",
+        default=(0.0,),
+        max_length=MOST_COEFFICIENTS,
+    )
+
+    @field_validator("friction")
+    @classmethod
+    def _different(cls, values: tuple[float, ...]) -> tuple[float, ...]:
+        if not values:
+            remedy = "give at least one; 0 is frictionless"
+            raise validation_error(InputProblem("", "an empty list", COEFFICIENTS, remedy))
+        twice = sorted({value for value in values if values.count(value) > 1})
+        if twice:
+            found = f"{shown(twice[0])} more than once in {shown(values)}"
+            remedy = "delete the repeated ones, they would give the same result"
+            raise validation_error(InputProblem("", found, COEFFICIENTS, remedy))
+        return values
+
+
+class LoadSection(SceneSection):
+    """[load]: the torque."""
+
+    torque_Nm: float = key(
+        "torque that is held constant",
+        "a number above 0 up to 1e7, in N·m",
+        "give the torque without a sign, the pinion drives; it acts on the gear that load.on names",
+        gt=0,
+        le=1e7,
+    )
+    on: Literal["pinion", "wheel"] = key(
+        "the gear on which the torque acts; the other one's rotation is prescribed",
+        '"pinion" or "wheel" (or "gear", which is the wheel)',
+        default="pinion",
+    )
+
+    @field_validator("on", mode="before")
+    @classmethod
+    def _gear_is_wheel(cls, value: Any) -> Any:
+        return "wheel" if value == "gear" else value
+
+
+class SweepSection(SceneSection):
+    """[sweep]: the positions of one base pitch, from which the whole engagement is assembled."""
+
+    positions: int = key(
+        "positions a base pitch", "a whole number from 2 to 1000", "20 is usual", default=20, ge=2, le=1000
+    )

@@ -1,0 +1,29 @@
+"""The base of all sections of a scene file, and the declaration of their keys."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
+
+
+def key(meaning: str, allowed: str, remedy: str = "", *, default: Any = ..., **limits: Any) -> Any:
+    """Declares a key of the scene.
+
+    meaning: what the key stands for. allowed: which values it takes. remedy: what to do about another value, by default
+    to give an allowed one. default: its value where it is not given; a key without a default is required. limits: as
+    for pydantic.Field.
+    """
+    words: dict[str, JsonValue] = {"allowed": allowed, "remedy": remedy or f"give {allowed.split(',')[0]}"}
+    return Field(default, description=meaning, json_schema_extra=words, **limits)
+
+
+class SceneSection(BaseModel):
+    """A table of the scene file: frozen, without unknown keys, conversion between types, NaN and infinity."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def as_tuple(value: Any) -> Any:
+    """A list as a tuple, a single value as a tuple of one."""
+    return tuple(value) if isinstance(value, (list, tuple)) else (value,)

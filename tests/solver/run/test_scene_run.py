@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.results.archive.archive import read_arrays
-from evolvent.run.output import BALANCE_LIMIT
+from evolvent.run.certificates import BALANCE_LIMIT
 from tests.conftest import Run
 from tests.support.gear_cases import HELICAL
 

@@ -16,8 +16,9 @@ from evolvent.cli import main
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from tests.conftest import one_at_a_time
-from tests.support.abuses.malformed_scenes import HE, MALFORMED, ROOT
-from tests.support.checkout import PYTHONPATH
+from tests.support.abuses.malformed_scenes import MALFORMED
+from tests.support.checkout import PYTHONPATH, ROOT
+from tests.support.scene_texts import HE
 
 COMMANDS = ("run", "check", "mesh", "plot", "info")
 FAILING = """

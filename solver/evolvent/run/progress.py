@@ -1,7 +1,6 @@
-"""What a run is doing and how far it is, on rank 0 only: stage after stage, each with its time. A hook on the sweep,
-never inside the solve.
+"""Progress display of a run on rank 0: its stages one after the other, each with its time.
 
-A terminal shows bars; where stderr is a file or a pipe each stage is a line when it begins, and its tenths are.
+A terminal shows bars. Where stderr is a file or a pipe, each stage prints a line when it begins and one at each tenth.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ TENTHS = 10
 
 
 class Progress:
-    """The stages of a run; beginning one ends the one before. hidden: nothing is shown."""
+    """The stages of a run; a new one ends the previous one. hidden: display nothing."""
 
     def __init__(self, hidden: bool = False, console: Console | None = None) -> None:
         console = console or Console(stderr=True)
@@ -45,38 +44,37 @@ class Progress:
             self._bars.stop()
 
     def stage(self, what: str, total: int | None = None, done: int = 0) -> None:
-        """The next stage. total: how many it has of what it counts, `done` of which are there already; None where that
-        cannot be told."""
+        """Begins a stage. total: number of its items, None where it is unknown. done: items that are done already."""
         self._end()
         self._bars.add_task(what, total=total, completed=done)
         self._say(what if total is None else f"{what}: {done} of {total}")
 
     def advance(self, more: bool = False) -> None:
-        """One is done. more: another one follows, be it beyond what was thought: a stage that goes on is never shown as
-        complete."""
+        """One more item is done. more: another one follows, even beyond `total`; the stage is then not complete."""
         task = self._task
         if task is not None:
             done = round(task.completed) + 1
             self._show(task, done, max(task.total or 0.0, done + more))
 
     def reach(self, done: int) -> None:
-        """So many are done."""
+        """Sets the number of items that are done."""
         if self._task is not None:
             self._show(self._task, done, self._task.total or 0.0)
 
     @property
     def _task(self) -> Task | None:
-        """Of the stage that is going on."""
+        """The bar of the current stage."""
         return self._bars.tasks[-1] if self._bars.tasks else None
 
     def _show(self, task: Task, done: int, total: float) -> None:
+        """Updates the bar, or prints a line where a tenth is passed."""
         tenths = [int(TENTHS * count / max(total, 1.0)) for count in (task.completed, done)]
         self._bars.update(task.id, completed=done, total=total)
         if tenths[1] > tenths[0]:
             self._say(f"{task.description}: {done} of {total:.0f}")
 
     def _end(self) -> None:
-        """A stage that has ended is complete, whatever was thought of its length."""
+        """Shows the current stage as complete, whatever its expected number of items."""
         task = self._task
         if task is not None:
             done = max(task.completed, 1) if task.total is None else task.completed
@@ -88,7 +86,7 @@ class Progress:
 
 
 class _Count(ProgressColumn):
-    """How many of how many, where a stage counts."""
+    """Items done and their total, of a stage that counts them."""
 
     def render(self, task: Task) -> Text:
         total = task.total
@@ -97,7 +95,7 @@ class _Count(ProgressColumn):
 
 
 class _Left(ProgressColumn):
-    """The time left, where it can be told."""
+    """The estimated remaining time."""
 
     def render(self, task: Task) -> Text:
         seconds = task.time_remaining

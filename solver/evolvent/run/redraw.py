@@ -1,4 +1,4 @@
-"""The pictures of a finished run drawn again, and nothing else of its folder touched."""
+"""Draws the pictures of a finished run again, without touching other files of its folder."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from evolvent.run.folder_checks import changed
 
 
 def plot_folder(out: Path) -> Drawn:
-    """Draws the pictures into OUT/pictures from OUT/scene.toml and OUT/results, also where the scene asked its run for
-    none, and the animation if it asks for it.
+    """Draws the pictures of a run from its scene.toml and its results.
 
-    Raises SceneError, ArchiveError, FolderError where another run is at it, WriteError.
+    out: folder of the run. Pictures are drawn even where the scene asks for none, the animation only where it does.
+
+    Raises SceneError, ArchiveError, WriteError; FolderError where a run is computing into the folder.
     """
     with locked(out):
         drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))

@@ -1,4 +1,4 @@
-"""Tables of numbers that somebody measured: CSV files whose header names quantity and unit of every column."""
+"""Tables of measured numbers: CSV files whose header names quantity and unit of every column."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
 
 LARGEST_FILE = 20
-"""Megabytes of a table."""
+"""Largest size of a table [MB]."""
 LONGEST_FOUND = 60
-"""Characters that are shown of what was found."""
+"""Largest number of characters of a cell in a message."""
 LARGEST_NUMBER = 1e15
-"""mm, a billion km: beyond it squares and sums go wrong."""
+"""Largest number [mm]: beyond it, squares and sums lose their digits."""
 
 
 class TableError(InputError):
-    """Measured numbers that cannot be used as they are.
+    """A table that cannot be used.
 
-    place: file, line and column; wanted, found, remedy: phrases without a full stop.
+    place:  file, line and column.
+    wanted, found, remedy: phrases without a full stop.
     """
 
     def __init__(self, place: object, wanted: str, found: str, remedy: str) -> None:
@@ -37,22 +38,26 @@ class TableError(InputError):
 
 @dataclass(frozen=True)
 class Column:
-    """A quantity, and what one of each unit is in mm: the header is quantity_unit, such as depth_um."""
+    """A column of a table; its header is quantity_unit, such as depth_um.
+
+    quantity: name without unit.
+    units:    unit, and its size in mm.
+    """
 
     quantity: str
     units: tuple[tuple[str, float], ...] = (("um", 1e-3), ("mm", 1.0))
 
     @property
     def headers(self) -> dict[str, float]:
-        """Header -> factor."""
+        """Header -> size of its unit [mm]."""
         return {f"{self.quantity}_{unit}": factor for unit, factor in self.units}
 
 
 def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
-    """The columns (n,) in mm, in the order wanted; others in the file are ignored. Lines that begin with # are remarks.
+    """The wanted columns, each (n,) [mm]. Other columns and lines that begin with # are ignored.
 
-    Raises TableError for a file that cannot be read, a column that is missing or named twice, a line of another length,
-    and a cell that is empty or no finite number.
+    Raises TableError for a file that cannot be read, a column that is missing or given twice, a line with another
+    number of cells, and a cell that holds no finite number.
     """
     header, numbered = _lines(path)
     places = [_place(path, header, column) for column in wanted]
@@ -61,12 +66,12 @@ def read_columns(path: Path, wanted: Sequence[Column]) -> list[Floats]:
 
 
 def has_column(path: Path, wanted: Column) -> bool:
-    """Whether a file has this column. Raises TableError for a file that cannot be read."""
+    """Whether a file has a column. Raises TableError for a file that cannot be read."""
     return any(name in wanted.headers for name in _lines(path)[0])
 
 
 def _lines(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The header, and the lines below it with their numbers. Raises TableError."""
+    """The header, and the numbered lines below it. Raises TableError."""
     try:
         lines = read_text(path, "CSV", LARGEST_FILE).splitlines()
         rows = enumerate(csv.reader(lines, strict=True), 1)
@@ -82,22 +87,23 @@ def _lines(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 
 def _place(path: Path, header: list[str], column: Column) -> tuple[int, float]:
+    """Index of a column in the file, and the size of its unit [mm]. Raises TableError."""
     known = column.headers
-    found = [(at, known[name]) for at, name in enumerate(header) if name in known]
-    if len(found) != 1:
+    places = [(at, known[name]) for at, name in enumerate(header) if name in known]
+    if len(places) != 1:
         names = ", ".join(header)[:LONGEST_FOUND] or "no header"
         remedy = "name quantity and unit in the first line, separated by commas"
         raise TableError(path, f"one column named {' or '.join(known)}", names, remedy)
-    return found[0]
+    return places[0]
 
 
 def _number(path: Path, line: int, header: list[str], row: list[str], at: int, factor: float) -> float:
-    """A cell's number times its unit's factor."""
+    """The number in a cell [mm]. Raises TableError."""
     if len(row) != len(header):
         remedy = "separate columns by commas, and write decimals with a point"
         raise TableError(f"{path}, line {line}", f"{len(header)} cells a line", f"{len(row)} cells", remedy)
     try:
-        value = float(row[at]) if "_" not in row[at] else np.nan  # Python takes 1_000 for a thousand
+        value = float(row[at]) if "_" not in row[at] else np.nan  # Python reads 1_000 as a thousand
     except ValueError:
         value = np.nan
     if not abs(value * factor) <= LARGEST_NUMBER:
@@ -107,7 +113,7 @@ def _number(path: Path, line: int, header: list[str], row: list[str], at: int, f
 
 
 def require_ascending(path: Path, name: str, values: Floats) -> None:
-    """Raises TableError unless every value is above the one before."""
+    """Raises TableError unless every value is above the previous one."""
     falls = np.flatnonzero(np.diff(values) <= 0.0)
     if len(falls):
         at = int(falls[0])

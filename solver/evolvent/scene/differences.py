@@ -1,4 +1,4 @@
-"""In which keys two scenes differ, as far as results depend on them."""
+"""The keys in which two scenes differ, of those that results depend on."""
 
 from __future__ import annotations
 
@@ -11,31 +11,34 @@ from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.skips import OF_OUTPUT, with_deflected_flanks
 
 MOST = 3
-"""Keys that are named."""
+"""Largest number of keys in a message."""
 NOT_GIVEN = "not given"
 
 
 def essence(scene: Scene) -> Scene:
-    """The scene without its title, what says what else is written, and where its charts lie."""
+    """The scene without what its results do not depend on: title, output and the paths of flank charts."""
     ways = SkipSection(off=tuple(name for name in scene.skip.off if name not in OF_OUTPUT))
     bare: dict[str, Any] = {name: getattr(scene, name).model_copy(update={"flank_csv": None}) for name in GEARS}
     return scene.model_copy(update={"title": "", "output": OutputSection(), "skip": ways, **bare})
 
 
 def charts(scene: Scene) -> list[str]:
-    """What the flank charts of both gears say, empty where there is none."""
+    """Contents of both gears' flank charts, empty where there is none."""
     return [chart.text() if (chart := scene.flank_chart(name)) else "" for name in GEARS]
 
 
 def differences(kept: Scene, wanted: Scene) -> str:
-    """The keys in which `wanted` differs from the scene that was kept, with both values, the first `MOST` of them;
-    empty if there is none. A run that has come to deflected flanks has kept that, which is no difference."""
-    found = min((_differing(kept, other) for other in (wanted, with_deflected_flanks(wanted))), key=len)
-    more = [f"{len(found) - MOST} more"] if len(found) > MOST else []
-    return ", ".join([*found[:MOST], *more])
+    """The first `MOST` keys in which `wanted` differs from the archived scene `kept`, with both values.
+
+    Empty where no key differs. That a run has switched to deflected flanks by itself is no difference.
+    """
+    differing = min((_differing(kept, other) for other in (wanted, with_deflected_flanks(wanted))), key=len)
+    more = [f"{len(differing) - MOST} more"] if len(differing) > MOST else []
+    return ", ".join([*differing[:MOST], *more])
 
 
 def _differing(kept: Scene, wanted: Scene) -> list[str]:
+    """Each differing key with both values."""
     there, here = (_flat(essence(scene).model_dump()) for scene in (kept, wanted))
     keys = [key for key in {**there, **here} if there.get(key) != here.get(key)]
     values = [f"{key} = {_said(here.get(key))} (kept: {_said(there.get(key))})" for key in keys]

@@ -1,4 +1,4 @@
-"""Numbers as they stand in sentences."""
+"""Numbers formatted for sentences and tables."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import math
 
 
 def signed(value: float, digits: int = 1) -> str:
-    """A number with its sign, a true minus; what rounds to zero has no sign."""
+    """A number with its sign and so many decimal places; a minus is U+2212, a rounded zero has no sign."""
     return f"{value:+.{digits}f}".replace("-", "−") if round(value, digits) else fixed(value, digits)
 
 
 def brief(value: float, digits: int = 2) -> str:
-    """A number with so many significant digits, never as a power of ten; whole numbers keep theirs."""
+    """A number with so many significant digits, without an exponent; integer digits are never rounded away."""
     places = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
     return fixed(value, max(0, places))
 
 
 def fixed(value: float, digits: int) -> str:
-    """A number with so many digits; what rounds to zero has no sign."""
+    """A number with so many decimal places; a rounded zero has no sign."""
     return f"{round(value, digits) + 0.0:.{digits}f}"

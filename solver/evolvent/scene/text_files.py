@@ -1,4 +1,4 @@
-"""Text files that somebody wrote, read with a clear word on those that are no text in UTF-8."""
+"""Text files of users, with a clear message where they are not UTF-8."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ SAVE = "save the file as UTF-8 (plain ASCII is UTF-8 too)"
 
 
 class UnreadableText(InputError):
-    """A file that is no text that can be used: what was found, what is allowed, what to do."""
+    """A file that cannot be used as text.
+
+    found, allowed, remedy: what was found, what is allowed and what to do, phrases without a full stop.
+    """
 
     def __init__(self, found: str, allowed: str, remedy: str) -> None:
         super().__init__(f"found {found}; allowed: {allowed}; remedy: {remedy}")
@@ -21,9 +24,9 @@ class UnreadableText(InputError):
 
 
 def read_text(path: Path, kind: str, megabytes: int) -> str:
-    """A file's text without its byte order mark.
+    """The text of a file without its byte order mark.
 
-    kind: what is wanted, such as "TOML"; megabytes: the largest size that is read. Raises UnreadableText.
+    kind: format for messages, such as "TOML". megabytes: largest size that is read. Raises UnreadableText.
     """
     wanted = f"a readable {kind} file"
     try:
@@ -41,6 +44,7 @@ def read_text(path: Path, kind: str, megabytes: int) -> str:
 
 
 def _decoded(content: bytes, allowed: str) -> str:
+    """The text of UTF-8 bytes. Raises UnreadableText."""
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise UnreadableText("text in UTF-16", allowed, SAVE)
     try:

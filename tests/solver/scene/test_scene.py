@@ -16,7 +16,9 @@ from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sec
 from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of
 from evolvent.scene.skips import is_plane, skipped
-from tests.support.abuses.malformed_scenes import DEMOS, HE, MALFORMED, ROOT, YANG, without
+from tests.support.abuses.malformed_scenes import MALFORMED
+from tests.support.checkout import ROOT
+from tests.support.scene_texts import DEMOS, HE, YANG, without
 
 
 @pytest.mark.parametrize("case", MALFORMED)

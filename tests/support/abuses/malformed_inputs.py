@@ -6,7 +6,7 @@ import codecs
 
 import numpy as np
 
-from tests.support.abuses.malformed_scenes import HE
+from tests.support.scene_texts import HE
 
 # a scene file's bytes; what was found and a part of the remedy
 SCENE_FILES: dict[str, tuple[bytes, str, str]] = {

@@ -1,4 +1,4 @@
-"""What is wrong with a scene, in sentences: the key, what was found, what is allowed, and a remedy."""
+"""Errors of a scene, one line each: the key, what was found, what is allowed, and a remedy."""
 
 from __future__ import annotations
 
@@ -19,31 +19,37 @@ from evolvent.scene.schema.not_supported import not_supported
 from evolvent_meshes.errors import InputError
 
 NOTHING = "nothing"
+"""What was found where something is missing."""
 MOST = 20
-"""Problems that are told at once."""
+"""Largest number of problems in one message."""
 LONGEST_NUMBER = 40
-"""Digits of a whole number that are shown."""
+"""Largest number of digits of a whole number that are shown."""
 LONGEST_TEXT = 60
-"""Characters of a value or of a key that are shown."""
+"""Largest number of characters of a value or a key that are shown."""
 
 
 @dataclass(frozen=True)
 class InputProblem:
-    """One error of a scene. `key` is dotted, as `--set` takes it; the other three are phrases without a full stop."""
+    """One error of an input; the fields but `key` are phrases without a full stop."""
 
     key: str
+    """Dotted key of the scene, as `--set` takes it, or name of an option."""
     found: str
+    """What was found."""
     allowed: str
+    """What is allowed."""
     remedy: str
+    """What to do."""
 
     def __str__(self) -> str:
         return f"{self.key}: found {self.found}; allowed: {self.allowed}; remedy: {self.remedy}"
 
 
 class SceneError(InputError):
-    """A scene that cannot be computed. Its text has one line per problem; nothing has been written.
+    """A scene that cannot be computed. Its message has one line per problem; no file has been written.
 
-    problems: at least one; source: the file, if there is one.
+    problems: at least one.
+    source:   path of the scene file, empty where there is none.
     """
 
     def __init__(self, problems: Iterable[InputProblem], source: str = "") -> None:
@@ -56,12 +62,12 @@ class SceneError(InputError):
 
 
 def validation_error(problem: InputProblem) -> PydanticCustomError:
-    """The exception that a validator of the scene raises; the problem's key is relative to what is validated."""
+    """The exception to be raised by a validator of a scene section. The problem's key is relative to this section."""
     return PydanticCustomError("scene", "scene", {"problem": problem})
 
 
 def problems_of(error: ValidationError, model: type[BaseModel]) -> list[InputProblem]:
-    """The problems of a failed validation, in the words of the schema `model`: all, or the first `MOST`."""
+    """The problems of a failed validation, with the texts of the schema `model`: all, or the first `MOST`."""
     details = error.errors(include_url=False)
     problems = [_problem(each, model) for each in details[:MOST]]
     if len(details) > MOST:
@@ -71,7 +77,7 @@ def problems_of(error: ValidationError, model: type[BaseModel]) -> list[InputPro
 
 
 def shown(value: Any) -> str:
-    """A value as it would stand in a scene file, shortened."""
+    """A value as it would be written in a scene file, shortened."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, dict):
@@ -86,10 +92,12 @@ def shown(value: Any) -> str:
 
 
 def _short(text: str, limit: int = LONGEST_TEXT) -> str:
+    """The text, cut off at `limit` characters."""
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
 def _problem(details: ErrorDetails, model: type[BaseModel]) -> InputProblem:
+    """The problem that one of pydantic's errors reports."""
     path = list(details["loc"])
     if details["type"] == "scene":
         problem: InputProblem = details["ctx"]["problem"]
@@ -107,13 +115,13 @@ def _problem(details: ErrorDetails, model: type[BaseModel]) -> InputProblem:
         return InputProblem(dotted(path), NOTHING, allowed, remedy)
     value, meant = details["input"], meant_value(details["input"], field)
     with_point = isinstance(value, float) and (meant is not None or details["type"] == "int_type")
-    found = repr(value) if with_point else shown(value)  # 20.0 is refused where 20 is not
+    found = repr(value) if with_point else shown(value)  # where 20 is allowed, 20.0 must show its point
     fitting = f"write {shown(meant)}" if meant is not None else expected(details["type"], value)
     return InputProblem(dotted(path), found, allowed, fitting or remedy)
 
 
 def dotted(path: Iterable[str | int]) -> str:
-    """["contact", "friction", 2] -> "contact.friction[2]"."""
+    """A path of keys and indices as text: ["contact", "friction", 2] -> "contact.friction[2]"."""
     text = ""
     for part in path:
         text += f"[{part}]" if isinstance(part, int) else f".{dotted_part(part)}" if text else dotted_part(part)
@@ -121,12 +129,12 @@ def dotted(path: Iterable[str | int]) -> str:
 
 
 def dotted_part(name: str) -> str:
-    """A key as TOML has it: bare, dotted, or in quotes; shortened."""
+    """A key as TOML writes it: bare, dotted, or in quotes; shortened."""
     return _short(name if re.fullmatch(r"[A-Za-z0-9_.\[\]-]+", name) else json.dumps(name, ensure_ascii=False))
 
 
 def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
-    """All keys of a schema, dotted, with their declarations; sections come as their keys."""
+    """Dotted key -> declaration, of all keys of a schema and its sections."""
     keys: dict[str, FieldInfo] = {}
     for name, field in model.model_fields.items():
         section = section_of(field)
@@ -138,7 +146,7 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
 
 
 def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> InputProblem:
-    """An unknown key or section: the nearest one is named, or that nothing like it is supported."""
+    """The problem with an unknown key or section: it names the most similar key, or says what is not supported."""
     name, parents = str(path[-1]), [str(part) for part in path[:-1]]
     kind = "section" if isinstance(value, dict) else "key"
     found = f"an unknown {kind}, {shown(value)}"
@@ -153,7 +161,7 @@ def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> I
 
 
 def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool) -> str:
-    """The key that was meant; empty if there is none."""
+    """The dotted key that an unknown one was probably meant to be; empty where there is none."""
     section = section_of(_declaration(parents, model)) if parents else model
     assert section is not None
     prefix = f"{dotted(parents)}." if parents else ""
@@ -164,12 +172,14 @@ def _similar(name: str, parents: list[str], model: type[BaseModel], strict: bool
 
 
 def _not_a_section(path: list[str | int], value: Any, section: type[BaseModel]) -> InputProblem:
+    """The problem with a value in place of a section."""
     keys = ", ".join(section.model_fields)
     name = dotted(path)
     return InputProblem(name, shown(value), f"a section with the keys {keys}", f"write [{name}] above its keys")
 
 
 def _missing_section(path: list[str | int], section: type[BaseModel]) -> InputProblem:
+    """The problem with a required section that is missing."""
     required = ", ".join(name for name, field in section.model_fields.items() if field.is_required())
     return InputProblem(dotted(path), NOTHING, f"a section with at least {required}", f"add a section [{dotted(path)}]")
 
@@ -182,6 +192,6 @@ def _declaration(names: list[str], model: type[BaseModel]) -> FieldInfo:
 
 
 def section_of(field: FieldInfo) -> type[BaseModel] | None:
-    """The model of a field that is a section, also of `Section | None`."""
+    """The model of a field that is a section or an optional section, None of other fields."""
     candidates = [field.annotation, *getattr(field.annotation, "__args__", ())]
     return next((c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)), None)

@@ -1,4 +1,4 @@
-"""Which value was meant by one of the wrong type or spelling: 20 by 20.0 or "20", "quick" by "Quick"."""
+"""Guesses the value that was meant by one of the wrong type or spelling: 20 by 20.0 or "20", "quick" by "Quick"."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 LONGEST = 60
+"""Longest text that is tried [characters]."""
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 
 
 def meant_value(value: Any, field: FieldInfo) -> Any | None:
-    """The first value near to `value` that `field` takes; None if there is none."""
+    """The first value similar to `value` that is valid for `field`; None where there is none."""
     wanted: Any = field.annotation
     for part in field.metadata:
         wanted = Annotated[wanted, part]
@@ -23,8 +24,10 @@ def meant_value(value: Any, field: FieldInfo) -> Any | None:
 
 
 def expected(kind: str, value: Any) -> str:
-    """What to write in place of a value that pydantic's error `kind` is about, where none was meant; empty if that is
-    for the key to say."""
+    """What to write instead of a value of the wrong type.
+
+    kind: type of pydantic's error. Empty where the remedy of the key says it.
+    """
     whole = {"int_type": "whole number", "float_type": "number"}.get(kind)
     if whole is None or type(value) is int:  # one of thousands of digits
         return ""
@@ -32,6 +35,7 @@ def expected(kind: str, value: Any) -> str:
 
 
 def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
+    """Whether a value is valid."""
     try:
         adapter.validate_python(value)
     except ValidationError:
@@ -40,7 +44,7 @@ def _fits(value: Any, adapter: TypeAdapter[Any]) -> bool:
 
 
 def _near(value: Any) -> Iterator[Any]:
-    """What may be meant by a value."""
+    """Values that may be meant by a value."""
     if isinstance(value, float) and value.is_integer():
         yield int(value)
     elif isinstance(value, list) and len(value) == 1:
@@ -52,10 +56,10 @@ def _near(value: Any) -> Iterator[Any]:
 
 
 def _read(text: str) -> Iterator[Any]:
-    """The number or truth value that a text is in quotes."""
+    """The number or truth value that a text holds."""
     try:
-        found = tomllib.loads(f"value = {text}")
+        parsed = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):
         return
-    if list(found) == ["value"] and isinstance(found["value"], (int, float)):
-        yield from (found["value"], *_near(found["value"]))
+    if list(parsed) == ["value"] and isinstance(parsed["value"], (int, float)):
+        yield from (parsed["value"], *_near(parsed["value"]))

@@ -1,4 +1,4 @@
-"""Which key was meant by one that does not exist: one that is written alike, or one that means it."""
+"""Guesses the key that was meant by an unknown one, from its spelling or from the meaning of keys."""
 
 from __future__ import annotations
 
@@ -7,15 +7,19 @@ import re
 from collections.abc import Mapping
 
 NEAR, NEARLY_THE_SAME = 0.7, 0.85
-"""How alike keys are (`difflib`) for the one to be meant by the other; where the other may be something unsupported."""
+"""Least similarity of two keys (difflib's ratio): usually, and where the unknown key may ask for something that is not
+supported."""
 LONGEST = 60
+"""Longest key that is compared [characters]."""
 GREEK = {"alpha": "α", "beta": "β", "mu": "μ", "nu": "ν", "rho": "ρ"}
 
 
 def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str], strict: bool = False) -> str:
-    """The dotted key that was meant, looked for in its own section first; empty if there is none.
+    """The dotted key that was meant, empty where there is none.
 
-    here, everywhere: dotted keys and what they mean. strict: only one that is written nearly the same.
+    here:       dotted key -> meaning, of the section that the unknown key is in; searched first.
+    everywhere: the same of all sections.
+    strict:     require nearly the same spelling.
     """
     if len(name) > LONGEST:
         return ""
@@ -33,16 +37,16 @@ def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str
 
 
 def _meaning(key: str, text: str) -> set[str]:
-    """The words of a key and of the first phrase of what it means, whose last one is its symbol."""
+    """The words of a key and of the first phrase of its meaning, the last of which is the symbol."""
     phrase = re.split(r"[,;:]", text)[0]
     return _words(f"{_stem(key)} {phrase}") - {"a", "the", "of"} | set(phrase.lower().split()[-1:])
 
 
 def _stem(key: str) -> str:
-    """The last part of a key without its unit, in small letters."""
+    """The last part of a key without its unit, in lower case."""
     return re.sub(r"_(mm|um|deg|Nm|GPa|m|mm2_per_N|Pa|MPa|N)$", "", key.rsplit(".", 1)[-1]).lower()
 
 
 def _words(text: str) -> set[str]:
-    """In small letters, without apostrophes and signs."""
+    """The words of a text in lower case, without apostrophes and punctuation."""
     return set(re.findall(r"[^\W_]+", text.replace("'", "").lower()))

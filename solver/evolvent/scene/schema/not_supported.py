@@ -1,4 +1,4 @@
-"""What somebody may ask of a scene and Evolvent does not compute: words of keys, and what is said instead."""
+"""What users may look for in a scene and Evolvent does not compute: patterns of key names, and what to answer."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"backlash", "backlash follows from pair.centre_distance_mm and the profile shifts"),
     (r"web|rim|spoke", "the body is a full ring from bore_diameter_mm to the root"),
 )  # fmt: skip
-"""Pattern of the key's name, and the sentence."""
+"""Regular expression for the name of an unknown key, and what to answer."""
 
 
 def not_supported(name: str) -> str:
-    """What to say of an unknown key with this name, empty where nothing is known of it."""
-    own = name.lower()[:60]
-    return next((words for pattern, words in NOT_SUPPORTED if re.search(rf"(^|_)({pattern})", own)), "")
+    """The answer to an unknown key, empty where its name matches no pattern."""
+    lower = name.lower()[:60]
+    return next((words for pattern, words in NOT_SUPPORTED if re.search(rf"(^|_)({pattern})", lower)), "")

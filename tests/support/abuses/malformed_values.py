@@ -1,0 +1,116 @@
+"""Scenes with values out of range, in conflict, or beyond all sizes; wear that cannot be."""
+
+from __future__ import annotations
+
+from tests.support.scene_texts import HE, WEAR, YANG
+
+WRONG_VALUES: dict[str, tuple[str, list[str], str, str, str]] = {
+    # out of range
+    "zero torque": (YANG, ["load.torque_Nm=0"], "load.torque_Nm", "0", "give the torque without a sign"),
+    "negative torque": (YANG, ["load.torque_Nm=-250"], "load.torque_Nm", "-250", "without a sign, the pinion drives"),
+    "torque NaN": (YANG, ["load.torque_Nm=nan"], "load.torque_Nm", "nan", "give the torque"),
+    "torque infinite": (YANG, ["load.torque_Nm=inf"], "load.torque_Nm", "inf", "give the torque"),
+    "friction NaN": (YANG, ["contact.friction=nan"], "contact.friction[0]", "nan", "0 is frictionless"),
+    "module infinite": (YANG, ["pair.normal_module_mm=inf"], "pair.normal_module_mm", "inf", "give the normal"),
+    "negative friction": (YANG, ["contact.friction=[0.1,-0.1]"], "contact.friction[1]", "-0.1", "0 is frictionless"),
+    "friction above 1": (YANG, ["contact.friction=1.5"], "contact.friction[0]", "1.5", "dry steel up to 0.3"),
+    "no friction in the list": (YANG, ["contact.friction=[]"], "contact.friction", "an empty list", "at least one"),
+    "friction twice": (YANG, ["contact.friction=[0.1,0.2,0.1]"], "contact.friction", "0.1 more than once", "repeated"),
+    "too many teeth": (YANG, ["wheel.teeth=100000"], "wheel.teeth", "100000", "external gears only"),
+    "ring gear": (YANG, ["wheel.teeth=-60"], "wheel.teeth", "-60", "external gears only"),
+    "module 0": (YANG, ["pair.normal_module_mm=0"], "pair.normal_module_mm", "0", "give the normal"),
+    "helix with a sign": (YANG, ["pair.helix_angle_deg=-29"], "pair.helix_angle_deg", "-29", "with pinion.hand"),
+    "helix in radians' place": (YANG, ["pair.helix_angle_deg=89"], "pair.helix_angle_deg", "89", "pinion.hand"),
+    "pressure angle": (YANG, ["pair.normal_pressure_angle_deg=45"], "pair.normal_pressure_angle_deg", "45", "from 10"),
+    "face width": (YANG, ["pinion.face_width_mm=-16.9"], "pinion.face_width_mm", "-16.9", "give a number from 0.1"),
+    "modulus in MPa": (YANG, ["material.E_GPa=210000"], "material.E_GPa", "210000", "mind GPa, not MPa"),
+    "wheel's modulus": (YANG, ["material.wheel.E_GPa=-1"], "material.wheel.E_GPa", "-1", "steel is 210"),
+    "incompressible": (YANG, ["material.nu=0.5"], "material.nu", "0.5", "steel is 0.3"),
+    "one position": (YANG, ["sweep.positions=1"], "sweep.positions", "1", "20 is usual"),
+    "unknown level": (YANG, ["mesh.level=ultra"], "mesh.level", '"ultra"', "standard for results"),
+    "third order": (YANG, ["mesh.order=3"], "mesh.order", "3", "give 1 or 2"),
+    "prisms": (YANG, ["mesh.shape=prism"], "mesh.shape", '"prism"', 'give "hexahedron" or'),
+    "no elements": (YANG, ["mesh.elements_per_contact_width=0"], "mesh.elements_per_contact_width", "0", "level's own"),
+    "torque on the shaft": (YANG, ["load.on=shaft"], "load.on", '"shaft"', 'give "pinion" or "wheel"'),
+    # in conflict
+    "two tips": (YANG, ["pinion.addendum_coefficient=1"], "pinion.tip_diameter_mm", "47.8 and also", "delete tip_dia"),
+    "two roots": (HE, ["wheel.root_diameter_mm=142"], "wheel.root_diameter_mm", "142 and also", "delete root_dia"),
+    "same hands": (YANG, ["wheel.hand=right"], "wheel.hand", '"right"', "follows from the pinion's"),
+    # numbers beyond all sizes
+    "torque of rounding": (YANG, ["load.torque_Nm=1e-300"], "load.torque_Nm", "1e-300 (Hertz", "raise the torque"),
+    "torque denormal": (YANG, ["load.torque_Nm=5e-324"], "load.torque_Nm", "e-324 (Hertz", "raise the torque"),
+    "torque of nothing": (HE, ["load.torque_Nm=1e-12"], "load.torque_Nm", "1e-12 (Hertz", "raise the torque"),
+    "torque overflows": (YANG, ["load.torque_Nm=1e400"], "load.torque_Nm", "inf", "give the torque"),
+    "torque of a star": (YANG, ["load.torque_Nm=1e300"], "load.torque_Nm", "1e+300", "give the torque"),
+    "thousand million teeth": (YANG, ["pinion.teeth=1000000000"], "pinion.teeth", "1000000000", "external gears only"),
+    "teeth in hexadecimal": (YANG, ["pinion.teeth=0x" + "f" * 5000], "pinion.teeth", "6,021 digits", "external gears"),
+    "torque in hexadecimal": (
+        YANG, ["load.torque_Nm=0x" + "f" * 5000], "load.torque_Nm", "6,021 digits", "give the torque",
+    ),
+    "teeth of 400 digits": (YANG, ["pinion.teeth=1" + "0" * 400], "pinion.teeth", "401 digits", "external gears only"),
+    "torque of 400 digits": (YANG, ["load.torque_Nm=1" + "0" * 400], "load.torque_Nm", "401 digits", "give the torque"),
+    "override of 5000 digits": (YANG, ["pinion.teeth=" + "9" * 5000], "pinion.teeth", "99999", "write for example"),
+    "file of 5000 digits": (YANG + "x = " + "9" * 5000, [], "scene file", "thousands of digits", "mend that line"),
+    "positions for ever": (YANG, ["sweep.positions=1000000000000"], "sweep.positions", "1000000000000", "20 is usual"),
+    "positions as a float": (YANG, ["sweep.positions=20.0"], "sweep.positions", "20.0", "write 20"),
+    "diameter of the universe": (
+        YANG, ["wheel.tip_diameter_mm=1e300"], "wheel.tip_diameter_mm", "1e+300", "give a number above 0",
+    ),
+    "root of the universe": (
+        YANG, ["wheel.root_diameter_mm=1e200"], "wheel.root_diameter_mm", "1e+200", "give a number above 0",
+    ),
+    "distance of the universe": (
+        YANG, ["pair.centre_distance_mm=1e300"], "pair.centre_distance_mm", "1e+300", "delete the key",
+    ),
+    "distance of nothing": (YANG, ["pair.centre_distance_mm=1e-300"], "pair.centre_distance_mm", "1e-300", "raise the"),
+    "rack tip of the universe": (
+        YANG, ["wheel.rack_tip_radius_mm=1e300"], "wheel.rack_tip_radius_mm", "1e+300", "delete the key",
+    ),
+    "bore of a point": (YANG, ["pinion.bore_diameter_mm=1e-9"], "pinion.bore_diameter_mm", "1e-09", "the bore larger"),
+    "no bore": (YANG, ["pinion.bore_diameter_mm=0"], "pinion.bore_diameter_mm", "0", "delete the key"),
+    "root of a point": (YANG, ["pinion.root_diameter_mm=1e-300"], "pinion.root_diameter_mm", "1e-300", "no room for"),
+    "helix of a hair": (HE, ["pair.helix_angle_deg=1e-30"], "pair.helix_angle_deg", "1e-30", "give 0 for spur gears"),
+    "relief of a metre": (YANG, ["pinion.tip_relief_um=1e6"], "pinion.tip_relief_um", "1000000", "give a number from"),
+    "relief that adds": (YANG, ["pinion.tip_relief_um=-5"], "pinion.tip_relief_um", "-5", "give a number from"),
+    "hollow lead": (YANG, ["pinion.lead_crowning_um=-5"], "pinion.lead_crowning_um", "-5", "give a number from"),
+    "misalignment in mm": (YANG, ["pair.misalignment_um=1e4"], "pair.misalignment_um", "10000", "give a number from"),
+    "too fine": (YANG, ["mesh.elements_per_contact_width=1e9"], "mesh.elements_per_contact_width", "1000000000", "own"),
+    "a thousand coefficients": (
+        YANG, [f"contact.friction={[k / 1000 for k in range(1000)]}"], "contact.friction", "[0, 0.001", "0 is friction",
+    ),
+    "a thousand wrong coefficients": (YANG, [f"contact.friction={[-1.0] * 1000}"], "contact.friction[0]", "-1", "0 is"),
+    "a thousand reports": (
+        HE, [*WEAR, f"wear.report_at_cycles={list(range(1, 1000))}"], "wear.report_at_cycles", "[1, 2", "give a list",
+    ),
+    "less than a revolution": (HE, [*WEAR, "wear.cycles=1e-300"], "wear.cycles", "1e-300", "give a number from 1"),
+    "cycles infinite": (HE, [*WEAR, "wear.cycles=inf"], "wear.cycles", "inf", "give a number from 1"),
+    "first block of nothing": (
+        HE, [*WEAR, "wear.first_block_cycles=1"], "wear.first_block_cycles", "1", "give a longer one",
+    ),
+    "refreshed by atoms": (HE, [*WEAR, "wear.refresh_um=1e-300"], "wear.refresh_um", "1e-300", "delete the key"),
+    "refreshed by metres": (HE, [*WEAR, "wear.refresh_um=1e7"], "wear.refresh_um", "10000000", "delete the key"),
+    "tolerance of nothing": (HE, [*WEAR, "wear.tolerance=1e-300"], "wear.tolerance", "1e-300", "give a number from"),
+    "reports a text": (HE, [*WEAR, 'wear.report_at_cycles="all"'], "wear.report_at_cycles[0]", '"all"', "write the"),
+    # wear
+    "no cycles": (HE, ["wear.pinion_mm2_per_N=1e-10"], "wear.cycles", "nothing", "give a number"),
+    "nothing wears": (HE, ["wear.cycles=1e6"], "wear.pinion_mm2_per_N", "0 on both gears", "delete the section [wear]"),
+    "K/H in MPa·m": (HE, [*WEAR, "wear.wheel_mm2_per_N=1e-4"], "wear.wheel_mm2_per_N", "0.0001", "1e6 mm²/N"),
+    "K/H in m²/N": (HE, [*WEAR, "wear.wheel_mm2_per_N=1e-17"], "wear.wheel_mm2_per_N", "1e-17", "mind the unit"),
+    "negative K/H": (HE, [*WEAR, "wear.wheel_mm2_per_N=-1e-10"], "wear.wheel_mm2_per_N", "-1e-10", "mind the unit"),
+    "K/H not a number": (HE, [*WEAR, "wear.wheel_mm2_per_N=nan"], "wear.wheel_mm2_per_N", "nan", "mind the unit"),
+    "cycles a text": (HE, [*WEAR, 'wear.cycles="many"'], "wear.cycles", '"many"', "write the number alone"),
+    "reports unsorted": (HE, [*WEAR, "wear.report_at_cycles=[2e5, 1e5]"], "wear.report_at_cycles", "[200000", "sort"),
+    "report twice": (HE, [*WEAR, "wear.report_at_cycles=[2e5, 2e5]"], "wear.report_at_cycles", "[200000", "sort"),
+    "report too late": (HE, [*WEAR, "wear.report_at_cycles=1e6"], "wear.report_at_cycles", "[1000000", "the last"),
+    "tolerance in percent": (HE, [*WEAR, "wear.tolerance=5.0"], "wear.tolerance", "5", "give a number"),
+    "first block too long": (HE, [*WEAR, "wear.first_block_cycles=2e6"], "wear.first_block_cycles", "2000000", "short"),
+    "blocks of another kind": (HE, [*WEAR, "wear.blocks=midpoint"], "wear.blocks", "midpoint", "implicit"),
+    "wear at several μ": (YANG, WEAR, "contact.friction", "[0", "give one coefficient"),
+    "wear of all pitches": (HE, [*WEAR, "skip.off=one-pitch"], "skip.off", "one-pitch", "leave one-pitch out"),
+    "wear of deflected flanks": (
+        HE, [*WEAR, "skip.off=deflected-flanks"], "skip.off", "deflected-flanks", "leave deflected-flanks out",
+    ),
+    "wear a number": (HE, ["wear=1e6"], "wear", "1000000", "[wear]"),
+    "worn away": (HE, [*WEAR, "wear.cycles=1e12"], "wear.cycles", "1e+12", "fewer cycles"),
+}
+"""Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

@@ -96,7 +96,9 @@ def test_other_commands_validate_too(command: str, scene: Path, capsys: pytest.C
         (["plot", "{folder}"], "no summary.json in it"),
     ],
 )
-def test_usage_errors(arguments: list[str], message: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_command_lines_are_status_2(
+    arguments: list[str], message: str, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Status 2 and a message on stderr."""
     assert main([argument.format(scene=scene, folder=scene.parent) for argument in arguments]) == 2
     assert message in capsys.readouterr().err
@@ -152,14 +154,14 @@ def test_mesh_writes_a_gmsh_file(shape: str, order: int, scene: Path, capsys: py
         ("import signal; signal.raise_signal(signal.SIGINT)", 1, "stopped by SIGINT; `evolvent run ... --resume`"),
     ],
 )
-def test_exit_statuses(body: str, status: int, message: str, scene: Path) -> None:
+def test_failures_of_run_have_their_exit_status(body: str, status: int, message: str, scene: Path) -> None:
     """0 done, 2 bad input, 3 not converged, 1 anything else; the message is on stderr."""
     done = run_with(body, scene)
     assert done.returncode == status, done.stderr
     assert message in done.stderr
 
 
-def test_failing_rank_ends_the_run(scene: Path) -> None:
+def test_failing_rank_ends_the_command_on_all_ranks(scene: Path) -> None:
     """Rank 1 fails while rank 0 waits for it in a collective call: its message, its status, no hang."""
     body = "assert MPI.COMM_WORLD.rank == 0, 'rank 1 broke'; MPI.COMM_WORLD.Barrier()"
     done = run_with(body, scene, ranks=2)
@@ -168,14 +170,14 @@ def test_failing_rank_ends_the_run(scene: Path) -> None:
     assert "rank 1 broke" in done.stderr
 
 
-def test_ranks_that_fail_alike_speak_once(scene: Path) -> None:
+def test_ranks_that_fail_alike_print_one_message(scene: Path) -> None:
     """All ranks raise NotConverged: one message, status 3."""
     done = run_with(STUCK.format("stuck"), scene, ranks=2)
     assert done.returncode == 3
     assert done.stderr.count("stuck") == 1
 
 
-def test_bad_scene_under_mpirun(scene: Path) -> None:
+def test_bad_scene_under_mpirun_is_reported_once(scene: Path) -> None:
     """Status 2, and the message once."""
     scene.write_text(HE.replace("torque_Nm = 170.0", "torque_Nm = -1"), encoding="utf-8")
     done = run_with("pass", scene, ranks=2)
@@ -183,7 +185,7 @@ def test_bad_scene_under_mpirun(scene: Path) -> None:
     assert done.stderr.count("load.torque_Nm: found -1") == 1
 
 
-def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
     """--version: status 0 and the version of pyproject.toml, which is `evolvent.__version__` too."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert main(["--version"]) == 0

@@ -67,14 +67,14 @@ def files(folder: Path) -> dict[str, str]:
     }
 
 
-def test_enough() -> None:
+def test_at_least_250_malformed_inputs() -> None:
     """At least 250 malformed inputs, all of them different."""
     tables = MALFORMED, SCENE_FILES, CHARTS, RECORDS, OPTIONS
     assert sum(map(len, tables)) >= 250
 
 
 @pytest.mark.parametrize("case", SCENE_FILES)
-def test_scene_files(case: str, refused: Refused) -> None:
+def test_unreadable_scene_files_are_refused(case: str, refused: Refused) -> None:
     """Encodings, sizes, formats of scene files."""
     content, found, remedy = SCENE_FILES[case]
     (refused.folder / "bad.toml").write_bytes(content)
@@ -88,7 +88,7 @@ def test_scene_files(case: str, refused: Refused) -> None:
 
 
 @pytest.mark.parametrize("case", CHARTS)
-def test_charts(case: str, refused: Refused) -> None:
+def test_malformed_flank_charts_are_refused(case: str, refused: Refused) -> None:
     """Charts of flanks: the message names the scene's key."""
     content, found, words = CHARTS[case]
     (refused.folder / "bad.csv").write_bytes(content)
@@ -99,7 +99,7 @@ def test_charts(case: str, refused: Refused) -> None:
 
 
 @pytest.mark.parametrize("case", RECORDS)
-def test_records(case: str, refused: Refused) -> None:
+def test_malformed_pin_on_disc_records_are_refused(case: str, refused: Refused) -> None:
     """Pin-on-disc records: the message names the file."""
     content, found, words = RECORDS[case]
     (refused.folder / "bad.csv").write_bytes(content)
@@ -109,7 +109,7 @@ def test_records(case: str, refused: Refused) -> None:
 
 
 @pytest.mark.parametrize("case", OPTIONS)
-def test_options(case: str, refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_malformed_options_are_refused(case: str, refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
     """Options and arguments of every command; no machine has the memory for all that can be asked."""
     monkeypatch.setattr("evolvent.scene.checking.problem_size.machine_megabytes", lambda: 24e3)
     arguments, key, found, words = OPTIONS[case]
@@ -148,7 +148,7 @@ def in_time() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("name", ["scene.toml", "chart.csv", "record.csv"])
-def test_named_pipes(name: str, refused: Refused, in_time: None) -> None:
+def test_named_pipes_as_input_are_refused(name: str, refused: Refused, in_time: None) -> None:
     """A scene, a chart, a record that is a named pipe: refused at once."""
     pipe = str(pipe_without_writer(refused.folder, f"pipe_{name}"))
     scene = pipe if name == "scene.toml" else "scene.toml"
@@ -159,7 +159,7 @@ def test_named_pipes(name: str, refused: Refused, in_time: None) -> None:
         assert "a named pipe" in said["found"] and "to a file" in said["remedy"]
 
 
-def test_pipe_for_a_mesh(tmp_path: Path, in_time: None) -> None:
+def test_named_pipe_as_mesh_is_refused(tmp_path: Path, in_time: None) -> None:
     """A named pipe is no mesh."""
     with pytest.raises(MeshError, match="found what is no file at"):
         read_msh(pipe_without_writer(tmp_path, "block.msh"))
@@ -168,7 +168,7 @@ def test_pipe_for_a_mesh(tmp_path: Path, in_time: None) -> None:
 @pytest.mark.parametrize(("name", "words"), [
     ("results/state.npz", "state.npz"), ("results/cost.json", "cost.json"), ("results/evolvent-files.jsonl", "list of"),
 ])
-def test_pipes_in_a_folder(
+def test_named_pipes_in_a_run_folder_are_refused(
     name: str, words: str, folder: Path, capfd: pytest.CaptureFixture[str], in_time: None
 ) -> None:  # fmt: skip
     """Named pipes in place of a run's own files, from which it goes on: refused by `run --resume`, never read."""
@@ -180,7 +180,7 @@ def test_pipes_in_a_folder(
 
 
 @pytest.mark.parametrize("case", UNSUPPORTED)
-def test_unsupported(case: str) -> None:
+def test_unsupported_keys_are_answered(case: str) -> None:
     """Who asks for what is not supported is told so."""
     text, overrides, key, _, _ = MALFORMED[case]
     with pytest.raises(ValueError, match=UNSUPPORTED[case]) as caught:
@@ -188,14 +188,14 @@ def test_unsupported(case: str) -> None:
     assert f"{key}: found" in str(caught.value)
 
 
-def test_keys_are_not_dumped() -> None:
+def test_unknown_key_message_names_one_key() -> None:
     """The message about an unknown key names one key, not all that there are."""
     with pytest.raises(ValueError, match=r"did you mean pinion\.profile_shift") as caught:
         scene_from_text(YANG, ["pinion.proffile_shift=0.3"])
     assert "face_width" not in str(caught.value) and "addendum" not in str(caught.value)
 
 
-def test_byte_order_mark(tmp_path: Path) -> None:
+def test_byte_order_mark_and_line_ends_are_ignored(tmp_path: Path) -> None:
     """A scene and a chart with a byte order mark, as some editors write it, are read as without; so are CR LF."""
     for text in (HE, HE.replace("\n", "\r\n")):
         (tmp_path / "scene.toml").write_bytes(b"\xef\xbb\xbf" + text.encode())
@@ -209,7 +209,7 @@ def test_byte_order_mark(tmp_path: Path) -> None:
         assert plain is not None and marked is not None and marked.text() == plain.text()
 
 
-def test_paths_of_overrides(folder: Path) -> None:
+def test_chart_paths_of_scene_and_overrides(folder: Path) -> None:
     """A chart in the scene file is looked for beside it, one of an override where the program runs."""
     (folder / "elsewhere").mkdir()
     (folder / "chart.csv").write_text(CHART)
@@ -230,7 +230,7 @@ LONG_WAY = 'skip.off=["plane", "one-pitch", "far-teeth", "one-sector", "coarse-b
 
 
 @pytest.mark.parametrize("key", NUMBERS)
-def test_extreme_numbers(key: str, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_check_survives_extreme_numbers(key: str, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Every numeric key at extreme values, helical and spur, with wear and computed the long way: `check` ends with
     status 0, or with 2 and one message a line; no traceback and no warning."""
     (folder / "yang.toml").write_text(YANG, encoding="utf-8")

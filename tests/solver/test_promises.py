@@ -1,7 +1,8 @@
 """What a trusted contact solver promises and no other test holds it to; each test is seen to fail on a broken solver.
 
-Held elsewhere: ranks and resuming on another number of them (test_run.py, test_archive.py), a retried step and the
-tooth index (test_gears.py), a turned model (test_problem.py, test_patch.py), action and reaction (test_equilibrium.py).
+Held elsewhere: ranks and resuming on another number of them (run/test_scene_run.py, results/archive/test_archive.py), a
+retried step and the tooth index (gears/test_gear_pair.py), a turned model (contact/solution/), action and reaction
+(contact/newton/test_equilibrium.py).
 """
 
 from __future__ import annotations

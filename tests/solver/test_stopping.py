@@ -37,7 +37,7 @@ def ask(out: Path, number: signal.Signals) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_asked_to_end(number: signal.Signals, tmp_path: Path) -> None:
+def test_signal_ends_a_run_that_can_be_resumed(number: signal.Signals, tmp_path: Path) -> None:
     """Status 1, one line that names the signal and how to go on, the same line in run.log, no table; resumed, the
     numbers are those of an undisturbed run within 1e-7."""
     out, whole = tmp_path / "out", tmp_path / "whole"
@@ -61,7 +61,7 @@ void deaf(void) { (void)!write(1, "ready\\n", 6); for (;;) sleep(1); }
 """
 
 
-def test_deep_in_a_computation(tmp_path: Path) -> None:
+def test_signal_ends_a_computation_outside_python(tmp_path: Path) -> None:
     """A main thread that never comes back to Python: the line is said at once, and the process ends all the same."""
     library = tmp_path / "deaf.so"
     compiler = ["gcc", "-shared", "-fPIC", "-x", "c", "-o", str(library), "-"]
@@ -82,7 +82,7 @@ def test_deep_in_a_computation(tmp_path: Path) -> None:
     assert errors == "evolvent: stopped by SIGTERM; go on later\n"
 
 
-def test_handlers_are_given_back() -> None:
+def test_signal_handlers_are_restored() -> None:
     """After the block, and after a signal in it, the process has the handlers that it had before."""
     before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)]
     with pytest.raises(Stopped, match="stopped by SIGHUP"), stoppable("", lambda: None):

@@ -24,7 +24,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def test_killed_at_random_times(whole: Path, tmp_path: Path) -> None:
+def test_run_killed_at_random_times_is_resumed(whole: Path, tmp_path: Path) -> None:
     """kill -9 at four random moments, each time resumed: every number is that of the undisturbed run within 1e-7, and
     before the end no table tells of a complete run."""
     struck: Struck = struck_again_and_again(tmp_path / "out", kills=4, seed=1)
@@ -32,7 +32,7 @@ def test_killed_at_random_times(whole: Path, tmp_path: Path) -> None:
     assert differs(tmp_path / "out", whole) < 1e-7
 
 
-def test_difference_is_seen(whole: Path, tmp_path: Path) -> None:
+def test_comparison_of_runs_sees_another_torque(whole: Path, tmp_path: Path) -> None:
     """The comparison above sees another torque."""
     assert run(tmp_path / "out", "--set", "load.torque_Nm=170.1").returncode == 0
     assert differs(tmp_path / "out", whole) > 1e-5
@@ -52,7 +52,7 @@ def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) 
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can start a process as another user")
-def test_folder_that_may_not_be_written(tmp_path: Path) -> None:
+def test_folder_without_write_permission_is_refused(tmp_path: Path) -> None:
     """A folder of somebody else: status 2, its name and what to do, no traceback."""
     out = tmp_path / "theirs"
     out.mkdir(mode=0o555)
@@ -68,7 +68,7 @@ def test_folder_that_may_not_be_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("at", [1, 3])
-def test_nan_on_purpose(at: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_nan_compliance_is_not_converged(at: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
     """A compliance that turns into NaN at the first or third position: status 3 and "not a number", no table, the
     checkpoint before it intact, and once healed --resume completes the run."""
     out = tmp_path / "out"

@@ -34,7 +34,7 @@ def terminal() -> Console:
     return Console(file=io.StringIO(), force_terminal=True, width=120)
 
 
-def test_only_what_has_ended_is_complete() -> None:
+def test_stage_that_continues_is_not_shown_complete() -> None:
     """Two positions were thought of, a third one follows: with two solved the bar shows 2 of 3, never 2 of 2; a stage
     that cannot be counted is complete when the next one begins."""
     with Progress(console=terminal()) as progress:
@@ -51,7 +51,7 @@ def test_only_what_has_ended_is_complete() -> None:
         assert "✓" not in shown(progress)[2]
 
 
-def test_resumed_positions_count() -> None:
+def test_resumed_positions_count_as_done() -> None:
     """Three of four are there already: one more completes the stage."""
     with Progress(console=terminal()) as progress:
         progress.stage("positions", 4, done=3)
@@ -60,7 +60,7 @@ def test_resumed_positions_count() -> None:
         assert "4/4" in shown(progress)[0]
 
 
-def test_lines_where_there_is_no_terminal() -> None:
+def test_progress_without_a_terminal_prints_lines() -> None:
     """A line a stage, and one for each tenth of its count; no control characters."""
     stream = io.StringIO()
     with Progress(console=Console(file=stream)) as progress:
@@ -73,7 +73,7 @@ def test_lines_where_there_is_no_terminal() -> None:
     assert re.fullmatch(r"[ -~\n]*", stream.getvalue())
 
 
-def test_nothing_where_it_is_hidden() -> None:
+def test_hidden_progress_prints_nothing() -> None:
     """--quiet and ranks other than 0, on a terminal or not."""
     for console in (terminal(), Console(file=io.StringIO())):
         with Progress(hidden=True, console=console) as progress:
@@ -82,7 +82,7 @@ def test_nothing_where_it_is_hidden() -> None:
         assert console.file.getvalue() == ""  # type: ignore[attr-defined]
 
 
-def test_a_run_in_a_pipe(run_script: Run, tmp_path: Path) -> None:
+def test_run_in_a_pipe_prints_its_stages(run_script: Run, tmp_path: Path) -> None:
     """He's pair at two positions: every stage once and in order on stderr, plainly; the only, and last, line on stdout
     names tables, pictures and figures that are there. With --quiet nothing but warnings."""
     out = tmp_path / "out"
@@ -117,7 +117,7 @@ def test_a_run_in_a_pipe(run_script: Run, tmp_path: Path) -> None:
     assert all(line.startswith("evolvent: warning: ") for line in again.stderr.splitlines())
 
 
-def test_a_run_on_a_terminal(tmp_path: Path) -> None:
+def test_run_on_a_terminal_completes_its_stages(tmp_path: Path) -> None:
     """The same on a terminal: when it ends all stages stand there with a tick, then the line of where everything is."""
     leader, follower = pty.openpty()
     command = [sys.executable, "-m", "evolvent", "run", "demos/he2022.toml", "--level", "quick", "--out", str(tmp_path)]
@@ -141,7 +141,7 @@ def test_a_run_on_a_terminal(tmp_path: Path) -> None:
     assert [name for name in STAGES if f"✓ {name}" in text] == list(STAGES)
 
 
-def test_whereabouts_name_what_is_there(tmp_path: Path) -> None:
+def test_last_line_names_existing_requested_files(tmp_path: Path) -> None:
     """Of a run without pictures and fields neither is named; those of an earlier part of it are not, where the scene
     asks for none now."""
     asked, unasked = (spur_scene(f"output.pictures={on}", "output.animation=false", f"output.fields={on}")

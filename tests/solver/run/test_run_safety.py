@@ -68,7 +68,7 @@ def test_finished_run_is_not_lost_unasked(out: Path, capsys: pytest.CaptureFixtu
     assert hashes(out) == before
 
 
-def test_overwriting_removes_ours_only(out: Path) -> None:
+def test_overwriting_removes_files_of_runs_only(out: Path) -> None:
     """--overwrite: somebody else's files stay, byte by byte, and are named in the log; fields of the positions that the
     longer run had are gone."""
     before = theirs(out)
@@ -84,7 +84,7 @@ def test_overwriting_removes_ours_only(out: Path) -> None:
     assert "pictures/02_mine.png" in log and "results/measured.npz" in log
 
 
-def test_foreign_results_are_not_ours(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_foreign_results_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder with results/state.npz of another program: status 2, it is named, nothing is changed."""
     (tmp_path / "results").mkdir()
     (tmp_path / "results" / "state.npz").write_text("of another program", encoding="utf-8")
@@ -129,7 +129,7 @@ def test_changed_results_are_not_written_over(out: Path, capsys: pytest.CaptureF
     assert hashes(out) == before
 
 
-def test_resuming_nothing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_resuming_without_results_is_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """--resume where no run has been, as after one that was stopped while meshing: it begins, and says so; not of a
     run that is there."""
     said = f"--resume found nothing to go on from in {tmp_path / 'new'} (no results/state.npz)"
@@ -145,7 +145,7 @@ CUT = {"results/state.npz": "--overwrite", "results/position_0002.npz": "--overw
 
 
 @pytest.mark.parametrize("name", CUT)
-def test_a_file_that_was_cut_off(
+def test_truncated_file_is_named_with_its_remedy(
     name: str, out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Every command names the file and says to move or remove it; what `plot` says is done, and works."""
@@ -166,7 +166,7 @@ def test_a_file_that_was_cut_off(
     assert "changed" not in capsys.readouterr().err
 
 
-def test_two_runs_into_one_folder(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_second_run_into_a_folder_is_refused(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The second one, and a `plot`: status 2, who is at it, nothing touched."""
     before = hashes(out)
     with locked(out):
@@ -178,7 +178,7 @@ def test_two_runs_into_one_folder(out: Path, capsys: pytest.CaptureFixture[str])
     assert hashes(out) == before
 
 
-def test_status_2_leaves_no_file(
+def test_mesh_error_leaves_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Input that only meshing finds bad: no run.log, no folder."""
@@ -238,7 +238,7 @@ def test_no_room_for_pictures_is_an_error(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("place", ["file/a.msh", "/dev/null/a.msh", "/proc/a.msh", "x" * 300 + ".msh"])
-def test_mesh_where_no_file_can_be(place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mesh_to_an_impossible_path_is_refused(place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Status 2 before anything is meshed, and nothing is made."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     assert main(["mesh", "demos/he2022.toml", "--out", str(tmp_path / place)]) == 2
@@ -247,7 +247,7 @@ def test_mesh_where_no_file_can_be(place: str, tmp_path: Path, capsys: pytest.Ca
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "link"])
-def test_mesh_is_not_written_over_anything(
+def test_mesh_does_not_replace_an_existing_file(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """`mesh --out` onto what exists: status 2 and --overwrite named; a folder not even with it."""
@@ -280,7 +280,7 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
-def test_commands_that_compute_nothing_under_mpirun(out: Path, run_script: Run, tmp_path: Path) -> None:
+def test_serial_commands_under_mpirun_run_once(out: Path, run_script: Run, tmp_path: Path) -> None:
     """On two ranks: each is done once, by rank 0, and ends; each says what it says once."""
     done = run_script("-c", ALONE, "demos/he2022.toml", str(tmp_path / "a.msh"), str(out), ranks=2, timeout=100.0)
     assert done.returncode == 0, done.stderr

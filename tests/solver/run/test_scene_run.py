@@ -45,7 +45,9 @@ def on_one_rank(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> li
 
 
 @pytest.mark.parametrize("ranks", [2, 4])
-def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path) -> None:
+def test_results_do_not_depend_on_ranks(
+    ranks: int, on_one_rank: list[dict[str, object]], run_script: Run, tmp_path: Path
+) -> None:
     """He's pair with three friction coefficients on 1, 2 and 4 ranks: the same within 1e-8. Each gear is condensed
     once, its coarse companion too; every position of both is searched once, the odd ones of four by rank 0, the others
     by rank 1, and two more, a rank each, where the first of them closes the pitch."""
@@ -59,7 +61,7 @@ def test_ranks_agree(ranks: int, on_one_rank: list[dict[str, object]], run_scrip
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == ranks
 
 
-def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> None:
+def test_helical_results_do_not_depend_on_ranks(run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair, one gear and, of three friction coefficients that close the pitch at different positions,
     one or two a rank: as on one rank within 1e-8. Two ranks have the last position at hand when one of two coefficients
     closes at the one before."""
@@ -79,7 +81,9 @@ def test_ranks_agree_in_three_dimensions(run_script: Run, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(("rank", "number", "complete"), [(0, 1, 0), (1, 3, 4)])
-def test_failing_rank_ends_the_run(rank: int, number: int, complete: int, run_script: Run, tmp_path: Path) -> None:
+def test_failing_rank_ends_the_run_on_all_ranks(
+    rank: int, number: int, complete: int, run_script: Run, tmp_path: Path
+) -> None:
     """An unexpected error on one of three ranks: its message and where it was raised, status 1, no hang; the positions
     of the turns before are kept, two of each."""
     out = tmp_path / "out"

@@ -76,7 +76,7 @@ def followed(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("friction", ["0.0", "0.1"])
-def test_ranks_agree(friction: str, worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_does_not_depend_on_ranks(friction: str, worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """He's pair without and with friction, K/H three times as large on the wheel, on 1, 2 and 4 ranks: the same blocks
     and depths within 1e-8."""
     settings = (*SHORT, *WEAR, "--set", f"contact.friction={friction}")
@@ -90,7 +90,7 @@ def test_ranks_agree(friction: str, worn_pair: Path, run_script: Run, tmp_path: 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("how", ["kill-before-18", "full-14"])
-def test_stopped_and_resumed(how: str, followed: Path, run_script: Run, tmp_path: Path) -> None:
+def test_interrupted_wear_study_is_resumed(how: str, followed: Path, run_script: Run, tmp_path: Path) -> None:
     """Killed while the fourth block is written, or the disk full at the second; resumed on two ranks, the meshes
     following the wear in between: the same as never stopped within 1e-8. Resumed once more nothing is left to do."""
     whole, halves = followed, tmp_path / "halves"
@@ -107,7 +107,7 @@ def test_stopped_and_resumed(how: str, followed: Path, run_script: Run, tmp_path
     assert "resumed after 400000 of 400000 cycles" in (halves / "run.log").read_text(encoding="utf-8")
 
 
-def test_another_scenes_study_is_not_resumed(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_study_of_another_scene_is_not_resumed(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """With another K/H: status 2, and what was there stays."""
     out = shutil.copytree(worn_pair, tmp_path / "out")
     more = (*SHORT, *WEAR, "--set", "wear.wheel_mm2_per_N=4e-10", "--resume")
@@ -115,7 +115,7 @@ def test_another_scenes_study_is_not_resumed(worn_pair: Path, run_script: Run, t
     assert blocks(out) == pytest.approx(blocks(worn_pair))
 
 
-def test_worn_pair_is_a_scene(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_worn_pair_is_solved_from_its_own_scene(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """The worn pair solved from its own scene: the same transmission error within 3e-4 of the wear, on a finer mesh
     within 2 % of it; and less its mean it is not what it was at the beginning. Its folder is a run to which nothing is
     left to add."""
@@ -138,7 +138,7 @@ def errors(out: Path) -> np.ndarray:
     return np.array([position["transmission_error_um"] for position in summary["positions"]])
 
 
-def test_measured_flanks_wear_on(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
+def test_wear_continues_from_flank_charts(worn_pair: Path, run_script: Run, tmp_path: Path) -> None:
     """Worn to 100,000 cycles and, from the charts that it left, on to 400,000, against one study: depths within the
     errors of the blocks."""
     scene = worn_pair / "worn_100000" / "scene.toml"
@@ -151,7 +151,7 @@ def test_measured_flanks_wear_on(worn_pair: Path, run_script: Run, tmp_path: Pat
 
 
 @pytest.mark.parametrize("blocks_", ["implicit", "explicit"])
-def test_helical_pair(blocks_: str, run_script: Run, tmp_path: Path) -> None:
+def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_script: Run, tmp_path: Path) -> None:
     """A coarse helical pair in 3D with friction: depths nowhere negative, both gears' volumes in the ratio of their
     K/H and of how often a tooth meets, and the map of the worn flanks drawn where pictures are asked for."""
     scene = tmp_path / "helical.toml"

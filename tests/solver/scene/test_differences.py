@@ -16,7 +16,7 @@ from tests.support.gear_cases import spur_scene
 CHART = "diameter_mm,depth_um\n140,0\n156,{depth}\n"
 
 
-def test_keys_and_both_values() -> None:
+def test_differing_keys_are_named_with_both_values() -> None:
     """The torque alone; a section and a key that one of them lacks; of five keys the first three."""
     kept = spur_scene("load.torque_Nm=100")
     assert differences(kept, spur_scene("load.torque_Nm=171")) == "load.torque_Nm = 171 (kept: 100)"
@@ -27,7 +27,7 @@ def test_keys_and_both_values() -> None:
     assert found.count("(kept: ") == 3 and found.endswith(", 2 more")
 
 
-def test_what_makes_no_other_scene() -> None:
+def test_title_output_and_deflected_flanks_are_no_difference() -> None:
     """The title, the output, and deflected flanks, which a run has come to by itself."""
     scene = spur_scene()
     assert differences(scene, spur_scene("title='other'", "output.fields=true")) == ""
@@ -36,7 +36,7 @@ def test_what_makes_no_other_scene() -> None:
     assert differences(kept, spur_scene("load.torque_Nm=171")).count("(kept: ") == 1
 
 
-def test_charts(tmp_path: Path) -> None:
+def test_flank_charts_differ_by_content(tmp_path: Path) -> None:
     """One that says the same elsewhere is no other one."""
     for name, depth in (("a", 3), ("b", 3), ("c", 4)):
         (tmp_path / f"{name}.csv").write_text(CHART.format(depth=depth), encoding="utf-8")
@@ -45,7 +45,7 @@ def test_charts(tmp_path: Path) -> None:
     assert differences(a, c) == "another chart as wheel.flank_csv"
 
 
-def test_what_a_refused_run_says(tmp_path: Path) -> None:
+def test_refused_resume_names_the_difference(tmp_path: Path) -> None:
     """The keys; the version where none differs; that the kept scene cannot be read."""
     scene, other = spur_scene(), {"fingerprint": "of another one"}
     keep_scene(spur_scene("load.torque_Nm=100"), RunFolder(tmp_path))

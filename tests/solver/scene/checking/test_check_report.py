@@ -1,4 +1,7 @@
-"""What `evolvent check` prints: charts, columns, signs, warnings, and no paper where none was asked for."""
+"""What `evolvent check` prints: gear data, charts, columns, signs, warnings; a paper only where one is asked for.
+
+The derived gear data are compared with the figures of the three papers (external).
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from evolvent.scene.checking.check_report import overview
-from evolvent.scene.scene import load_scene
+from evolvent.scene.scene import load_scene, scene_from_text
 from tests.support.gear_cases import ROOT, spur_scene
+from tests.support.scene_texts import DEMOS, HE, YANG
 
 SCENES = ("yang2022", "he2022", "zhang2023")
 STUDY = ("Yang", "Eq. 4", "K = ")
@@ -19,7 +23,7 @@ def text_of(name: str, *settings: str) -> str:
     return overview(load_scene(ROOT / f"demos/{name}.toml", settings))
 
 
-def test_charts_are_said(tmp_path: Path) -> None:
+def test_flank_charts_are_reported(tmp_path: Path) -> None:
     """Problem: a wheel whose chart lacks 7.5 µm at most, a pinion as designed. Exact: the file's name and 7.5; scenes
     without charts have no such rows."""
     path = tmp_path / "worn_after_a_million.csv"
@@ -31,7 +35,7 @@ def test_charts_are_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_columns_and_signs(name: str) -> None:
+def test_report_columns_and_signs(name: str) -> None:
     """A skip's name ends before its sentence begins, and no zero has a sign, nor a backlash of rounded data: Yang's
     centre distance takes 0.04 µm, which is to be seen."""
     text = text_of(name)
@@ -41,7 +45,7 @@ def test_columns_and_signs(name: str) -> None:
     assert backlash and backlash[1] == ("-0.04" if name == "yang2022" else "0.00")
 
 
-def test_the_study_stands_where_it_is_asked_for() -> None:
+def test_paper_comparison_is_reported_on_request_only() -> None:
     """Yang's Eq. 4 and K factors: with output.compare, and nowhere else."""
     compared = 'output.compare="yang2022"'
     assert all(word in text_of("yang2022") for word in STUDY)
@@ -51,7 +55,7 @@ def test_the_study_stands_where_it_is_asked_for() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_symbol_is_one_thing(name: str) -> None:
+def test_report_symbols_are_unique(name: str) -> None:
     """No symbol stands for two quantities (b is the face width, b_H Hertz' half-width); a variant of the row above is
     indented."""
     rows = re.findall(r"^  (?! )(.{42})(\S+) {2,}", text_of(name), re.MULTILINE)
@@ -61,9 +65,88 @@ def test_a_symbol_is_one_thing(name: str) -> None:
     assert "width 2b_H " in text_of(name)
 
 
-def test_warnings_come_with_the_estimate() -> None:
+def test_coarse_mesh_and_tetrahedra_are_warned_of() -> None:
     """Fewer than two elements across the contact, and tetrahedra, are warned of; a standard mesh is not."""
     assert "about 1.7 elements wide; below 2" in text_of("yang2022", "mesh.level=quick")
     assert "about 0.5 elements wide; below 2" in text_of("he2022", "mesh.elements_per_contact_width=0.5")
     assert "Tetrahedra are cut from" in text_of("he2022", "mesh.shape=tetrahedron")
     assert "Warnings" not in text_of("yang2022", "mesh.level=standard")
+
+
+FIGURES = {
+    "yang2022": [
+        ("reference diameter", "40.818 144.063"),
+        ("base radius", "19.1994 67.7626"),
+        ("transverse pressure angle", "19.8241"),
+        ("without backlash, from x1 + x2", "20.7598"),
+        ("transverse base pitch", "7.0961"),
+        ("transverse contact ratio", "1.7740"),
+        ("overlap ratio", "1.2419"),
+        ("total contact ratio", "3.0159"),
+        ("normal tooth thickness at the tip", "0.6934 1.3455"),  # printed 0.693/1.346
+        ("diameter at start of active profile", "38.540 140.607"),
+        ("base helix angle", "27.5402"),
+        ("working pitch diameter", "41.065 144.935"),
+        ("dedendum of the rack", "1.60 1.60"),
+        ("addendum of the rack", "1.30 1.35"),
+        ("normal force on the flanks", "14685.3"),
+        ("contact line length, shortest", "31.18"),
+        ("contact line length, mean", "33.81"),
+        ("contact line length, longest", "34.65"),
+        ("p0 at the pitch point, mean length", "1579.3"),
+        ("p0 at the pitch point, shortest length", "1644.5"),
+        ("p0 at the start of engagement, mean length", "3008.1"),
+        ("Eq. 4 of Yang 2022 with K = 1", "1619.4"),
+        ("with K = 1.25·1.293·1.1·1.2257", "2390.6"),
+        ("pinion rotation of one engagement", "63.866"),  # printed 63.9
+    ],
+    "he2022": [
+        ("reference diameter", "150.000 150.000"),
+        ("base radius", "70.4769 70.4769"),
+        ("operating pressure angle", "20.0000"),
+        ("transverse base pitch", "8.8564"),
+        ("transverse contact ratio", "1.7547"),
+        ("normal tooth thickness at the tip", "2.3263 2.3263"),  # printed 2.326
+        ("diameter at start of active profile", "145.420 145.420"),
+        ("normal force on the flanks", "2412.1"),
+        ("p0 at the pitch point, shortest length", "587.7"),
+    ],
+    "zhang2023": [
+        ("reference diameter", "75.900 105.800"),
+        ("base radius", "36.0926 50.3109"),
+        ("transverse pressure angle", "18.0000"),
+        ("operating pressure angle", "19.2136"),
+        ("transverse base pitch", "6.8720"),
+        ("transverse contact ratio", "2.1413"),
+        ("normal tooth thickness at the tip", "1.0808 1.2904"),  # printed 1.081/1.290
+        ("diameter at start of active profile", "73.098 102.452"),
+        ("addendum of the rack", "1.25 1.32"),
+        ("dedendum of the rack", "1.57 1.50"),
+        ("tip shortening that keeps the clearance", "0.0093"),
+    ],
+}
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_report_has_the_figures_of_the_papers(name: str) -> None:
+    """Every figure of the three gear pairs to its last printed digit (exact recomputations from the printed data)."""
+    text = re.sub(" +", " ", overview(load_scene(DEMOS / f"{name}.toml")))
+    for label, values in FIGURES[name]:
+        line = next((line for line in text.splitlines() if line.strip().startswith(label)), "")
+        assert line.endswith(" " + values), f"{label}: wanted {values}, found {line!r}"
+
+
+def test_torque_on_the_wheel_gives_the_same_load() -> None:
+    """60/17 times the torque on the wheel is, without friction, the same load."""
+    on_wheel = scene_from_text(YANG, [f"load.torque_Nm={250 * 60 / 17}", "load.on=wheel"])
+    assert " 14685.3" in overview(on_wheel)
+
+
+def test_wear_depth_is_estimated() -> None:
+    """He's pair: a million meshes under half the load take 7.25 µm off the start of the active profile; with the load
+    over the mean number of pairs, the contact ratio, 2/ε_α times as much."""
+    scene = scene_from_text(HE, ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1.3832e-10"])
+    row = re.search(r"depth at the ends of the path of contact +h +µm +(\S+) +(\S+)", overview(scene))
+    assert row is not None
+    wanted = 7.25 * 2.0 / scene.gear_pair().transverse_contact_ratio
+    assert float(row[1]) == pytest.approx(wanted, rel=2e-3) and float(row[2]) == 0.0

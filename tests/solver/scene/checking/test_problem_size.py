@@ -36,7 +36,7 @@ def yang(*settings: str) -> Scene:
     [("hexahedron", 1, False), ("hexahedron", 2, False), ("hexahedron", 2, True), ("tetrahedron", 1, False)],
 )
 @pytest.mark.parametrize("make", [spur_scene, helical_scene])
-def test_sizes_of_meshes(make: Callable[..., Scene], shape: str, order: int, long_way: bool) -> None:
+def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str, order: int, long_way: bool) -> None:
     """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
     space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
     off = ['skip.off=["coarse-body"]'] if long_way else []
@@ -50,7 +50,7 @@ def test_sizes_of_meshes(make: Callable[..., Scene], shape: str, order: int, lon
 
 @pytest.mark.parametrize("level", ["quick", "standard", "fine"])
 @pytest.mark.parametrize("name", ["yang2022", "he2022", "zhang2023"])
-def test_sizes_of_sections(name: str, level: str) -> None:
+def test_section_size_is_that_of_the_mesh(name: str, level: str) -> None:
     """Exact for the papers' pairs at every level, counted on the second-order section."""
     scene = load_scene(ROOT / f"demos/{name}.toml", [f"mesh.level={level}"])
     for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(scene), strict=True):
@@ -69,26 +69,26 @@ MEASURED = [
 
 
 @pytest.mark.parametrize(("scene", "mebibytes"), MEASURED)
-def test_memory_of_runs(scene: Scene, mebibytes: float) -> None:
+def test_memory_estimate_of_measured_runs(scene: Scene, mebibytes: float) -> None:
     """Within 20 % of what runs on one rank took (docs/benchmark.md), from 1 GB on."""
     assert memory_megabytes(scene) == pytest.approx(MEBIBYTE * mebibytes, rel=0.2)
 
 
-def test_memory_of_small_runs() -> None:
+def test_memory_estimate_of_small_runs() -> None:
     """A plane run took 157 MB, with whole gears 630: told within a factor of two, so that small machines are let."""
     quick = spur_scene("mesh.level=quick")
     assert 150 < memory_megabytes(quick) < 330
     assert 600 < memory_megabytes(spur_scene("mesh.level=quick", "skip.off=one-sector")) < 1300
 
 
-def test_ranks_add_up() -> None:
+def test_memory_estimate_of_several_ranks() -> None:
     """Two ranks eliminate both gears at once; a third one only runs."""
     one, two, three = (memory_megabytes(yang("mesh.level=standard"), ranks) for ranks in (1, 2, 3))
     assert 1.6 * one < two < 2.0 * one
     assert three - two == pytest.approx(problem_size.MEGABYTES_BASE[3])
 
 
-def test_demos_fit() -> None:
+def test_memory_estimate_of_the_demos() -> None:
     """The papers' pairs at quick and standard want less than 24 GB, also on two ranks; Yang's at fine does not."""
     for name in ("yang2022", "he2022", "zhang2023"):
         for level in ("quick", "standard"):
@@ -113,7 +113,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
         (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 104.9 N·m on --level quick does"),
     ],
 )  # fmt: skip
-def test_what_fits_is_named(
+def test_remedy_names_the_finest_mesh_that_fits(
     settings: list[str], megabytes: float, key: str, remedy: str, machine: Callable[[float], None]
 ) -> None:
     """The finest level that fits, else a number of elements; where that is a setting, it does fit."""
@@ -124,7 +124,7 @@ def test_what_fits_is_named(
     assert f"{megabytes / 1e3:.3g} GB" in problem.allowed
 
 
-def test_fewer_elements_fit(machine: Callable[[float], None]) -> None:
+def test_remedy_names_the_number_of_elements_that_fits(machine: Callable[[float], None]) -> None:
     """The number of elements that is named fits, a tenth more does not."""
     machine(2e3)
     problem = room_problem(yang("mesh.level=quick"), memory_megabytes)
@@ -135,7 +135,7 @@ def test_fewer_elements_fit(machine: Callable[[float], None]) -> None:
     assert needed[0] <= 2e3 < needed[1]
 
 
-def test_results_count(machine: Callable[[float], None]) -> None:
+def test_memory_of_results_is_counted(machine: Callable[[float], None]) -> None:
     """1000 positions of three pitches at 50 coefficients are 150,000 results, too many for any machine of this size;
     what is told of a plane one is no less than its arrays, and no more than 2.5 times."""
     machine(24e3)
@@ -149,14 +149,14 @@ def test_results_count(machine: Callable[[float], None]) -> None:
     assert 1e-6 * len(pickle.dumps(result)) < told < 2.5e-6 * len(pickle.dumps(result))
 
 
-def test_one_rank_where_two_do_not_fit(machine: Callable[[float], None]) -> None:
+def test_remedy_names_one_rank_where_two_do_not_fit(machine: Callable[[float], None]) -> None:
     machine(15e3)
     problem = room_problem(yang("mesh.level=standard"), memory_megabytes, 2)
     assert problem is not None and problem.remedy.startswith("run on one rank")
 
 
 @pytest.mark.parametrize("command", ["run", "mesh"])
-def test_commands_refuse_what_does_not_fit(
+def test_commands_refuse_a_mesh_that_does_not_fit(
     command: str, machine: Callable[[float], None], tmp_path: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -172,7 +172,7 @@ def test_commands_refuse_what_does_not_fit(
 
 
 @pytest.mark.parametrize("command", ["run", "mesh"])
-def test_force_goes_on(
+def test_force_computes_a_mesh_that_does_not_fit(
     command: str, machine: Callable[[float], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With --force the command begins what does not fit."""
@@ -190,7 +190,7 @@ def test_force_goes_on(
         main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])
 
 
-def test_check_says_what_does_not_fit(machine: Callable[[float], None]) -> None:
+def test_check_reports_a_mesh_that_does_not_fit(machine: Callable[[float], None]) -> None:
     machine(5e3)
     text = overview(yang("mesh.level=standard"))
     assert "Too large for this machine" in text and "--level quick" in text
@@ -210,7 +210,7 @@ HUGE = [
 ]
 
 
-def test_check_stays_small() -> None:
+def test_check_takes_little_memory() -> None:
     """`evolvent check` of whatever numbers takes less than 200 MB, seen as the largest resident memory of one process
     for all of them. The time limit is a guard against a hang only."""
     code = """
@@ -230,7 +230,7 @@ def test_check_stays_small() -> None:
     assert float(done.stdout.split("megabytes")[1]) < 200
 
 
-def test_too_much_relief(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_relief_that_folds_the_mesh_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A relief deeper than the fine layers below the flank would fold them: the key is named, not the folded cells."""
     out = tmp_path / "pair.msh"
     settings = ["--level", "quick", "--set", "wheel.tip_relief_um=400"]
@@ -240,7 +240,7 @@ def test_too_much_relief(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert not out.exists()
 
 
-def test_two_ranks_refuse_once(run_script: Run) -> None:
+def test_two_ranks_refuse_with_one_message(run_script: Run) -> None:
     """Under mpirun the memory of all ranks on a machine counts; one message, status 2 on all."""
     code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
     arguments = "run", "demos/yang2022.toml", "--out", "/nowhere/out", "--set", "load.torque_Nm=1e-4"

@@ -1,1 +1,1 @@
-"""A scene from start to finish."""
+"""Computing a scene from start to finish."""

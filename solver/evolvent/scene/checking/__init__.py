@@ -1,1 +1,1 @@
-"""What can be said of a scene before it is computed."""
+"""What is reported of a scene before it is computed."""

@@ -25,7 +25,7 @@ HANDS = {1: "right", -1: "left"}
 
 
 class Row(NamedTuple):
-    """A line of a table: name, symbol, unit, and one or two values already written with their digits."""
+    """A line of a table: name, symbol, unit, and one or two formatted values."""
 
     name: str
     symbol: str
@@ -34,7 +34,7 @@ class Row(NamedTuple):
 
 
 def overview(scene: Scene) -> str:
-    """Everything `evolvent check` prints, as one text; symbols of ISO 21771."""
+    """The text that `evolvent check` prints, with the symbols of ISO 21771."""
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     blocks = [
         scene.title,
@@ -50,6 +50,7 @@ def overview(scene: Scene) -> str:
 
 
 def _skip_lines(scene: Scene) -> str:
+    """What the run leaves out, and what it computes the long way."""
     left_out = skipped(scene)
     column = 2 + max((len(skip.name) for skip in left_out), default=0)
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
@@ -63,7 +64,7 @@ def _warning_lines(scene: Scene) -> list[str]:
 
 
 def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:
-    """Aligned columns: name, symbol, unit, values to the right."""
+    """A table with aligned columns: name, symbol, unit, values."""
     lines = [f"{title:<62}" + "".join(f"{head:>13}" for head in heads)]
     for row in rows:
         lines.append(f"  {row.name:<42}{row.symbol:<8}{row.unit:<10}" + "".join(f" {text:>12}" for text in row.values))
@@ -111,7 +112,7 @@ def _gear_rows(pair: GearPair) -> list[Row]:
 
 
 def _chart_rows(scene: Scene) -> list[Row]:
-    """Of flanks as charted, whose depths come on top of the modifications."""
+    """Rows on flank charts, whose depths are added to the modifications; none where there is no chart."""
     charts = [scene.flank_chart(name) for name in GEARS]
     if not any(charts):
         return []
@@ -174,7 +175,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
 
 
 def _paper_rows(estimate: HertzEstimate) -> list[Row]:
-    """Yang et al. 2022, Eq. 4, with and without the load factors that the paper prints."""
+    """Yang et al. 2022, Eq. 4, with and without the load factors of the paper."""
     factors = LoadFactors()
     named = f"K = {factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
     return [
@@ -184,7 +185,7 @@ def _paper_rows(estimate: HertzEstimate) -> list[Row]:
 
 
 def paper_estimate(estimate: HertzEstimate, factors: LoadFactors) -> float:
-    """Yang et al. 2022, Eq. 4, for a scene [MPa]."""
+    """Contact stress by Yang et al. 2022, Eq. 4 [MPa]."""
     pinion = estimate.pair.pinion
     return yang_estimate(
         torque=estimate.pinion_torque,
@@ -228,16 +229,16 @@ def _cost_rows(scene: Scene) -> list[Row]:
 
 
 def _room_line(scene: Scene) -> str:
-    """What `run` will refuse, if it does."""
+    """Why `run` would refuse the scene; empty where it would not."""
     problem = room_problem(scene, memory_megabytes)
     return "" if problem is None else f"\n\nToo large for this machine\n  {problem}"
 
 
 def _positions_name(scene: Scene) -> str:
-    """With friction some are solved again, how many is seen then."""
+    """Name of the row with the number of positions: with friction some are solved more than once."""
     return "positions, at least" if any(scene.contact.friction) else "positions"
 
 
 def positions_to_solve(scene: Scene) -> int:
-    """Positions of the sweep, each once."""
+    """Number of positions of the sweep."""
     return pitches(scene) * scene.sweep.positions

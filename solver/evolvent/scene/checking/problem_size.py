@@ -1,4 +1,4 @@
-"""How large the sectors of a scene become, told without meshing them, and whether a run of it fits into a machine."""
+"""Size and memory of a scene, estimated without meshing it, and whether the machine has this memory."""
 
 from __future__ import annotations
 
@@ -21,68 +21,73 @@ from evolvent_meshes.sector.section import SectorResolution
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
 MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
 DENSE_COPIES = 1.65
-"""Of a run, by dimension, and of its dense matrices. Against what 25 runs of 0.2 to 23 GB took (Yang's pair of both
-orders and shapes up to 829,020 degrees of freedom, He's in 3D; docs/benchmark.md): 12 % less to 35 % more, from 2 GB on
-12 % less to 20 % more."""
+"""Memory of a run by dimension: constant part, part per degree of freedom, and copies of each dense matrix. Compared
+with 25 runs of 0.2 to 23 GB (Yang's pair of both orders and shapes up to 829,020 degrees of freedom, He's in 3D;
+docs/benchmark.md) the estimate is from 12 % low to 35 % high, from 2 GB on from 12 % low to 20 % high."""
 MOST_MODES, SQUARES_PER_TOOTH = 300, 6
-"""In which teeth feel one another (200 in Yang's pair at quick), and square matrices of them for each tooth that is
-looked at (`evolvent.gears.ring.ring_modes`): little, but for hundreds of teeth where far ones are not skipped."""
+"""Modes that couple the teeth of a ring (200 in Yang's pair at quick), and square matrices of this size for each tooth
+(`evolvent.gears.ring.ring_modes`): negligible but for hundreds of teeth where far ones are not skipped."""
 NUMBERS_KEPT = 6
-"""Of a result, over the degrees of freedom of the pinion's loaded flank: 3 plane, 5 in space."""
+"""Numbers kept of a position's result, over the degrees of freedom of the pinion's loaded flank: 3 in 2D, 5 in 3D."""
 MEGABYTES_PER_MESHED_DOF = 6e-4
-"""Of `evolvent mesh`, which keeps both sectors and checks their cells: tetrahedra; hexahedra want 4e-4."""
-Need = Callable[[Scene, int], float]
-"""Memory [MB] that a command needs for a scene on so many ranks of a machine."""
+"""Memory of `evolvent mesh`, which keeps both sectors and checks their cells: of tetrahedra; hexahedra need 4e-4."""
+MemoryEstimate = Callable[[Scene, int], float]
+"""(scene, ranks on the machine) -> memory of a command [MB]."""
 MOST_DOUBLINGS = 60
-"""Of the torque, when one is looked for with which a mesh fits."""
+"""Largest number of doublings of the torque in search of one with which a mesh fits."""
 LEVELS: tuple[Level, ...] = ("fine", "standard", "quick")
 
 
 @dataclass(frozen=True)
 class SectorSize:
-    """Degrees of freedom of a sector, or of its plane section: all, of the loaded flank, of both cut faces."""
+    """Degrees of freedom of a sector, or of its plane section."""
 
     dofs: int
+    """All degrees of freedom."""
     flank: int
+    """Degrees of freedom of the loaded flank."""
     cuts: int
+    """Degrees of freedom of both cut faces."""
 
     def times(self, sectors: int, flanks: int) -> SectorSize:
-        """Of so many sectors as one ring, of which so many flanks are looked at."""
+        """The size of so many sectors joined to a ring, with so many flanks in contact."""
         return SectorSize(sectors * self.dofs, flanks * self.flank, 0)
 
 
 def sector_size(resolution: SectorResolution, order: int, plane: bool) -> SectorSize:
-    """Exact, for order 1 or 2; cutting hexahedra into tetrahedra adds no node.
+    """The exact size of a sector mesh of order 1 or 2; cutting hexahedra into tetrahedra adds no node.
 
-    A section without holes has corners − edges + cells = 1, and its edges count 4 cells and the outline's twice.
+    A section without holes has corners − edges + cells = 1 (Euler), and 4 cells + outline = 2 edges.
     """
-    own = resolution
-    alike, rows = own.back_alike, own.profile_elements // 3
-    inner = own.core_elements + 1 + alike  # columns between the bands of both sides
-    below = own.fillet_elements + own.back_elements - 2 * own.neck_elements + inner  # columns of the rim
-    tooth = rows * (13 * (1 + alike) + own.core_elements + 1 - alike)  # 3 × 3 thin cells, 4 that join, then coarse ones
-    band = own.fillet_elements - 1 + 4 + own.back_elements + 3 * alike
-    cells = tooth + band + own.neck_elements * inner + own.rim_elements * below
-    cut = own.rim_elements + 1
-    tip = 3 * (1 + alike) + own.core_elements + 2
-    back = own.back_elements + rows * (3 if alike else 1)
-    outline = own.profile_elements + own.fillet_elements + back + tip + 2 * cut + below
+    counts = resolution
+    alike, rows = counts.back_alike, counts.profile_elements // 3
+    inner = counts.core_elements + 1 + alike  # columns between the bands of both sides
+    below = counts.fillet_elements + counts.back_elements - 2 * counts.neck_elements + inner  # columns of the rim
+    tooth = rows * (13 * (1 + alike) + counts.core_elements + 1 - alike)  # 3 × 3 thin, 4 joining, then coarse cells
+    band = counts.fillet_elements - 1 + 4 + counts.back_elements + 3 * alike
+    cells = tooth + band + counts.neck_elements * inner + counts.rim_elements * below
+    cut = counts.rim_elements + 1
+    tip = 3 * (1 + alike) + counts.core_elements + 2
+    back = counts.back_elements + rows * (3 if alike else 1)
+    outline = counts.profile_elements + counts.fillet_elements + back + tip + 2 * cut + below
     nodes = 1 + 4 * cells + outline if order == 2 else 1 + cells + outline // 2
-    levels = 2 if plane else 3 * (order * own.face_elements + 1)
-    flank, cuts = order * own.profile_elements + 1, 2 * (order * cut + 1)
+    levels = 2 if plane else 3 * (order * counts.face_elements + 1)
+    flank, cuts = order * counts.profile_elements + 1, 2 * (order * cut + 1)
     return SectorSize(levels * nodes, levels * flank, levels * cuts)
 
 
 def sector_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
-    """(pinion's, wheel's)."""
+    """Sector sizes of (pinion, wheel)."""
     plane = is_plane(scene)
-    pinion, wheel = (sector_size(own, scene.mesh.order, plane) for own in sector_resolutions(scene))
+    pinion, wheel = (sector_size(each, scene.mesh.order, plane) for each in sector_resolutions(scene))
     return pinion, wheel
 
 
 def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
-    """Largest memory [MB] of a run on so many ranks of one machine: of one, one gear's elimination beside the other's
-    finished compliance; of several, both eliminations at once."""
+    """Largest memory [MB] of a run on so many ranks of one machine.
+
+    One rank holds one gear's elimination beside the other gear's compliance, several ranks both eliminations at once.
+    """
     dimension = 2 if is_plane(scene) else 3
     sizes = pinion, _ = _factored_sizes(scene)
     first, second = (
@@ -97,24 +102,24 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
 
 
 def result_count(scene: Scene) -> int:
-    """Positions solved and kept: of all pitches, at all friction coefficients, at all reports of wear."""
+    """Number of archived results: positions of all pitches at all friction coefficients and all reports of wear."""
     pairs = 1 if scene.wear is None else 1 + len(scene.wear.reports)
     return pairs * pitches(scene) * scene.sweep.positions * len(scene.contact.friction)
 
 
 def results_megabytes(scene: Scene) -> float:
-    """Of all results, which are together in memory when tables and pictures are made."""
+    """Memory [MB] of all results, which are loaded together for tables and pictures."""
     return 8e-6 * NUMBERS_KEPT * sector_sizes(scene)[0].flank * result_count(scene)
 
 
 def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
-    """Largest memory [MB] of writing the mesh of both sectors, which the first rank does alone."""
+    """Largest memory [MB] of `evolvent mesh`, where the first rank meshes both sectors."""
     dofs = sum(size.dofs for size in sector_sizes(scene))
     return ranks * MEGABYTES_BASE[2] + MEGABYTES_PER_MESHED_DOF * dofs
 
 
 def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
-    """Of what is eliminated: the sectors, or whole gears."""
+    """Sizes of what is eliminated for (pinion, wheel): a sector, or the whole gear."""
     pinion, wheel = sector_sizes(scene)
     if skips(scene, "one-sector"):
         return pinion, wheel
@@ -123,12 +128,15 @@ def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
 
 
 def _square_megabytes(rows: int) -> float:
+    """Memory [MB] of a dense square matrix."""
     return 8e-6 * rows**2
 
 
-def room_problem(scene: Scene, needed: Need, processes: int = 1) -> InputProblem | None:
-    """What is wrong where the memory that a command needs is more than this machine's, or that of the container; None
-    where it fits. processes: how many of the program run on this machine."""
+def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> InputProblem | None:
+    """The problem where a command needs more memory than this machine or container has, None where it fits.
+
+    needed: memory of the command. processes: ranks on this machine.
+    """
     there, wanted = machine_megabytes(), needed(scene, processes)
     if wanted <= there:
         return None
@@ -145,9 +153,8 @@ def room_problem(scene: Scene, needed: Need, processes: int = 1) -> InputProblem
     return InputProblem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
 
 
-def require_room(scene: Scene, needed: Need, comm: MPI.Comm) -> None:
-    """Raises SceneError on all ranks where the memory of the machine of one of them does not suffice. All must call
-    it."""
+def require_room(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:
+    """Raises SceneError on all ranks where one of their machines has too little memory. Collective."""
     node = comm.Split_type(MPI.COMM_TYPE_SHARED)
     processes = node.size
     node.Free()
@@ -157,18 +164,18 @@ def require_room(scene: Scene, needed: Need, comm: MPI.Comm) -> None:
 
 
 def gigabytes(megabytes: float) -> str:
-    """With three digits."""
+    """Memory in GB with three digits."""
     value = megabytes / 1e3
     return f"{value:.3g} GB" if value < 1e3 else f"{value:,.0f} GB" if value < 1e6 else f"{value:.1e} GB"
 
 
 def counted(number: int) -> str:
-    """A count for people: every digit up to a thousand million."""
+    """A count with separators between thousands, with an exponent from 1e9 on."""
     return f"{number:,}" if number < 1e9 else f"{number:.1e}"
 
 
-def _remedy(scene: Scene, needed: Need, processes: int, there: float) -> str:
-    """The finest setting with which it fits."""
+def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) -> str:
+    """The finest settings with which the command fits into the memory `there` [MB], in words."""
     if processes > 1 and needed(scene, 1) <= there:
         return "run on one rank"
     for words, other in _coarser(scene):
@@ -184,8 +191,8 @@ def _remedy(scene: Scene, needed: Need, processes: int, there: float) -> str:
 
 
 def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
-    """Options of the command line, and the scene with them: without what is computed the long way, then at coarser
-    levels, then with fewer elements across the contact, down to the fewest."""
+    """Ever coarser scenes, each with the command-line options for it: first with all shortcuts, then at coarser levels,
+    then with fewer elements across the contact."""
     long_ways = [name for name in ("one-sector", "coarse-body", "plane") if name in scene.skip.off]
     if long_ways:
         kept = SkipSection(off=tuple(name for name in scene.skip.off if name not in long_ways))

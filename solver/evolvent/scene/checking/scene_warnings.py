@@ -1,4 +1,4 @@
-"""What a scene says of its results before anything is computed: sentences that `evolvent check` ends with."""
+"""Warnings on the accuracy of a scene, before anything is computed; `evolvent check` ends with them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from evolvent.scene.meshing.modifications import folding_warnings, modification_
 from evolvent.scene.scene import Scene
 
 FEWEST_CELLS = 2.0
-"""Across the contact width 2b. Below, peak pressures are off by 15 % and more; with 3, by 3 % (docs/benchmark.md)."""
+"""Fewest elements across the contact width 2b without a warning: with fewer, errors of peak pressures reach 15 % and
+more, with 3 they are 3 % (docs/benchmark.md)."""
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 
 
 def scene_warnings(scene: Scene) -> tuple[str, ...]:
-    """Of a scene, a sentence each."""
+    """The warnings on a scene, one sentence each."""
     return tuple(_expected(scene))
 
 
@@ -43,5 +44,5 @@ def _expected(scene: Scene) -> Iterator[str]:
 
 
 def few_cells() -> str:
-    """What fewer cells than `FEWEST_CELLS` mean."""
+    """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
     return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for looking only: {FINER}."

@@ -1,1 +1,1 @@
-"""The keys of a scene file, and what is said of a wrong one."""
+"""The keys of a scene file, and the messages on wrong ones."""

@@ -1,7 +1,7 @@
-"""The command line `evolvent`, also `python -m evolvent`: parses, calls the API, turns failures into exit statuses.
+"""The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun the ranks share `run`, where only
-rank 0 prints, and a rank that fails says so and ends the run on all ranks; all else is done by rank 0 alone.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in `run`, in
+which only rank 0 prints; a rank that fails alone prints its message and ends all ranks. Rank 0 alone does all else.
 """
 
 from __future__ import annotations
@@ -36,11 +36,14 @@ from evolvent_meshes.files import require_writable
 if TYPE_CHECKING:
     from evolvent.scene.scene import Scene
 
-# whatever a command needs beyond the scene is imported inside it: `check` and `info` must not wait for PETSc or pyvista
+# commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
 RESUME = "; `evolvent run ... --resume` continues"
-SHARED = "run"  # the command that ranks do together
-PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"  # evolvent.fem.backend.petsc reads it
+"""Appended to the message on a signal that ends a run."""
+SHARED = "run"
+"""The command that all ranks take part in."""
+PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
+"""Environment variable that evolvent.fem.backend.petsc reads."""
 
 app = typer.Typer(
     name="evolvent",
@@ -60,14 +63,16 @@ Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything 
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-def _version(wanted: bool) -> None:
+
+def _print_version(wanted: bool) -> None:
+    """Prints the version and ends the program, if it is wanted."""
     if wanted:
         typer.echo(f"evolvent {__version__}")
         raise typer.Exit
 
 
 Version = Annotated[
-    bool, typer.Option("--version", is_eager=True, callback=_version, help="Print the version.")
+    bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version.")
 ]
 
 
@@ -104,8 +109,8 @@ def run(
     """
     with reported(parallel=True, advice=RESUME):
         loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)
-        found = "found --resume and --overwrite; allowed: one of them"
-        _require(not (resume and overwrite), f"--overwrite: {found}; remedy: --resume keeps what --overwrite removes")
+        both = "--overwrite: found --resume and --overwrite; allowed: one of them"
+        _require(not (resume and overwrite), f"{both}; remedy: --resume keeps what --overwrite removes")
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         _require_room(loaded, "run", force, MPI.COMM_WORLD)
@@ -150,8 +155,8 @@ def mesh(
         loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
         _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
         require_writable(out)
-        there = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
-        _require(overwrite or not (out.exists() or out.is_symlink()), there)
+        exists = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
+        _require(overwrite or not (out.exists() or out.is_symlink()), exists)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
         _require_room(loaded, "mesh", force, MPI.COMM_SELF)
         from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
@@ -175,10 +180,10 @@ def plot(
 ) -> None:
     """Draw the pictures of a finished run again."""
     with reported():
-        found = "no summary.json in it" if directory.is_dir() else "no such directory"
+        missing = "no summary.json in it" if directory.is_dir() else "no such directory"
         begun = " --resume" if (directory / "results/state.npz").exists() else ""
         remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
-        wanted = f"{directory}: found {found}; allowed: the --out of a finished run; remedy: {remedy}"
+        wanted = f"{directory}: found {missing}; allowed: the --out of a finished run; remedy: {remedy}"
         _require((directory / "summary.json").is_file(), wanted)
         from evolvent.run.redraw import plot_folder
 
@@ -209,15 +214,15 @@ def wear_coefficient(
 
         test = PinOnDisc(force, diameter)
         read = [Record.read(path, 1e3 * run_in) for path in records]
-        found = coefficient(read, test)
-        for record, own in zip(read, found.each):
-            typer.echo(f"{record.name}: {len(record.depth)} lines, K/H = {own:.4e} mm²/N")
-        rate = 1e9 * found.value * test.pressure
+        estimate = coefficient(read, test)
+        for record, value in zip(read, estimate.each):
+            typer.echo(f"{record.name}: {len(record.depth)} lines, K/H = {value:.4e} mm²/N")
+        rate = 1e9 * estimate.value * test.pressure
         typer.echo(
-            f"K/H = {found.value:.4e} mm²/N, 95 % between {found.low:.4e} and {found.high:.4e}; at "
+            f"K/H = {estimate.value:.4e} mm²/N, 95 % between {estimate.low:.4e} and {estimate.high:.4e}; at "
             f"{test.pressure:.3f} MPa {rate:.4g} µm per km"
         )
-        if found.low <= 0.0:
+        if estimate.low <= 0.0:
             typer.echo("evolvent: warning: the interval reaches below 0, which no K/H can: give more records", err=True)
 
 
@@ -231,7 +236,7 @@ def info() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit status. arguments: as sys.argv[1:], which is the default."""
+    """Runs the command line and returns the exit status. arguments: by default sys.argv[1:]."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     if MPI.COMM_WORLD.rank > 0 and given[:1] != [SHARED]:
         return Exit.DONE
@@ -253,7 +258,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _load(
     path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
 ) -> Scene:
-    """The scene, read on the first rank and sent to the others: either all ranks have it or all fail alike."""
+    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks."""
     from evolvent.scene.scene import load_scene
 
     result: Scene | SceneError | None = None
@@ -272,7 +277,7 @@ def _load(
 
 
 def _require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
-    """Raises SceneError where the machine has too little memory for the command, unless it is forced."""
+    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective."""
     from evolvent.scene.checking.problem_size import memory_megabytes, mesh_megabytes, require_room
 
     if not force:
@@ -280,7 +285,7 @@ def _require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> No
 
 
 def _require(holds: bool, message: str) -> None:
-    """A usage error unless `holds`; `message` says key, found, allowed and remedy."""
+    """Raises a usage error unless `holds`. message: with key, found, allowed and remedy."""
     if not holds:
         raise typer.BadParameter(message)
 

@@ -142,8 +142,8 @@ class GearSection(SceneSection):
         le=500,
     )
     flank_csv: str | None = key(
-        "chart of the loaded flank as measured or worn, what is missing of the designed one; looked for in the "
-        "scene's folder, or, where --set names it, in the folder where the program runs",
+        "chart of the loaded flank, measured or worn: material that is missing from the designed flank; a path "
+        "relative to the scene's folder, or, given by --set, to the current folder",
         "the name of a CSV file with diameter_mm, depth_um and perhaps z_mm",
         "delete the key for flanks as designed",
         default=None,

@@ -13,13 +13,14 @@ from mpi4py import MPI
 
 from evidence.benchmark.subdivision import halved
 from evidence.checkout import DEMOS
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.coarse_run import companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -160,8 +161,8 @@ def _solved(scene: Scene, coarse: bool = False) -> RunData:
 def _reference(problem: BarProblem, halvings: int) -> RunData:
     scene = problem.with_mesh(problem.reference)
 
-    def mesh(scene: Scene, member: Member) -> MeshData:
-        fine = gear_mesh(scene, member, adapted=_finer_body) if problem.fine_body else gear_mesh(scene, member)
+    def mesh(gears: GearProblem, member: Member) -> MeshData:
+        fine = gear_mesh(gears, member, adapted=_finer_body) if problem.fine_body else gear_mesh(gears, member)
         for _ in range(halvings):
             fine = halved(fine)
         return fine

@@ -24,11 +24,12 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
 from evolvent.run.context import peak_memory_MB
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 
@@ -62,7 +63,7 @@ class PitchFacts:
 def measured(own: Scene) -> PitchFacts:
     """The pitch of a scene, solved."""
     comm, start = MPI.COMM_WORLD, time.process_time()
-    preparation = prepare_model(own, comm)
+    preparation = prepare_model(gear_problem(own), comm)
     pitch, state = pitch_of(own), initial_state(own.contact.friction)
     seconds: list[float] = []
     swept: list[SweptPosition] = []
@@ -92,7 +93,7 @@ def measured(own: Scene) -> PitchFacts:
 def factored(own: Scene) -> PitchFacts:
     """Both sectors assembled and factored once."""
     start, began = time.process_time(), time.perf_counter()
-    meshes = [gear_mesh(own, member) for member in Member]
+    meshes = [gear_mesh(gear_problem(own), member) for member in Member]
     meshed = time.perf_counter()
     assembling = factoring = 0.0
     for mesh, material in zip(meshes, own.materials()):

@@ -23,6 +23,7 @@ from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.periodic_pitch import sweep_closed
 from evolvent.gears.sweep.pitch_sweep import initial_state
 from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.gear_problem import gear_problem
 
 ELEMENTS, POSITIONS = 1.7, 20
 PARTS = (
@@ -69,7 +70,7 @@ def measured(elements: float, positions: int, frictions: str) -> list[ProfileRow
     own = scene(elements, f"contact.friction=[{frictions}]", f"sweep.positions={positions}")
     profiler = cProfile.Profile()
     profiler.enable()
-    model = prepare_model(own, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(own), MPI.COMM_SELF).model
     μ = own.contact.friction
     list(sweep_closed(model, pitch_of(own), μ, initial_state(μ), MPI.COMM_SELF))
     profiler.disable()

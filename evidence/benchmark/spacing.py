@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from mpi4py import MPI
 
 from evidence.benchmark.bars import DEMOS, FIGURES, HELICAL, BarRow
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 
 COUNTS = 12, 20, 21, 33, 40

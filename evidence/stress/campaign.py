@@ -25,7 +25,7 @@ from evidence.stress.random_scenes import random_scene
 from evidence.stress.random_wear import random_study
 from evidence.stress.wear_outcomes import WearOutcome, WearVerdict, wear_outcome_of
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.scene.skips import is_plane
+from evolvent.scene.gear_problem import gear_problem
 
 PATIENCE = 900.0
 """Seconds after which a scene has hung. Nearly all take one to twenty; 206, a wide pair of plastic whose friction
@@ -108,7 +108,7 @@ def summary(outcomes: list[Outcome]) -> str:
     counts = Counter(o.verdict for o in outcomes)
     rows = [[verdict.value, str(counts[verdict])] for verdict in Verdict]
     solved = [o for o in outcomes if o.verdict is Verdict.CONVERGED]
-    flat = [o for o in solved if is_plane(random_scene(o.seed))]
+    flat = [o for o in solved if gear_problem(random_scene(o.seed)).is_plane]
     words = f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}."
     if solved:
         means = [float(np.mean([o.iterations for o in some])) if some else 0.0 for some in (solved, flat)]

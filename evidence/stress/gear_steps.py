@@ -10,6 +10,7 @@ from evidence.stress.sheets import Cell, Sheet, sheet_of
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.results.contact_slices import balance_error
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 
 SPUR = DEMOS / "he2022.toml"
@@ -24,7 +25,7 @@ def spur_scene(*settings: str) -> Scene:
 
 def spur_pair_at_steps() -> Sheet:
     """Step × μ: four positions, the last one always the same."""
-    model = prepare_model(spur_scene(), MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(spur_scene()), MPI.COMM_SELF).model
     return sheet_of(
         ("position_step", "A spur pair (He, quick), position steps from 0.01° to 5°", "worst balance error"),
         ("μ", [f"{μ:g}" for μ in FRICTIONS]),

@@ -18,6 +18,7 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.results.contact_slices import pitch_imbalance
 from evolvent.run.certificates import BalanceError, PitchImbalance, certify, certify_pitch
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.mesh.mesh_data import MeshError
 
@@ -73,7 +74,7 @@ def outcome_of(scene: Scene, seed: int) -> Outcome:
 
 def _solved(scene: Scene, seed: int) -> Outcome:
     """Again on deflected flanks where the pitch alone is out of balance."""
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     found, pitch = _swept(model, scene, seed)
     return _swept(replace(model, deflected=True), scene, seed)[0] if pitch else found
 

@@ -25,6 +25,7 @@ from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.certificates import BalanceError
 from evolvent.run.wear_run import certify_positions, law_of, settings_of
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import VolumeLost
 from evolvent.wear.block_stepping import WearState, WearStopped
@@ -200,7 +201,7 @@ def gear_states(scene: Scene) -> Iterator[Accepted]:
     """The states of a gear pair, certified as a run does. Raises what a run does."""
     wear = scene.wear
     assert wear is not None
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(model, pitch, scene.contact.friction[0], law_of(wear))
     before: WearState[PitchState] | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -85,7 +86,7 @@ def condensed_gear(
     gear: GearParameters,
     mesh: MeshData,
     material: Material,
-    teeth: list[int],
+    teeth: Sequence[int],
     member: Member,
     carries_pressure: bool,
     safety: float = SAFETY,

@@ -17,8 +17,9 @@ from evolvent.run.certificates import PitchImbalance, certify, certify_pitch
 from evolvent.run.context import RunContext
 from evolvent.run.progress import POSITIONS
 from evolvent.run.start import ResumePoint, checked_meshes, open_archive, prepare_gears, timings_of
+from evolvent.scene.gear_problem import gear_options, gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import pitches, skips, with_deflected_flanks
+from evolvent.scene.skips import with_deflected_flanks
 from evolvent_meshes.arrays import Floats
 
 
@@ -162,7 +163,7 @@ def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> 
 def friction_groups(scene: Scene) -> list[slice]:
     """The friction coefficients that share gears, search and compliance: all in one group, or each in its own."""
     count = len(scene.contact.friction)
-    shared = count == 1 or skips(scene, "reuse")
+    shared = count == 1 or not gear_options(scene).condensed_anew
     return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
 
 
@@ -175,7 +176,7 @@ def _joined_groups(groups: Sequence[list[SweptPosition]]) -> Iterator[SweptPosit
 
 def pitch_of(scene: Scene) -> Pitch:
     """The pinion rotations that a scene asks for."""
-    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches(scene))
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, gear_problem(scene).pitches)
 
 
 def _log_line(position: SweptPosition) -> str:

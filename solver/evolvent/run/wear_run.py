@@ -22,6 +22,7 @@ from evolvent.run.output import facts_of, log_pictures
 from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.progress import CYCLES
 from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import wanted_output
@@ -110,7 +111,7 @@ def mesh_motion_of(run: RunContext, scene: Scene) -> GearMeshMotion:
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
-        model = prepare_model(scene, run.comm, lambda _, member: mesh(member)).model
+        model = prepare_model(gear_problem(scene), run.comm, lambda _, member: mesh(member)).model
         run.log.info("the meshes have followed the wear; both gears are condensed anew")
         return model
 

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position import PositionResult, SearchedAt
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes, read_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import keep_scene
 from evolvent.results.tables.tables import csv_text
-from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint

@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
@@ -36,12 +37,12 @@ def scene_of(kind: str, *settings: str) -> Scene:
 
 def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearModel]:
     """See GearMeshMotion."""
-    return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
+    return lambda mesh: prepare_model(gear_problem(scene), MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 
 
 def gears_of(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     pitch, following = uniform_pitch(model.pair.pinion.z, positions), GearMeshMotion(refresh, condenser(scene))
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 

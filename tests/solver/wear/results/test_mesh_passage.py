@@ -10,12 +10,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from mpi4py import MPI
 
 from evolvent.contact.hertz import line_pressure
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.drawing.style import styled
 from evolvent.results.run_data import RunData
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.flank_deviations import FlankChart
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.results.mesh_passage import (
     ContactProfile,

@@ -5,12 +5,13 @@ from __future__ import annotations
 import pytest
 from mpi4py import MPI
 
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.meshing.element_sizes import elements_per_contact_width
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import scene_from_text
 
 SPUR = """
@@ -47,7 +48,7 @@ def test_stiff_pinion(moduli: tuple[float, float], own: float | None, elements: 
     sets = [f"material.{gear}.E_GPa={E}" for gear, E in zip(("pinion", "wheel"), moduli)]
     sets += [] if own is None else [f"mesh.elements_per_contact_width={own}"]
     scene = scene_from_text(SPUR, sets)
-    assert elements_per_contact_width(scene) == elements
+    assert elements_per_contact_width(gear_problem(scene)) == elements
     said = any("softer gear the pinion" in sentence for sentence in scene_warnings(scene))
     assert said == (own is not None)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit, main
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.scene.csv_tables import TableError
-from evolvent.scene.flank_deviations import FlankChart
-from evolvent.scene.skips import is_plane
+from evolvent.scene.gear_problem import gear_problem
+from evolvent_meshes.csv_tables import TableError
 from tests.support.gear_cases import ROOT, model_of, spur_scene
 
 DIAMETERS = np.linspace(144.0, 156.0, 25)
@@ -66,7 +66,7 @@ def test_only_charts_that_vary_over_the_face_need_3d(tmp_path: Path) -> None:
     for over_face in (0.0, 1e-4):
         path = tmp_path / f"{over_face}.csv"
         path.write_text(chart(over_face).text())
-        assert is_plane(spur_scene(f'wheel.flank_csv="{path}"')) == (over_face == 0.0)
+        assert gear_problem(spur_scene(f'wheel.flank_csv="{path}"')).is_plane == (over_face == 0.0)
 
 
 def test_named_from_the_scenes_folder(tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ from mpi4py import MPI
 from evidence.checkout import DEMOS
 from evidence.stress.sheets import Cell, Sheet, sheet_of
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.solution.certificates import balance_error
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
-from evolvent.results.contact_slices import balance_error
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 

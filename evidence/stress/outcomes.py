@@ -14,10 +14,9 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.solution.certificates import BalanceError, PitchImbalance, certify, certify_pitch, pitch_imbalance
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
-from evolvent.results.contact_slices import pitch_imbalance
-from evolvent.run.certificates import BalanceError, PitchImbalance, certify, certify_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.mesh.mesh_data import MeshError

@@ -22,8 +22,8 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.solution.certificates import BalanceError
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.run.certificates import BalanceError
 from evolvent.run.wear_run import certify_positions, law_of, settings_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
+DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere", "transmission_error")
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -50,6 +50,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
+    "gears.solution": ("meshes", "fem.backend", "gears.problem", "gears", "gears.sweep"),
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
     "scene.checking": (
@@ -61,7 +62,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep", "scene", "scene.checking", "results.archive"),
     "results.error_bars": ("meshes", "results.archive", "results"),
-    "results.tables": ("meshes.gears", "scene", "scene.checking", "results.archive", "results", "results.error_bars"),
+    "results.tables": (
+        "meshes.gears", "gears.solution", "scene", "scene.checking", "results.archive", "results", "results.error_bars",
+    ),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears", "gears.sweep",
         "results.archive", "results",
@@ -73,16 +76,16 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears",
-        "gears.contact", "gears.sweep", "wear",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
+        "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "scene", "results.*", "wear",
         "wear.gears",
     ),
     "run": (
-        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
-        "scene.schema", "results.*", "wear.*",
+        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run"),
 }  # fmt: skip

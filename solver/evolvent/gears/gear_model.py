@@ -53,6 +53,8 @@ class GearModel:
     """Keep tangential components and friction history also at μ = 0."""
     deflected: bool = False
     """Search contact again on deflected flanks."""
+    pitches: int = 1
+    """Base pitches that a sweep has."""
 
     def has_friction_terms(self, friction: float) -> bool:
         """Whether tangential components and friction history are kept at this μ."""
@@ -110,7 +112,7 @@ def prepare_model(
     pinion, wheel = (_charted(body, chart) for body, chart in zip(bodies, problem.flanks))
     model = GearModel(
         problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
-        problem.options.friction_terms, problem.options.deflected_flanks,
+        problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
     )  # fmt: skip
     return Preparation(model, after_meshing - begin, time.perf_counter() - after_meshing)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,21 +113,3 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
         force = float(np.sum(result.contact.pressure[own] * result.contact.weights[own]))
         summaries.append(ToothSummary(int(tooth), force, peak, edge, float(cut.width[here].sum() / cos_b)))
     return summaries
-
-
-def balance_error(result: PositionResult) -> float:
-    """The larger of the relative force imbalance of a position, and of the power that its teeth store over the input.
-    The latter is no error by itself: deflected flanks are not conjugate, and where a tip's edge bears the energy of
-    the teeth changes by up to some hundredths of the input. It has to come back within the pitch: `pitch_imbalance`."""
-    return max(result.residual, abs(result.stored_power) / abs(result.torques[0]))
-
-
-def pitch_imbalance(results: Sequence[PositionResult]) -> float:
-    """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
-
-    After a pitch all teeth are as deflected as before it, so that nothing is stored. What remains is the error of the
-    contact's geometry, where it takes the flanks' normals before deflection: it falls with the load, not with the mesh
-    (7e-4 where a is 3 % of the radius of curvature and tips bear, a fifteenth of it at a tenth of the load, and as
-    little on deflected flanks, `gear_deflected`).
-    """
-    return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)

@@ -23,7 +23,7 @@ def gear_problem(scene: Scene) -> GearProblem:
 
 
 def gear_options(scene: Scene) -> GearOptions:
-    """What the scene wants computed in full: what skip.off names. Only this function reads solver options from it."""
+    """What the scene wants computed in full: what skip.off names."""
     off = set(scene.skip.off)
     return GearOptions(
         in_space="plane" in off,
@@ -34,5 +34,9 @@ def gear_options(scene: Scene) -> GearOptions:
         whole_flanks="window" in off,
         deflected_flanks="deflected-flanks" in off,
         fine_body="coarse-body" in off,
-        condensed_anew="reuse" in off,
     )
+
+
+def shares_gears(scene: Scene) -> bool:
+    """Whether condensed gears serve all friction coefficients; else each has gears of its own."""
+    return len(scene.contact.friction) == 1 or "reuse" not in scene.skip.off

@@ -17,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
+from evolvent.gears.problem.load_limits import LARGEST_DEFLECTION, NARROWEST_CONTACT, WIDEST_CONTACT
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
@@ -33,14 +34,6 @@ from evolvent_meshes.gears.pair import GearPair
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
 
 GEARS: tuple[MemberName, MemberName] = ("pinion", "wheel")
-WIDEST_CONTACT = 0.2
-"""Largest Hertz half-width over the radius of curvature: beyond it neither Hertz' theory nor small strain holds."""
-NARROWEST_CONTACT = 1e-5
-"""Smallest Hertz half-width [mm]: a hundred times the distance within which a mesh merges points (`section.WELD`), and
-thirty atoms of iron."""
-LARGEST_DEFLECTION = 0.1
-"""Largest deflection of a tooth pair in modules, estimated with the whole load on one pair: of 112 random scenes below
-it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel gears stay far below."""
 
 
 class Scene(SceneSection):

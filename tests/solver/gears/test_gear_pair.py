@@ -12,10 +12,11 @@ import pytest
 
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
 from evolvent.gears.sweep import pitch_sweep
 from evolvent.gears.sweep.friction_history import Footprint
 from evolvent.gears.sweep.position import shared_position
-from evolvent.results.contact_slices import balance_error, pitch_imbalance, slices
+from evolvent.results.contact_slices import slices
 from evolvent.run.pitch_run import pitch_of
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import (

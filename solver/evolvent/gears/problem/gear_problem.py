@@ -72,8 +72,6 @@ class GearOptions:
     """Contact is searched again on the flanks as they have deflected."""
     fine_body: bool = False
     """Back flank, fillets, core and rim are meshed finely; else the loaded flank only."""
-    condensed_anew: bool = False
-    """Gears are condensed again for each friction coefficient; else once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +87,7 @@ class GearProblem:
         >>> problem.is_plane, problem.contact_teeth
         (True, (-2, -1, 0, 1))
         >>> print(f"{float(problem.hertz_estimate.peak_pressure(0.0)):.0f} MPa at the pitch point")
-        639 MPa at the pitch point
+        630 MPa at the pitch point
     """
 
     pair: GearPair

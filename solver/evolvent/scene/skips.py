@@ -1,4 +1,4 @@
-"""What a scene does not need, and is left out: a registry of skips, each with a name, a sentence and a tolerance.
+"""Parts of the computation that a scene does not need: a registry of skips, each with name, sentence and tolerance.
 
 A skip is automatic where it applies. `--no-skip NAME` (the key skip.off) computes what it leaves out the long way; the
 answer stays the same within the skip's tolerance. The registry is for what `check`, the log and summary.json say; code
@@ -16,29 +16,30 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import OutputSection, SkipName, SkipSection
 
 ROUND_OFF = 1e-8
-"""Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
+"""Tolerance where only the order of sums and the remainder of Newton's method (residual 1e-10) differ."""
 REPEATED = 1e-10
-"""Nothing is computed otherwise, but two runs differ by rounding as their arrays lie elsewhere (6e-12 was seen)."""
+"""Tolerance where nothing is computed differently: two runs differ by rounding, as their arrays lie elsewhere in
+memory (6e-12 was seen)."""
 
 
 @dataclass(frozen=True)
 class Skip:
-    """Something left out.
-
-    applies: whether the scene allows it. sentence: what is left out, for `check`, the log and summary.json. tolerance:
-    by how much the answer may differ from the long way's: transmission error, peak pressure, torques, and what is lost
-    of the input power, each over its largest value in the pitch.
-    """
+    """A part of the computation that may be left out."""
 
     name: SkipName
+    """As in docs/scene.md."""
     applies: Callable[[Scene], bool]
+    """Whether a scene can do without."""
     sentence: Callable[[Scene], str]
+    """What is left out, for `check`, the log and summary.json."""
     tolerance: float
+    """Largest difference from the result without the skip: of transmission error, peak pressure, torques and lost share
+    of the input power, each over its largest value in the pitch."""
 
 
 @dataclass(frozen=True)
 class Skipped:
-    """A skip that was made, as summary.json tells it."""
+    """A skip that was made, as in summary.json."""
 
     name: SkipName
     """As in docs/scene.md."""
@@ -152,7 +153,7 @@ SKIPS: tuple[Skip, ...] = (
     ),
 )
 OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
-"""Skips that results do not depend on."""
+"""Skips of output, on which results do not depend."""
 
 
 def skip_named(name: SkipName) -> Skip:
@@ -161,17 +162,17 @@ def skip_named(name: SkipName) -> Skip:
 
 
 def skips(scene: Scene, name: SkipName) -> bool:
-    """Whether this is left out: the skip applies and is not switched off."""
+    """Whether a skip is made: it applies and is not switched off."""
     return name not in scene.skip.off and skip_named(name).applies(scene)
 
 
 def skipped(scene: Scene) -> list[Skipped]:
-    """What the scene does without."""
+    """The skips that are made."""
     return [Skipped(skip.name, skip.sentence(scene)) for skip in SKIPS if skips(scene, skip.name)]
 
 
 def switched_off(scene: Scene) -> list[SkipName]:
-    """The skips that would apply, but are computed the long way."""
+    """The skips that apply but are switched off."""
     return [skip.name for skip in SKIPS if skip.name in scene.skip.off and skip.applies(scene)]
 
 

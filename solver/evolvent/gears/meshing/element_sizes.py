@@ -101,7 +101,7 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
 
 
 def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
-    """The back flank like the loaded one, and three times as many elements in all the rest."""
+    """The back flank meshed as the loaded one, three times as many elements elsewhere."""
     return replace(
         resolution,
         back_alike=True,
@@ -114,12 +114,12 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
 
 
 def _neck_elements(depth: float) -> int:
-    """Cells n that reach down the neck, the first 2 and the last at most 2ⁿ depths [modules] of the layers long."""
+    """Cells n that cover the neck, each at most twice as long as the one above. depth: of the thin layers [modules]."""
     return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (LONGEST * depth))))
 
 
 class _ContactWidth:
-    """2b [mm] along one gear's profile; outside the path of contact that of its nearest end."""
+    """Hertz width 2b [mm] along one gear's profile; beyond the path of contact that of its nearest end."""
 
     def __init__(self, estimate: HertzEstimate, member: Member) -> None:
         self.estimate, self.member, self.gear = estimate, member, estimate.pair.gears[member]

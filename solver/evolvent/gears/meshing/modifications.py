@@ -1,7 +1,7 @@
-"""What relief, crowning and misalignment do, before anything is computed.
+"""Estimates of what relief, crowning and misalignment do, before a pair is solved.
 
-How much of the contact lines bears, on springs of a tooth pair's stiffness; and whether the mesh below a flank is deep
-enough for what is taken off it.
+The share of the contact lines that bears, on springs of a tooth pair's stiffness; and whether the thin layers of the
+mesh below a flank are deep enough for the material that is taken off.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ class TooMuchRelief(InputError):
 
 @dataclass(frozen=True)
 class Bearing:
-    """A pitch on springs."""
+    """Contact lines on springs, over a pitch."""
 
     share: float
-    """Of the length of all contact lines that bears."""
+    """Length that bears over the length of all contact lines."""
     deflection: float
-    """Largest of the springs [mm]."""
+    """Largest deflection of a spring [mm]."""
 
 
 def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
-    """On springs of this stiffness [N/mm²] along the contact lines, under the normal force [N]."""
+    """Contact lines on springs of this stiffness [N/mm²], under the normal force [N]."""
     rotations = np.arange(POSITIONS) * 2.0 * math.pi / pair.pinion.z / POSITIONS
     each = [_pressed(*_gaps(pair, float(rotation)), force / stiffness) for rotation in rotations]
     borne, whole, deepest = (np.array(values) for values in zip(*each, strict=True))
@@ -55,7 +55,7 @@ def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
 
 
 def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
-    """Gaps [mm] and lengths [mm] of the pieces of all contact lines, by ascending gap."""
+    """Gaps (n,) and lengths (n,) [mm] of pieces of all contact lines, by ascending gap."""
     gaps, lengths = [], []
     for line in contact_lines(pair, rotation):
         ξ, z = (values[1::2] for values in line.points(2 * POINTS + 1))
@@ -66,7 +66,7 @@ def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
 
 
 def _pressed(gaps: Floats, lengths: Floats, load: float) -> tuple[float, float, float]:
-    """Length that bears, length in all [mm], largest deflection [mm]: the approach δ with Σ l (δ − g)₊ = load [mm²]."""
+    """Length that bears, total length and largest deflection [mm]; approach δ with Σ l (δ − g)₊ = load [mm²]."""
     borne = np.cumsum(lengths)
     approach = (load + np.cumsum(lengths * gaps)) / borne  # with the first pieces alone
     last = int(np.argmax(np.append(gaps[1:], np.inf) >= approach))
@@ -74,7 +74,7 @@ def _pressed(gaps: Floats, lengths: Floats, load: float) -> tuple[float, float, 
 
 
 def modification_warnings(problem: GearProblem) -> Iterator[str]:
-    """Sentences on figures with which much of the flanks would never touch."""
+    """Sentences on modifications with which much of the flanks would never touch."""
     given = _given(problem.pair)
     if not given:
         return
@@ -100,7 +100,7 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
 def folding_warnings(
     problem: GearProblem, resolutions: tuple[SectorResolution, SectorResolution]
 ) -> Iterator[str]:
-    """Sentences on what may fold the mesh."""
+    """Sentences on modifications that may fold the mesh."""
     for member, resolution in zip(Member, resolutions):
         if reason := too_much_relief(problem, member, resolution):
             yield f"The mesh may fold, which `run` then refuses: {reason}."
@@ -121,7 +121,7 @@ def too_much_relief(problem: GearProblem, member: Member, resolution: SectorReso
 
 
 def _given(pair: GearPair) -> Mapping[str, float]:
-    """Key -> figure [mm], of those that are not 0."""
+    """Key -> modification [mm], of those that are not 0."""
     found = {"pair.misalignment_um": pair.misalignment_um}
     for member, gear in zip(Member, pair.gears):
         keys = "tip_relief_um", "lead_crowning_um"
@@ -130,7 +130,7 @@ def _given(pair: GearPair) -> Mapping[str, float]:
 
 
 def _only(pair: GearPair, key: str) -> GearPair:
-    """The pair with this figure and no other."""
+    """The pair with this modification alone."""
 
     def bare(member: Member) -> GearParameters:
         gear, own = pair.gears[member], pair.gears[member].modifications

@@ -61,7 +61,7 @@ def linear(mesh: MeshData) -> MeshData:
 
 
 def standing_pair(problem: GearProblem) -> MeshData:
-    """Both sectors in one mesh in space at φ = 0, tooth pair 0 touching at the pitch point.
+    """Both sectors in place at φ = 0 as one mesh, tooth pair 0 touching at the pitch point.
 
     Groups: pinion_tooth, pinion_flank, ..., wheel_tooth, ... Raises MeshError.
     """

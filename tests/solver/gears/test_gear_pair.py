@@ -79,7 +79,7 @@ def test_energy_balances_over_the_pitch(curves: list[Curves]) -> None:
         assert pitch_imbalance(wrong) == pytest.approx(0.01, rel=0.05)
 
 
-def test_footprint_that_moved_on(spur: GearModel) -> None:
+def test_equilibrium_from_a_footprint_that_moved_on(spur: GearModel) -> None:
     """A footprint in which nothing is pressed near the present contact, as after a long step: the same equilibrium as
     without one."""
     nothing = Footprint(np.zeros((1, 2)), np.zeros(1, dtype=bool))
@@ -104,7 +104,7 @@ def test_friction_loss_of_sliding_teeth(spur: GearModel, curves: list[Curves]) -
 
 
 @pytest.mark.parametrize(("bore_diameter", "stiffness"), [(70.0, 19.0), (40.0, 13.9), (120.0, 25.9)])
-def test_mesh_stiffness(bore_diameter: float, stiffness: float, curves: list[Curves]) -> None:
+def test_mean_mesh_stiffness_of_three_bores(bore_diameter: float, stiffness: float, curves: list[Curves]) -> None:
     """Prototype: F_bt/(b TE), mean over the pitch, 19.0, 13.9 and 25.9 N/(mm µm) at bore radii of 35, 20 and 60 mm."""
     if bore_diameter == 70.0:
         model, errors = None, curves[0].of("transmission_error")[PITCH]
@@ -189,7 +189,7 @@ def test_pressure_curves_cross(curves: list[Curves]) -> None:
     assert np.all(much[after] < some[after]) and np.all(some[after] < smooth[after])
 
 
-def test_halved_step(spur: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_halved_step_gives_the_undisturbed_position(spur: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
     """A position that fails once is approached in two halves and equals the undisturbed one: to rounding where all
     slides, within 3 % of the friction coefficient's effect right behind the pitch point."""
     degrees = STEP * np.arange(-4, 8)
@@ -301,7 +301,9 @@ def test_misaligned_axis_shifts_the_load(helical: GearModel) -> None:
 @pytest.mark.parametrize(
     ("shape", "order", "deviation"), [("hexahedron", 1, 0.06), ("tetrahedron", 1, 0.15), ("tetrahedron", 2, 0.01)]
 )
-def test_other_cells(spur: GearModel, shape: str, order: int, deviation: float) -> None:
+def test_transmission_error_of_linear_cells_and_triangles(
+    spur: GearModel, shape: str, order: int, deviation: float
+) -> None:
     """Linear quadrilaterals and triangles, and quadratic triangles, solve the same pair. The coarser displacement space
     is stiffer: its transmission error is smaller; the flanks stay conjugate, exactly T_2/T_1 = z_2/z_1."""
     reference = swept(spur, SINGLE, [0.0])[0].of("transmission_error")

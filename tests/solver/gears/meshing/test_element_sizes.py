@@ -42,7 +42,9 @@ positions = 12
         ((210.0, 3.0), 2.0, 2.0),
     ],
 )
-def test_stiff_pinion(moduli: tuple[float, float], own: float | None, elements: float) -> None:
+def test_stiff_pinion_has_three_elements_across_the_contact(
+    moduli: tuple[float, float], own: float | None, elements: float
+) -> None:
     """Level quick, 1.7 elements across: 3 where the pinion is more than five times as stiff as the wheel; what the
     scene says holds, with a warning."""
     sets = [f"material.{gear}.E_GPa={E}" for gear, E in zip(("pinion", "wheel"), moduli)]
@@ -53,7 +55,7 @@ def test_stiff_pinion(moduli: tuple[float, float], own: float | None, elements: 
     assert said == (own is not None)
 
 
-def test_a_plastic_wheel() -> None:
+def test_pressure_on_a_plastic_wheel_is_that_of_hertz() -> None:
     """Problem: a steel pinion on a wheel of 3 GPa, ν = 0.4, 15 N·m, without friction. Exact: Hertz where one pair
     carries the whole load, 66.0 MPa at the pitch point; within 8 %, with 1.7 elements 223 MPa were found."""
     scene = scene_from_text(SPUR, ["material.wheel.E_GPa=3", "material.wheel.nu=0.4", "contact.friction=0"])

@@ -49,7 +49,7 @@ def main(out: Path = Path("out/transmission_error"), quick: bool = False) -> Non
         out.mkdir(parents=True, exist_ok=True)
         with open(out / "table.csv", "w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows(table)
-        print("\n".join("".join(f"{cell:>16}" for cell in row) for row in table))
+        print("\n".join(f"{row[0]:<14}" + "".join(f"{cell:>16}" for cell in row[1:]) for row in table))
         draw(out / "transmission_error.png", smooth, rough)
     check(smooth, rough)
 

@@ -181,7 +181,7 @@ def test_named_pipes_in_a_run_folder_are_refused(
 
 @pytest.mark.parametrize("case", UNSUPPORTED)
 def test_unsupported_keys_are_answered(case: str) -> None:
-    """Who asks for what is not supported is told so."""
+    """A key for something that is not supported: the message says that it is not."""
     text, overrides, key, _, _ = MALFORMED[case]
     with pytest.raises(ValueError, match=UNSUPPORTED[case]) as caught:
         scene_from_text(text, overrides)

@@ -1,11 +1,20 @@
-"""`evolvent run` with something going wrong: broken_run.py HOW SCENE.toml --out DIR [...]; run by tests, not a test.
+"""`evolvent run` with an injected fault: broken_run.py FAULT SCENE.toml --out DIR [...]; a script that tests run.
 
-HOW: ok; kill-mesh; kill-before-N, kill-after-N (the N-th file of the archive replaced); kill-half-N (half of it
-written); full-N (no space for the N-th); raise-R-N (rank R fails in its N-th turn, the first of one
-position and then of two); killrank-R-N (rank
-R is killed there); nan-N (its compliance is no number at the N-th search); unbalanced (a position fails
-its balance); leaking, strict, strict-N (a pitch fails its balance; fails only before deflection, and the N-th file
-is not replaced); count (prints how many gears this rank condensed and how many positions it searched).
+FAULT:
+    ok              none
+    count           none; prints how many gears this rank has condensed and how many positions it has searched
+    kill-mesh       killed when the second gear is meshed
+    kill-before-N   killed before the N-th file of the archive is renamed
+    kill-after-N    killed after the N-th file of the archive
+    kill-half-N     killed when half of the N-th file is written
+    full-N          no space for the N-th file
+    raise-R-N       rank R fails in its N-th turn; the first turn has one position, later ones two
+    killrank-R-N    rank R is killed in its N-th turn
+    nan-N           the compliance of the flanks is NaN from the N-th position on
+    unbalanced      a position fails its balance certificate
+    leaking         a pitch fails its balance certificate
+    strict          a pitch fails its balance certificate, but not on deflected flanks
+    strict-N        the same, and killed before the N-th file is renamed
 """
 
 from __future__ import annotations
@@ -33,12 +42,12 @@ from evolvent_meshes import files
 
 
 def kill() -> None:
-    """As kill -9, the out-of-memory killer or a power cut."""
+    """Ends the process like `kill -9`, the out-of-memory killer or a power cut."""
     os.kill(os.getpid(), signal.SIGKILL)
 
 
 def before_call(module: Any, name: str, action: Callable[[int], None]) -> None:
-    """Calls action(n) before the n-th call of a module's function, n = 1, 2, ..."""
+    """Calls action(n) before the n-th call of a function of a module, n = 1, 2, ..."""
     original, numbers = getattr(module, name), count(1)
 
     def patched(*arguments: Any, **options: Any) -> Any:
@@ -53,7 +62,7 @@ def kill_when(wanted: int) -> Callable[[int], None]:
 
 
 def at_archive_file(wanted: int, strike: Callable[[], None]) -> None:
-    """Calls `strike` when the archive begins to write its N-th file."""
+    """Calls `strike` before the archive writes its file number `wanted`."""
     before_call(Archive, "keep", lambda number: strike() if number == wanted else None)
 
 
@@ -62,7 +71,7 @@ def kill_before_renaming() -> None:
 
 
 def kill_half_written() -> None:
-    """Cuts the file to its half when it is to be made durable, the manifest before it being whole; then kills."""
+    """Truncates the file to its half when it is flushed, after its line in the manifest; then kills."""
     fsync, numbers = os.fsync, count(1)
 
     def patched(descriptor: int) -> None:
@@ -75,7 +84,7 @@ def kill_half_written() -> None:
 
 
 def disk_full() -> None:
-    """No room for the file, but for its line in the manifest."""
+    """No space for the file, but for its line in the manifest."""
     fsync, numbers = os.fsync, count(1)
 
     def patched(descriptor: int) -> None:
@@ -99,14 +108,14 @@ def killed_rank(rank: int, wanted: int) -> Callable[[int], None]:
 
 
 def no_number(wanted: int) -> None:
-    """From the N-th position on the flanks' compliance is NaN."""
+    """The compliance of the flanks is NaN from position number `wanted` on."""
     system, numbers = GearContact.system, count(1)
     at: list[int] = []
     before_call(pitch_sweep, "shared_position", lambda _: at.append(next(numbers)))
 
     def patched(self: GearContact, *arguments: Any, **options: Any) -> CondensedSystem:
-        found = system(self, *arguments, **options)
-        return replace(found, jump=found.jump * np.nan) if at[-1] >= wanted else found
+        condensed = system(self, *arguments, **options)
+        return replace(condensed, jump=condensed.jump * np.nan) if at[-1] >= wanted else condensed
 
     setattr(GearContact, "system", patched)  # noqa: B010
 

@@ -1,7 +1,7 @@
-"""`evolvent run` onto disks of many sizes: full_disks.py FOLDER STEP LAST [SETTING ...]; run by a test, not a test.
+"""`evolvent run` on disks of many sizes: full_disks.py FOLDER STEP LAST [SETTING ...]; a script that a test runs.
 
-Onto a tmpfs of STEP, 2 STEP, ... LAST kB, mounted at FOLDER, on which a user's own files lie already; each run in this
-process, one after another. Prints a line of JSON a disk: size, status, stderr, what is there, and what `--resume` gives
+Each disk is a tmpfs of STEP, 2 STEP, ... LAST kB, mounted at FOLDER, with foreign files. The runs follow one another in
+this process. Prints one line of JSON per disk: size, status, stderr, state of the files, and the outcome of `--resume`
 once there is room.
 """
 
@@ -30,7 +30,7 @@ def mounted(folder: Path, kilobytes: int) -> None:
 
 
 def run(out: Path, *more: str) -> tuple[int, str]:
-    """Status and stderr."""
+    """Exit status and stderr of a run."""
     errors = io.StringIO()
     with contextlib.redirect_stderr(errors):
         status = main([*SCENE, "--out", str(out), *more])
@@ -38,7 +38,7 @@ def run(out: Path, *more: str) -> tuple[int, str]:
 
 
 def broken(out: Path) -> list[str]:
-    """Files that are half written: parts, archives that cannot be read, texts without their end."""
+    """Incomplete files: parts, archives that cannot be read, texts without their end."""
     found, theirs = [], [out.parent / name for name in THEIRS]
     for path in (path for path in out.rglob("*") if path.is_file() and path not in theirs):
         if "evolvent-part" in path.name:
@@ -60,7 +60,7 @@ def digests(folder: Path) -> list[str]:
 
 
 def disk(folder: Path, kilobytes: int, settings: list[str]) -> dict[str, object]:
-    """One disk; see the module's docstring."""
+    """Runs and resumes on one disk; see the module's docstring."""
     mounted(folder, kilobytes)
     try:
         for name in THEIRS:

@@ -52,14 +52,14 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
             )
 
 
-def changed(out: Path) -> str:
+def changed_files(out: Path) -> str:
     """A sentence on the files of a run that have been changed since, empty where there are none."""
     files = ", ".join(map(str, RunFolder(out).changed(WRITTEN)))
     remedy = "move or remove that, and `evolvent run ... --resume` writes it anew"
     return f"changed, or cut off, since a run has written it: {files}; {remedy}" if files else ""
 
 
-def others(out: Path) -> str:
+def foreign_files(out: Path) -> str:
     """A sentence on the foreign files in the folder, empty where there are none."""
     theirs = RunFolder(out).theirs()
     named = ", ".join(path.relative_to(out).as_posix() for path in theirs[:NAMED])

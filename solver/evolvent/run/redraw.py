@@ -10,7 +10,7 @@ from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Drawn, draw
 from evolvent.results.figures.all import pictures
 from evolvent.results.run_data import RunData, read_run
-from evolvent.run.folder_checks import changed
+from evolvent.run.folder_checks import changed_files
 
 
 def plot_folder(out: Path) -> Drawn:
@@ -22,7 +22,7 @@ def plot_folder(out: Path) -> Drawn:
     """
     with locked(out):
         drawn = draw(pictures(_with_pictures(read_run(out))), RunFolder(out))
-        if sentence := changed(out):
+        if sentence := changed_files(out):
             drawn = Drawn(drawn.written, (*drawn.failures, sentence))
         if not (out / "wear.json").is_file():
             return drawn

@@ -17,7 +17,7 @@ from evolvent.results.archive.run_lock import locked
 from evolvent.results.fields.deformation import deformation_of
 from evolvent.run.coarse_run import companion_of
 from evolvent.run.context import RunContext, run_context
-from evolvent.run.folder_checks import check_folder, others
+from evolvent.run.folder_checks import check_folder, foreign_files
 from evolvent.run.output import ExtraResults, write_output
 from evolvent.run.pitch_run import sweep_scene
 from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
@@ -61,7 +61,7 @@ def run_scene(
 
 def _log_beginning(run: RunContext, scene: Scene) -> None:
     """Logs what is known of a run before anything is computed."""
-    if left := run.on_first(lambda: others(run.folder.out)):
+    if left := run.on_first(lambda: foreign_files(run.folder.out)):
         run.log.info("%s", left)
     if anew := run.on_first(lambda: no_results_warning(scene, run.archive(scene)) if run.resume else ""):
         run.log.warning(anew)

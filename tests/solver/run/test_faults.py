@@ -26,7 +26,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_run_killed_at_random_times_is_resumed(whole: Path, tmp_path: Path) -> None:
     """kill -9 at four random moments, each time resumed: every number is that of the undisturbed run within 1e-7, and
-    before the end no table tells of a complete run."""
+    before the end there is no table."""
     struck: Struck = struck_again_and_again(tmp_path / "out", kills=4, seed=1)
     assert struck.kills == 4
     assert differs(tmp_path / "out", whole) < 1e-7
@@ -53,7 +53,7 @@ def test_killed_rank_ends_the_run(whole: Path, run_script: Run, tmp_path: Path) 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can start a process as another user")
 def test_folder_without_write_permission_is_refused(tmp_path: Path) -> None:
-    """A folder of somebody else: status 2, its name and what to do, no traceback."""
+    """A folder of another user: status 2, its name and what to do, no traceback."""
     out = tmp_path / "theirs"
     out.mkdir(mode=0o555)
     for folder in (tmp_path, *tmp_path.parents):

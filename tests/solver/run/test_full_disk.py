@@ -18,7 +18,7 @@ STEP, LAST = 20, 440  # kB; the run takes 420, a position and the flanks in cont
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
 def test_full_disk_at_every_write_is_resumed(run_script: Run, tmp_path: Path) -> None:
     """From a disk without room for the scene to one with room for all: status 1 and one line with file, size, reason
-    and remedy; no half-written file, somebody else's files as they were, and once there is room --resume completes the
+    and remedy; no half-written file, foreign files as they were, and once there is room --resume completes the
     run. The list of files, surfaces, results and fields are among what lacks room."""
     if subprocess.run(["mount", "-t", "tmpfs", "tmpfs", str(tmp_path)], capture_output=True, check=False).returncode:
         pytest.skip("mounting is not allowed here")

@@ -41,7 +41,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def out(finished: Path, tmp_path: Path) -> Path:
-    """A copy of it, with somebody else's files in the same folders."""
+    """A copy of it, with foreign files in the same folders."""
     copy = tmp_path / "out"
     shutil.copytree(finished, copy)
     for name in THEIRS:
@@ -69,7 +69,7 @@ def test_finished_run_is_not_lost_unasked(out: Path, capsys: pytest.CaptureFixtu
 
 
 def test_overwriting_removes_files_of_runs_only(out: Path) -> None:
-    """--overwrite: somebody else's files stay, byte by byte, and are named in the log; fields of the positions that the
+    """--overwrite: foreign files stay, byte by byte, and are named in the log; fields of the positions that the
     longer run had are gone."""
     before = theirs(out)
     assert (out / "fields/flanks_0005.vtp").exists() and (out / "fields/gears_0005.vtp").exists()
@@ -120,7 +120,7 @@ def test_scene_of_a_run_can_be_run_where_it_lies(out: Path, capsys: pytest.Captu
 
 
 def test_changed_results_are_not_written_over(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A table that somebody has edited: status 2 with its name, before anything is removed."""
+    """A table that was edited: status 2 with its name, before anything is removed."""
     with open(out / "positions.csv", "a", encoding="utf-8") as file:
         file.write("my remark\n")
     before = hashes(out)

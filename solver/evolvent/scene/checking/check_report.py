@@ -60,8 +60,8 @@ def _skip_lines(scene: Scene) -> str:
 
 
 def _warning_lines(scene: Scene) -> list[str]:
-    found = scene_warnings(scene)
-    return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in found)])] if found else []
+    warnings = scene_warnings(scene)
+    return ["\n".join(["Warnings", *(f"  {sentence}" for sentence in warnings)])] if warnings else []
 
 
 def table(title: str, rows: Iterable[Row], heads: tuple[str, ...] = ("",)) -> str:

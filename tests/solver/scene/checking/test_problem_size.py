@@ -138,7 +138,7 @@ def test_remedy_names_the_number_of_elements_that_fits(machine: Callable[[float]
 
 def test_memory_of_results_is_counted(machine: Callable[[float], None]) -> None:
     """1000 positions of three pitches at 50 coefficients are 150,000 results, too many for any machine of this size;
-    what is told of a plane one is no less than its arrays, and no more than 2.5 times."""
+    the estimate for one in 2D is no less than its arrays, and no more than 2.5 times."""
     machine(24e3)
     coefficients = [k / 100 for k in range(50)]
     many = yang("sweep.positions=1000", f"contact.friction={coefficients}", "skip.off=one-pitch")

@@ -15,6 +15,7 @@ import numpy as np
 
 from evidence.benchmark.tables import read_rows, write_rows
 from evidence.checkout import ROOT
+from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.teeth import YANG
 from evolvent.results.engagement import Engagement, crossing, engagement, largest_peak
 from evolvent.results.figures.lines import at_point
@@ -60,7 +61,8 @@ def figures(run: RunData) -> Named:
 def _beside_hertz(run: RunData, index: int) -> Named:
     """Peaks as a run reports them over Hertz for the slice's own line load, in the layer at mid-face."""
     cuts = [each[index].cut for each in run.positions]
-    z, ξ, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ", "hertz"))
+    whole = Slices.joined(cuts)
+    z, ξ, hertz = whole.z, whole.roll_distance, whole.hertz
     peak = np.concatenate([pooled_peaks(cut) for cut in cuts])
     inside = np.isfinite(peak) & between(ξ, run.inner_path)
     middle = inside & (np.abs(z) <= np.abs(z).min() + 1e-9)
@@ -72,7 +74,7 @@ def _beside_hertz(run: RunData, index: int) -> Named:
     yield "off_hertz_largest_xi_mm", float(ξ[middle][worst])
     near = inside & (np.abs(ξ) < NEAR_PITCH_LINE * run.pair.pinion.normal_module)
     yield "near_pitch_line_median_MPa", float(np.median(peak[near]))
-    yield "largest_xi_mm", largest_peak(run, index).ξ
+    yield "largest_xi_mm", largest_peak(run, index).roll_distance
 
 
 def _over_the_engagement(low: Engagement, high: Engagement) -> Named:

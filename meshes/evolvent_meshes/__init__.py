@@ -1,1 +1,1 @@
-"""Geometry and meshes: involute gears and verification shapes, made with gmsh. Knows nothing of dolfinx."""
+"""Geometry and meshes of involute gears and verification shapes; independent of dolfinx."""

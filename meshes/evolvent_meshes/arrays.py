@@ -1,4 +1,4 @@
-"""Types of the arrays that all packages work with."""
+"""Types of arrays, for both packages."""
 
 from __future__ import annotations
 

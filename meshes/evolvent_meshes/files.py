@@ -1,4 +1,4 @@
-"""Files are written whole or not at all: under another name, flushed to the disk, then renamed. Only files are read."""
+"""Reading of regular files, and atomic writing: under another name, flushed to the disk, then renamed."""
 
 from __future__ import annotations
 
@@ -14,41 +14,47 @@ from typing import BinaryIO
 from evolvent_meshes.errors import EvolventError, InputError
 
 PART = ".evolvent-part"
-"""In the name of a file that is being written; one that a killed run has left may be removed."""
+"""In the name of a file that is being written; files of this name left over from a killed run may be removed."""
 
-NO_FILES = {stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
+SPECIAL_FILES = {
+    stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket",
+}  # fmt: skip
 
 
 class WriteError(EvolventError, OSError):
-    """A file that could not be written; nothing of it is left. The message names file, size and remedy."""
+    """A file could not be written; no part of it is left. The message names file, size and remedy."""
 
 
 class NoFile(OSError):
-    """Something of this name that is not a file."""
+    """A path that is not a regular file."""
 
 
 @contextmanager
 def open_file(path: Path | str) -> Iterator[BinaryIO]:
-    """A file to be read. Raises OSError; NoFile for a named pipe, which may wait for its writer for ever, or a device.
+    """A regular file opened for reading.
+
+    Raises OSError; NoFile for a named pipe, which would block until it has a writer, a device or a socket.
     """
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
-        kind = NO_FILES.get(stat.S_IFMT(os.fstat(file.fileno()).st_mode))
+        kind = SPECIAL_FILES.get(stat.S_IFMT(os.fstat(file.fileno()).st_mode))
         if kind is not None:
             raise NoFile(errno.EINVAL, f"{kind}, which is no file", str(path))
         yield file
 
 
 def write_bytes(path: Path, content: bytes | memoryview) -> Path:
-    """Writes a file, its folders too, atomically and durably; gives its path. Raises WriteError."""
-    with whole(path, len(content)) as part:
+    """Write a file atomically, create its folders, and return its path. Raises WriteError."""
+    with atomic_file(path, len(content)) as part:
         part.write_bytes(content)
     return path
 
 
 @contextmanager
-def whole(path: Path, size: int) -> Iterator[Path]:
-    """The name under which the block writes a file of about `size` bytes, which then becomes `path`. Raises WriteError
-    where the block or the renaming raises OSError."""
+def atomic_file(path: Path, size: int) -> Iterator[Path]:
+    """Context with a temporary path to write a file of about `size` bytes to; at its end it is renamed to `path`.
+
+    Raises WriteError where the block or the renaming raises OSError.
+    """
     part = part_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -59,23 +65,26 @@ def whole(path: Path, size: int) -> Iterator[Path]:
     except OSError as error:
         raise write_error(path, size, error) from error
     finally:
-        with contextlib.suppress(OSError):  # it is `path` now, or was never made
+        with contextlib.suppress(OSError):  # it was renamed to `path`, or never written
             part.unlink()
 
 
 def write_text(path: Path, text: str) -> Path:
-    """`write_bytes` of a text as UTF-8."""
+    """Write a text as UTF-8, as `write_bytes` does. Raises WriteError."""
     return write_bytes(path, text.encode("utf-8"))
 
 
 @contextmanager
 def folder_for(out: Path, option: str = "--out") -> Iterator[None]:
-    """The folder exists inside the block; where the block leaves it empty, what was made for it goes again. Raises
-    InputError, which names the option, where it cannot be made."""
+    """Context in which the folder exists; folders that were created for it are removed at its end if they are empty.
+
+    option: of the command line, for the message.
+    Raises InputError where the folder cannot be created.
+    """
     try:
         made = [folder for folder in (out, *out.parents) if not folder.exists()]
         out.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
+    except (OSError, ValueError) as error:  # ValueError: a NUL character in its name
         raise unusable(out, error, option) from error
     try:
         yield
@@ -86,18 +95,18 @@ def folder_for(out: Path, option: str = "--out") -> Iterator[None]:
 
 
 def unusable(out: Path, error: OSError | ValueError, option: str = "--out") -> InputError:
-    """The error of a folder that cannot be made or written to."""
-    found = getattr(error, "strerror", None) or str(error)
+    """The error of a folder that cannot be created or written to."""
+    reason = getattr(error, "strerror", None) or str(error)
     if isinstance(error, FileExistsError):
-        found = "a file" if out.exists() else "a link that leads nowhere"
+        reason = "a file" if out.exists() else "a link that leads nowhere"
     return InputError(
-        f"{option}: found {str(out)[:200]!r} ({found}); allowed: a directory that can be made and written to by user "
-        f"{os.geteuid()}; remedy: name another one, or mend its access"
+        f"{option}: found {str(out)[:200]!r} ({reason}); allowed: a directory that can be made and written to by user "
+        f"{os.geteuid()}; remedy: name another one, or change its permissions"
     )
 
 
 def require_writable(path: Path) -> None:
-    """Raises InputError where no file of this name can be made; leaves nothing."""
+    """Raises InputError where a file of this name cannot be created; leaves no file and no folder."""
     with folder_for(path.parent):
         try:
             part_of(path).touch()
@@ -107,13 +116,13 @@ def require_writable(path: Path) -> None:
 
 
 def write_error(path: Path, size: int, error: OSError) -> WriteError:
-    """The error of a file of so many bytes that could not be written."""
+    """The error of a file of `size` bytes that could not be written."""
     return WriteError(
-        f"{path}: wanted to write {size / 1e6:.3g} MB, found {error.strerror or error}; make room or mend the access, "
-        "then try again (a run goes on with --resume: what it computed before is kept)"
+        f"{path}: wanted to write {size / 1e6:.3g} MB, found {error.strerror or error}; make room or "
+        "change the permissions, then try again (a run goes on with --resume: what it computed before is kept)"
     )
 
 
 def part_of(path: Path) -> Path:
-    """The name under which a file is written: in the same folder, hidden, with the same ending."""
+    """The name under which a file is written: hidden, in the same folder, with the same suffix."""
     return path.with_name(f".{path.stem}{PART}{path.suffix}")

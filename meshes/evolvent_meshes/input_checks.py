@@ -1,4 +1,8 @@
-"""Checks of plain values that a user gives: each refuses with what was wanted, what was found and what to do."""
+"""Checks of values given by a user; their errors say what was wanted, what was found and what to do.
+
+Parameters that the functions share: `what`, the name of the input; `value`, what was given; `wanted`, `remedy`, words
+for the message.
+"""
 
 from __future__ import annotations
 
@@ -12,27 +16,33 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
 
 T = TypeVar("T")
-LONGEST = 80  # characters of a value in a message
+SHOWN_LENGTH = 80  # characters of a value in a message
 LARGEST = 1e30  # numbers beyond have no physical meaning in any unit, and their squares overflow
 
 
 def refuse(what: str, wanted: str, found: object, remedy: str) -> NoReturn:
-    """Raises InputError; found: the value itself, or words about it."""
+    """Raises InputError.
+
+    what: name of the input.
+    wanted: what is allowed.
+    found: the value that was given, or `Words` that describe it.
+    remedy: what to do.
+    """
     raise InputError(f"{what}: wanted {wanted}, found {found if isinstance(found, Words) else shown(found)}; {remedy}")
 
 
 class Words(str):
-    """Text that stands in a message as it is, not as the value of a string."""
+    """Text that a message shows without quotes, not as the value of a string."""
 
     __slots__ = ()
 
 
 def shown(value: object) -> str:
-    """A value as it stands in a message: short, and an array by its shape and type."""
+    """A value as a message shows it: shortened, a large array by its shape and type."""
     if isinstance(value, np.ndarray) and value.size > 6:
         return f"an array of shape {value.shape} and type {value.dtype}"
     text = " ".join(repr(value).split())
-    text = text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    text = text if len(text) <= SHOWN_LENGTH else text[: SHOWN_LENGTH - 3] + "..."
     return text if isinstance(value, str | Real | None | list | tuple | np.ndarray) else f"{kind_of(value)} {text}"
 
 
@@ -43,12 +53,12 @@ def kind_of(value: object) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a finite real number; True and False are none."""
+    """Whether the value is a finite real number; booleans are not."""
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_) and bool(np.isfinite(float(value)))
 
 
 def is_index(value: object) -> bool:
-    """Whether it is a whole number; True and False are none."""
+    """Whether the value is an integer; booleans are not."""
     return isinstance(value, Integral) and not isinstance(value, bool | np.bool_)
 
 
@@ -56,7 +66,7 @@ def number(
     what: str, value: Any, wanted: str = "a finite number", remedy: str = "give a number",
     allowed: Callable[[float], bool] = lambda x: True,
 ) -> float:  # fmt: skip
-    """A finite number for which `allowed` holds. Raises InputError."""
+    """The value as a finite number for which `allowed` holds. Raises InputError."""
     if not (is_number(value) and allowed(float(value))):
         refuse(what, wanted, value, remedy)
     refuse_huge(what, value)
@@ -70,7 +80,7 @@ def refuse_huge(what: str, value: Any) -> None:
 
 
 def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy: str) -> tuple[float, ...]:
-    """As many finite numbers as one of `lengths`. Raises InputError."""
+    """The value as a tuple of finite numbers, of one of these lengths. Raises InputError."""
     if not isinstance(value, list | tuple | np.ndarray) or np.ndim(np.asarray(value, dtype=object)) != 1:
         refuse(what, wanted, value, remedy)
     if len(value) not in lengths or not all(is_number(x) for x in value):
@@ -80,35 +90,35 @@ def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy:
 
 
 def array(what: str, value: Any, shapes: tuple[tuple[int, ...], ...], remedy: str) -> Floats:
-    """Finite numbers of one of these shapes. Raises InputError."""
+    """The value as an array of finite numbers, of one of these shapes. Raises InputError."""
     wanted = f"finite numbers of shape {' or '.join(str(s) for s in shapes)}"
     try:
-        found = np.array(value, dtype=object)
+        entries = np.array(value, dtype=object)
     except ValueError:  # rows of different lengths
         refuse(what, wanted, value, remedy)
-    if found.shape not in shapes or not all(is_number(x) for x in found.ravel()):
+    if entries.shape not in shapes or not all(is_number(x) for x in entries.ravel()):
         refuse(what, wanted, value, remedy)
     refuse_huge(what, value)
-    return found.astype(np.float64)
+    return entries.astype(np.float64)
 
 
 def text(what: str, value: Any, remedy: str) -> str:
-    """A string that is not empty. Raises InputError."""
+    """The value as a string that is not empty. Raises InputError."""
     if not isinstance(value, str) or not value:
         refuse(what, "a name", value, remedy)
     return value
 
 
 def members(what: str, value: Any, kinds: tuple[type[T], ...], example: str) -> tuple[T, ...]:
-    """A tuple of things of these types, also where a list was given. Raises InputError."""
+    """The value as a tuple of objects of these types; it may be any iterable. Raises InputError."""
     names = " or ".join(kind.__name__ for kind in kinds)
     if isinstance(value, str | bytes | dict) or not isinstance(value, Iterable):
         refuse(what, f"a tuple of {names}", value, f"write {example}")
-    found = tuple(value)
-    for each in found:
+    objects = tuple(value)
+    for each in objects:
         if not isinstance(each, kinds):
             refuse(what, f"a tuple of {names}", Words(f"{shown(each)} in it"), f"write {example}")
-    return found
+    return objects
 
 
 def one_of(what: str, value: object, allowed: tuple[object, ...]) -> None:

@@ -7,6 +7,7 @@ that room with all rooms below it. Imports inside functions and for type hints c
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -208,3 +209,16 @@ def test_what_is_too_large_is_found(tmp_path: Path) -> None:
     assert sizes(tmp_path) == [
         f"{tmp_path}: 13 files", f"{tmp_path}: 10 rooms", f"{tmp_path / 'file_0.py'}: 301 lines",
     ]  # fmt: skip
+
+
+def test_the_design_page_has_every_room() -> None:
+    """The table of docs/design.md names the rooms of the list, in its order of packages."""
+    text = (ROOT / "docs/design.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ((?:`[\w.]+`(?:, )?)+) \|", text, re.MULTILINE)
+    named = [name for row in rows for name in re.findall(r"`([\w.]+)`", row)]
+    rooms = ["cli" if name == "evolvent" else name.replace("evolvent_meshes", "meshes") for name in named]
+    assert sorted(rooms) == sorted(ROOMS)
+    order = {name: at for at, name in enumerate(rooms)}
+    below = [(name, target) for name, entries in ROOMS.items() for entry in entries for target in ROOMS
+             if allows(entry, target) and order[target] > order[name]]  # fmt: skip
+    assert below == []

@@ -1,4 +1,4 @@
-"""The error of a gear or a pair that cannot exist."""
+"""Error of a gear that cannot be cut, or of a pair that cannot run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ from evolvent_meshes.errors import InputError
 
 
 class GeometryError(InputError):
-    """A gear or a pair that can't exist: which key, what was found, what is allowed, what to do."""
+    """A gear that cannot be cut, or a pair that cannot run.
+
+    key: name of the field.
+    found: its value.
+    allowed: the values that are allowed.
+    remedy: what to do.
+    """
 
     def __init__(self, key: str, found: object, allowed: str, remedy: str) -> None:
         super().__init__(f"{key}: found {found}, allowed {allowed}. {remedy}")
@@ -14,6 +20,6 @@ class GeometryError(InputError):
 
 
 def require(holds: bool, key: str, found: object, allowed: str, remedy: str) -> None:
-    """Raise GeometryError unless a rule holds; figures are shown with six digits."""
+    """Raises GeometryError unless a rule holds; numbers are shown with six digits."""
     if not holds:
         raise GeometryError(key, f"{found:.6g}" if isinstance(found, float) else found, allowed, remedy)

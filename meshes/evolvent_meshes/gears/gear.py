@@ -1,4 +1,4 @@
-"""One gear, frozen and validated."""
+"""A gear whose data have been checked."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from evolvent_meshes.gears.gear_limits import check_gear
 
 @dataclass(frozen=True, kw_only=True)
 class GearParameters(GearGeometry):
-    """One external involute gear that can be cut: keys and derived quantities are GearGeometry's.
+    """An external involute gear that can be cut by its rack; fields and properties are those of `GearGeometry`.
 
     Raises GeometryError if no such gear can be cut.
     """
@@ -37,9 +37,21 @@ class GearParameters(GearGeometry):
         hand: int = 1,
         modifications: Modifications | None = None,
     ) -> GearParameters:
-        """A gear from its rack's coefficients h_a*, h_f*, ρ_f* and the tip shortening Δy (multiples of m_n).
+        """A gear from the coefficients of its rack, which are multiples of m_n: d_a = d + 2 m_n (h_a* + x − Δy),
+        d_f = d − 2 m_n (h_f* − x), ISO 21771:2007, 4.5.
 
-        d_a = d + 2 m_n (h_a* + x − Δy), d_f = d − 2 m_n (h_f* − x) [4.5].
+        addendum_coefficient: h_a*.
+        dedendum_coefficient: h_f*.
+        rack_tip_radius_coefficient: ρ_f*.
+        tip_shortening_coefficient: Δy.
+        The other parameters are the fields of `GearGeometry`. Raises GeometryError if no such gear can be cut.
+
+        >>> gear = GearParameters.from_rack(
+        ...     z=30, normal_module=2.0, normal_pressure_angle_deg=20.0, profile_shift=0.2, face_width=10.0,
+        ...     bore_diameter=20.0,
+        ... )
+        >>> print(f"tip {gear.tip_diameter:.1f} mm, root {gear.root_diameter:.1f} mm")
+        tip 64.8 mm, root 55.8 mm
         """
         d = z * normal_module / math.cos(math.radians(helix_angle_deg))
         addendum = addendum_coefficient + profile_shift - tip_shortening_coefficient

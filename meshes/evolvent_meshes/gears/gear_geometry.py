@@ -1,7 +1,7 @@
-"""One gear: the given numbers, and everything that follows from them.
+"""Geometry of one gear: its data, and the quantities that follow from them.
 
-Symbols and clauses are those of ISO 21771:2007 (external cylindrical involute gears, parallel axes); the clause stands
-in brackets behind each quantity. Lengths are mm, angles rad unless a name says otherwise.
+Symbols are those of ISO 21771:2007 (external cylindrical involute gears, parallel axes), whose clause is in brackets
+after each quantity. Lengths are in mm and angles in rad, unless a name says otherwise.
 """
 
 from __future__ import annotations
@@ -11,18 +11,19 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 
-def involute(angle: float) -> float:
+def involute_function(angle: float) -> float:
     """Involute function inv α = tan α − α [4.3.9], angle in rad."""
     return math.tan(angle) - angle
 
 
 @dataclass(frozen=True)
 class Modifications:
-    """Material taken off the loaded flank, as normal offsets of the exact involute helicoid.
+    """Modifications of the loaded flank: material removed, measured normal to the exact involute helicoid.
 
-    tip_relief_um: relief at the tip circle. tip_relief_start_diameter: where it starts [mm]; it grows from there with
-        the roll distance, linearly or with its square (`tip_relief_parabolic`).
-    lead_crowning_um: offset at both ends of the face width, a parabola of z that vanishes at mid-face.
+    tip_relief_um: tip relief at the tip circle [µm].
+    tip_relief_start_diameter: diameter at which the tip relief starts [mm]; None without tip relief.
+    tip_relief_parabolic: whether it grows with the square of the roll length from there, instead of linearly.
+    lead_crowning_um: crowning at both ends of the face width [µm], a parabola of z that is 0 at mid-face.
     """
 
     tip_relief_um: float = 0.0
@@ -32,17 +33,26 @@ class Modifications:
 
     @property
     def is_empty(self) -> bool:
-        """True if the flank is the plain involute helicoid."""
+        """Whether the flank is the involute helicoid without modifications."""
         return self.tip_relief_um == 0.0 and self.lead_crowning_um == 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class GearGeometry:
-    """Numbers of one external involute gear, not checked: `gear.GearParameters` is a gear that can be cut.
+    """Data of one external involute gear, not checked; `gear.GearParameters` is a gear that can be cut.
 
-    z: teeth. normal_module, face_width, tip_diameter, root_diameter, bore_diameter: mm. rack_tip_radius: radius of the
-    generating rack's rounded tip in its normal section [mm]. helix_angle_deg ≥ 0 with hand +1 (right) or −1 (left; of
-    no effect for a spur gear). profile_shift: coefficient x.
+    z: number of teeth.
+    normal_module: m_n [mm].
+    normal_pressure_angle_deg: α_n [°].
+    helix_angle_deg: β at the reference cylinder, not negative [°].
+    profile_shift: coefficient x.
+    face_width: b [mm].
+    tip_diameter: d_a [mm].
+    root_diameter: d_f [mm].
+    rack_tip_radius: ρ_f, radius of the generating rack's rounded tip in its normal section [mm].
+    hand: of the helix, +1 right, −1 left; without effect for a spur gear.
+    bore_diameter: of the bore, at which the gear is held [mm].
+    modifications: of the loaded flank.
     """
 
     z: int
@@ -60,7 +70,7 @@ class GearGeometry:
 
     @property
     def helix_angle(self) -> float:
-        """β at the reference cylinder, ≥ 0."""
+        """β at the reference cylinder, not negative."""
         return math.radians(self.helix_angle_deg)
 
     @property
@@ -105,12 +115,12 @@ class GearGeometry:
 
     @cached_property
     def twist(self) -> float:
-        """Turn of the transverse section about +z per mm of z [rad/mm]: hand·tan β / (d/2) = hand·tan β_b / r_b."""
+        """Rotation of the transverse section about +z per mm of z [rad/mm], hand·tan β / (d/2) = hand·tan β_b / r_b."""
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
 
     @property
     def addendum_coefficient(self) -> float:
-        """(d_a − d) / 2m_n − x: the rack addendum h_a* less any tip shortening [4.5.3]."""
+        """(d_a − d) / 2m_n − x, the addendum coefficient h_a* of the rack less the tip shortening [4.5.3]."""
         return (self.tip_diameter - self.reference_diameter) / (2.0 * self.normal_module) - self.profile_shift
 
     @property
@@ -120,40 +130,40 @@ class GearGeometry:
 
     @property
     def tooth_half_angle(self) -> float:
-        """ψ = (π + 4x tan α_n) / 2z: half the tooth's angle on the reference circle [4.7.2]."""
+        """ψ = (π + 4x tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
         return (math.pi + 4.0 * self.profile_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
 
     @cached_property
     def base_half_angle(self) -> float:
-        """ψ_b = ψ + inv α_t: half the tooth's angle on the base circle [4.7.2]."""
-        return self.tooth_half_angle + involute(self.transverse_pressure_angle)
+        """ψ_b = ψ + inv α_t, tooth thickness half angle at the base circle [4.7.2]."""
+        return self.tooth_half_angle + involute_function(self.transverse_pressure_angle)
 
     def half_angle(self, diameter: float) -> float:
-        """ψ_y: polar angle of the θ > 0 flank at a diameter ≥ d_b, mid-face section [4.7.2].
+        """ψ_y, tooth thickness half angle at a diameter d_y ≥ d_b: polar angle of the flank θ > 0 at mid-face [4.7.2].
 
-        Negative beyond the pointed tooth.
+        Negative beyond the diameter at which the tooth is pointed.
         """
-        return self.base_half_angle - involute(math.acos(min(1.0, self.base_diameter / diameter)))
+        return self.base_half_angle - involute_function(math.acos(min(1.0, self.base_diameter / diameter)))
 
     def transverse_thickness(self, diameter: float) -> float:
-        """s_yt = d_y ψ_y, the tooth's arc at a diameter [4.7.1]."""
+        """s_yt = d_y ψ_y, transverse tooth thickness at a diameter d_y [4.7.1]."""
         return diameter * self.half_angle(diameter)
 
     def normal_thickness(self, diameter: float) -> float:
-        """s_yn = s_yt cos β_y, tan β_y = tan β d_y/d [4.7.5, 4.3.3]."""
+        """s_yn = s_yt cos β_y, normal tooth thickness at a diameter d_y; tan β_y = tan β d_y/d [4.7.5, 4.3.3]."""
         helix = math.atan(math.tan(self.helix_angle) * diameter / self.reference_diameter)
         return self.transverse_thickness(diameter) * math.cos(helix)
 
     def roll_length(self, diameter: float) -> float:
-        """ρ_y = √(d_y² − d_b²) / 2: transverse curvature radius, length from the base tangent point [4.3.8]."""
+        """ρ_y = √(d_y² − d_b²) / 2, roll length: transverse radius of curvature at a diameter d_y [4.3.8]."""
         return math.sqrt(max(0.0, diameter**2 - self.base_diameter**2)) / 2.0
 
     @property
     def rack_form_roll_length(self) -> float:
-        """ρ_Ff where the straight rack flank ends; negative: undercut [7.6].
+        """ρ_Ff, roll length at the root form circle as cut by the straight flank of the rack; negative: undercut [7.6].
 
-        The rack's straight flank ends h = (d − d_f)/2 − ρ_f(1 − sin α_n) below the pitch line, which the line of action
-        reaches h / sin α_t before the pitch point.
+        The straight flank ends h = (d − d_f)/2 − ρ_f(1 − sin α_n) below the pitch line; the line of action is there at
+        the distance h / sin α_t before the pitch point.
         """
         depth = (self.reference_diameter - self.root_diameter) / 2.0
         depth -= self.rack_tip_radius * (1.0 - math.sin(self.normal_pressure_angle))
@@ -162,15 +172,15 @@ class GearGeometry:
 
     @property
     def root_form_diameter(self) -> float:
-        """d_Ff, where fillet and involute meet [7.6]."""
+        """d_Ff, root form diameter, at which fillet and involute meet [7.6]."""
         return 2.0 * math.hypot(self.base_radius, self.rack_form_roll_length)
 
     @property
     def rack_tip_half_land(self) -> float:
-        """Half the flat of the rack's tip in its normal section; 0: the tip is one full round.
+        """Half the width of the flat land at the rack's tip, normal section; 0: the tip is a full round.
 
-        The tip circle (radius ρ_f, its lowest point h = (d − d_f)/2 below the pitch line) is tangent to the rack's
-        straight flank, which stands half a space width from the rack tooth's centre line at the pitch line.
+        The tip circle (radius ρ_f, lowest point (d − d_f)/2 below the pitch line) is tangent to the straight flank of
+        the rack, which is half a space width from the centre line of the rack tooth at the pitch line.
         """
         angle, radius = self.normal_pressure_angle, self.rack_tip_radius
         half_space = self.normal_module * (math.pi / 4.0 - self.profile_shift * math.tan(angle))

@@ -1,4 +1,4 @@
-"""What a gear must satisfy so that its rack can cut it."""
+"""Limits of a gear: rules under which its rack can cut it."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from evolvent_meshes.gears.errors import require
 from evolvent_meshes.gears.gear_geometry import GearGeometry
 
 SMALLEST_BORE = 0.01
-"""Of the root diameter: a gear held at a point turns under any torque, and its cells there collapse."""
+"""Smallest bore diameter over the root diameter: the gear is held at the bore, and cells at a point would collapse."""
 SMALLEST_RIM = 1.0
-"""In normal modules: a thinner ring between bore and root is an error of input, not a gear body."""
+"""Smallest thickness of the rim between bore and root, in normal modules."""
 
 
 def check_gear(gear: GearGeometry) -> None:
-    """Raise GeometryError if the gear can't be cut by its rack."""
+    """Raises GeometryError if the gear cannot be cut by its rack."""
     check_numbers(gear)
     check_diameters(gear)
     check_rack(gear)
@@ -22,7 +22,7 @@ def check_gear(gear: GearGeometry) -> None:
 
 
 def check_numbers(gear: GearGeometry) -> None:
-    """Finite numbers in their ranges; what follows may then divide and take roots."""
+    """Each number alone: finite and in its range, so that derived quantities are defined. Raises GeometryError."""
     for key in ("normal_module", "face_width", "tip_diameter", "root_diameter", "bore_diameter"):
         value = getattr(gear, key)
         require(math.isfinite(value) and value > 0.0, key, value, "a finite length above 0 mm", "Give it in mm.")
@@ -38,7 +38,7 @@ def check_numbers(gear: GearGeometry) -> None:
 
 
 def check_diameters(gear: GearGeometry) -> None:
-    """bore < root < tip, a rim that carries the teeth, a tooth that isn't pointed."""
+    """Diameters: bore < root < tip, a rim below the teeth, a tooth that is not pointed. Raises GeometryError."""
     tip, root, bore = gear.tip_diameter, gear.root_diameter, gear.bore_diameter
     require(root < tip, "tip_diameter", tip, f"above root_diameter = {root:.6g} mm", "Exchange or correct the two.")
     require(
@@ -80,7 +80,7 @@ def check_diameters(gear: GearGeometry) -> None:
 
 
 def check_rack(gear: GearGeometry) -> None:
-    """A rack tooth with a tip, that neither undercuts nor leaves the involute outside the tip circle."""
+    """The rack: a tip that is not pointed, no undercut, an involute below the tip circle. Raises GeometryError."""
     space = gear.rack_tip_half_land
     slope = (1.0 - math.sin(gear.normal_pressure_angle)) / math.cos(gear.normal_pressure_angle)
     largest = gear.rack_tip_radius + space / slope
@@ -126,7 +126,7 @@ def check_rack(gear: GearGeometry) -> None:
 
 
 def check_modifications(gear: GearGeometry) -> None:
-    """Reliefs that take material off, and start on the involute."""
+    """Modifications: not negative, less than the tooth's thickness, starting on the involute. Raises GeometryError."""
     given = gear.modifications
     for key in ("tip_relief_um", "lead_crowning_um"):
         value = getattr(given, key)

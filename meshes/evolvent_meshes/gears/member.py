@@ -9,7 +9,7 @@ MemberName = Literal["pinion", "wheel"]
 
 
 class Member(IntEnum):
-    """One gear of a pair, and its index wherever a pair has one entry a gear, as in `GearPair.gears`."""
+    """One gear of a pair; its value is the index in tuples with one entry for each gear, such as `GearPair.gears`."""
 
     PINION = 0
     WHEEL = 1
@@ -21,8 +21,10 @@ class Member(IntEnum):
 
     @property
     def sign(self) -> int:
-        """+1 for the pinion, −1 for the wheel: of what counts the other way on the wheel. Tooth pair i has tooth
-        sign·i, the roll length grows by sign·ξ, the flanks open by sign·u."""
+        """+1 for the pinion, −1 for the wheel: the sign of quantities that are opposite on the two gears.
+
+        Tooth pair i consists of the teeth sign·i, the roll length increases by sign·ξ, the gap by sign·u.
+        """
         return 1 if self is Member.PINION else -1
 
     @property

@@ -1,7 +1,7 @@
-"""A gear pair: two gears and how they stand, and everything that follows from them.
+"""Geometry of a gear pair: two gears and the position of their axes, and the quantities that follow from them.
 
-Symbols and clauses are those of ISO 21771:2007 (external cylindrical involute gears, parallel axes); the clause stands
-in brackets behind each quantity. Lengths are mm, angles rad unless a name says otherwise.
+Symbols are those of ISO 21771:2007 (external cylindrical involute gears, parallel axes), whose clause is in brackets
+after each quantity. Lengths are in mm and angles in rad, unless a name says otherwise.
 """
 
 from __future__ import annotations
@@ -17,16 +17,18 @@ from scipy.optimize import brentq
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.errors import require
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import involute
+from evolvent_meshes.gears.gear_geometry import involute_function
 
 
 @dataclass(frozen=True)
 class PairGeometry:
-    """Numbers of a pinion that drives a wheel, not checked: `pair.GearPair` is a pair that can run.
+    """Data of a pinion that drives a wheel, not checked; `pair.GearPair` is a pair that can run.
 
-    centre_distance: of the axes [mm].
-    misalignment_um: rotation of the wheel axis in the plane of action, as its deviation over the common face width;
-        positive opens the gap of the loaded flanks towards +z.
+    pinion: the driving gear.
+    wheel: the driven gear.
+    centre_distance: a, of the axes [mm].
+    misalignment_um: deviation of the wheel's axis in the plane of action over the common face width [µm]; a positive
+        one opens the gap of the loaded flanks towards +z.
     """
 
     pinion: GearParameters
@@ -41,79 +43,79 @@ class PairGeometry:
 
     @property
     def ratio(self) -> float:
-        """u = z_2 / z_1 [5.2.1]."""
+        """Gear ratio u = z_2 / z_1 [5.2.1]."""
         return self.wheel.z / self.pinion.z
 
     @property
     def face_width(self) -> float:
-        """b_w, the common face width; the wider gear overhangs evenly."""
+        """b_w, common face width; the wider gear projects equally on both sides."""
         return min(self.pinion.face_width, self.wheel.face_width)
 
     @cached_property
     def operating_pressure_angle(self) -> float:
-        """α_wt, cos α_wt = (r_b1 + r_b2) / a [5.2.4]."""
+        """Working transverse pressure angle α_wt, cos α_wt = (r_b1 + r_b2) / a [5.2.4]."""
         return math.acos((self.pinion.base_radius + self.wheel.base_radius) / self.centre_distance)
 
     @property
     def tight_pressure_angle(self) -> float:
-        """α_wt at which the shifts leave no backlash: inv α_wt = inv α_t + 2 tan α_n (x_1 + x_2)/(z_1 + z_2) [5.2.4].
+        """α_wt without backlash, inv α_wt = inv α_t + 2 tan α_n (x_1 + x_2)/(z_1 + z_2) [5.2.4].
 
-        Raises GeometryError if the shifts are so negative that there is none.
+        Raises GeometryError if the profile shifts are so negative that there is none.
         """
         gear, shift = self.pinion, self.pinion.profile_shift + self.wheel.profile_shift
         rise = 2.0 * math.tan(gear.normal_pressure_angle) * shift / (self.pinion.z + self.wheel.z)
-        target = involute(gear.transverse_pressure_angle) + rise
+        target = involute_function(gear.transverse_pressure_angle) + rise
         require(target >= 0.0, "profile_shift", shift, "a sum that leaves a tight mesh", "Raise the profile shifts.")
-        return float(brentq(lambda angle: involute(angle) - target, 0.0, 1.5, xtol=1e-15))
+        return float(brentq(lambda angle: involute_function(angle) - target, 0.0, 1.5, xtol=1e-15))
 
     @property
     def tight_centre_distance(self) -> float:
-        """a at which the shifts leave no backlash, (r_b1 + r_b2) / cos α_wt [5.2.4]; GeometryError if there is none."""
+        """Centre distance without backlash, (r_b1 + r_b2) / cos α_wt [5.2.4]. Raises GeometryError if there is none."""
         return (self.pinion.base_radius + self.wheel.base_radius) / math.cos(self.tight_pressure_angle)
 
     @property
     def working_pitch_diameters(self) -> tuple[float, float]:
-        """(d_w1, d_w2) = d_b / cos α_wt [5.2.5]."""
+        """Working pitch diameters (d_w1, d_w2) = d_b / cos α_wt [5.2.5]."""
         cosine = math.cos(self.operating_pressure_angle)
         return self.pinion.base_diameter / cosine, self.wheel.base_diameter / cosine
 
     @cached_property
     def pitch_point_roll_lengths(self) -> tuple[float, float]:
-        """Transverse curvature radii (ρ_C1, ρ_C2) = r_b tan α_wt at the pitch point [5.4.5.3]."""
+        """Transverse radii of curvature (ρ_C1, ρ_C2) = r_b tan α_wt at the pitch point [5.4.5.3]."""
         tangent = math.tan(self.operating_pressure_angle)
         return self.pinion.base_radius * tangent, self.wheel.base_radius * tangent
 
     @cached_property
     def path_of_contact(self) -> tuple[float, float]:
-        """Roll distances (ξ_A, ξ_E) of the start (wheel tip) and the end (pinion tip) of engagement [5.4.5.2]."""
+        """Roll distances (ξ_A, ξ_E) at the start (wheel tip) and end (pinion tip) of the path of contact [5.4.5.2]."""
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         start = pitch_2 - self.wheel.roll_length(self.wheel.tip_diameter)
         return start, self.pinion.roll_length(self.pinion.tip_diameter) - pitch_1
 
     @property
     def transverse_contact_ratio(self) -> float:
-        """ε_α = g_α / p_et [5.4.7.1]."""
+        """Transverse contact ratio ε_α = g_α / p_et [5.4.7.1]."""
         start, end = self.path_of_contact
         return (end - start) / self.pinion.transverse_base_pitch
 
     @property
     def overlap_ratio(self) -> float:
-        """ε_β = b_w sin β / π m_n [5.4.7.3]."""
+        """Overlap ratio ε_β = b_w sin β / π m_n [5.4.7.3]."""
         return self.face_width * math.sin(self.pinion.helix_angle) / (math.pi * self.pinion.normal_module)
 
     @property
     def total_contact_ratio(self) -> float:
-        """ε_γ = ε_α + ε_β [5.4.7.5]."""
+        """Total contact ratio ε_γ = ε_α + ε_β [5.4.7.5]."""
         return self.transverse_contact_ratio + self.overlap_ratio
 
     @property
     def engagement_angle(self) -> float:
-        """Pinion rotation of one tooth's whole engagement, ε_γ 2π/z_1."""
+        """Rotation of the pinion during the engagement of one tooth, ε_γ 2π/z_1."""
         return self.total_contact_ratio * 2.0 * math.pi / self.pinion.z
 
     @property
     def active_start_diameters(self) -> tuple[float, float]:
-        """(d_Nf1, d_Nf2): where the mate's tip starts or ends the active profile [5.4.1]."""
+        """(d_Nf1, d_Nf2), diameters at which the active profile begins, as the mate's tip reaches no deeper [5.4.1]."""
         start, end = self.path_of_contact
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         pinion, wheel = self.pinion.base_radius, self.wheel.base_radius
@@ -121,66 +123,66 @@ class PairGeometry:
 
     @property
     def tip_shortening(self) -> float:
-        """Δy = x_1 + x_2 − (a − a_0)/m_n, the tip shortening that keeps the racks' tip clearance [4.5.2]."""
+        """Tip shortening Δy = x_1 + x_2 − (a − a_0)/m_n that keeps the tip clearance of the racks [4.5.2]."""
         reference = (self.pinion.reference_diameter + self.wheel.reference_diameter) / 2.0
         spread = (self.centre_distance - reference) / self.pinion.normal_module
         return self.pinion.profile_shift + self.wheel.profile_shift - spread
 
     @property
     def addendum_coefficients(self) -> tuple[float, float]:
-        """The racks' (h_a1*, h_a2*), the tip shortening added back."""
+        """Addendum coefficients (h_a1*, h_a2*) of the racks, before tip shortening."""
         shortening = self.tip_shortening
         return self.pinion.addendum_coefficient + shortening, self.wheel.addendum_coefficient + shortening
 
     @property
     def tip_clearances(self) -> tuple[float, float]:
-        """(pinion tip to wheel root, wheel tip to pinion root) [5.2.7]."""
+        """Tip clearances of pinion tip to wheel root and wheel tip to pinion root [5.2.7]."""
         first = self.centre_distance - (self.pinion.tip_diameter + self.wheel.root_diameter) / 2.0
         return first, self.centre_distance - (self.wheel.tip_diameter + self.pinion.root_diameter) / 2.0
 
     @property
     def circumferential_backlash(self) -> float:
-        """j_wt = p_wt − s_w1 − s_w2 on the working pitch circles."""
+        """Circumferential backlash j_wt = p_wt − s_w1 − s_w2 on the working pitch circles."""
         pitch_1, pitch_2 = self.working_pitch_diameters
         thickness = self.pinion.transverse_thickness(pitch_1) + self.wheel.transverse_thickness(pitch_2)
         return math.pi * pitch_1 / self.pinion.z - thickness
 
     @property
     def normal_backlash(self) -> float:
-        """j_bn = j_wt cos α_wt cos β_b."""
+        """Normal backlash j_bn = j_wt cos α_wt cos β_b."""
         cosines = math.cos(self.operating_pressure_angle) * math.cos(self.pinion.base_helix_angle)
         return self.circumferential_backlash * cosines
 
     def curvature_radii(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:
-        """Transverse curvature radii (ρ_1, ρ_2) [mm] of the flanks in contact at roll distances ξ [5.4.5.3]."""
+        """Transverse radii of curvature (ρ_1, ρ_2) (…) [mm] of the flanks at roll distances ξ (…) [mm] [5.4.5.3]."""
         xi = np.asarray(roll_distance, dtype=float)
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
         return pitch_1 + xi, pitch_2 - xi
 
     def specific_sliding(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:
-        """Specific sliding ζ_1 = 1 − v_2/v_1 and ζ_2 = 1 − v_1/v_2 at roll distances ξ, v = ωρ along the profiles."""
+        """Specific sliding ζ_1 = 1 − v_2/v_1 and ζ_2 = 1 − v_1/v_2 (…) at roll distances ξ (…) [mm], with v = ωρ."""
         rho_1, rho_2 = self.curvature_radii(roll_distance)
         v_1, v_2 = self.ratio * rho_1, rho_2
         return 1.0 - v_2 / v_1, 1.0 - v_1 / v_2
 
     def normal_curvature_radii(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:
-        """Curvature radii across the contact line, ρ / cos β_b [mm]."""
+        """Radii of curvature across the contact line, ρ / cos β_b (…) [mm], at roll distances ξ (…) [mm]."""
         rho_1, rho_2 = self.curvature_radii(roll_distance)
         cosine = math.cos(self.pinion.base_helix_angle)
         return rho_1 / cosine, rho_2 / cosine
 
     def relative_curvature_radius(self, roll_distance: ArrayLike) -> Floats:
-        """Hertz' relative radius ρ_n1 ρ_n2 / (ρ_n1 + ρ_n2) across the contact line [mm]."""
+        """Relative radius of curvature ρ_n1 ρ_n2 / (ρ_n1 + ρ_n2) (…) [mm] across the contact line, at ξ (…) [mm]."""
         rho_1, rho_2 = self.normal_curvature_radii(roll_distance)
         return np.asarray(rho_1 * rho_2 / (rho_1 + rho_2))
 
     def roll_distance(self, rotation: ArrayLike, tooth: ArrayLike = 0, z: ArrayLike = 0.0) -> Floats:
-        """ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b [mm] of tooth pair i at height z and pinion rotation φ [rad]."""
+        """ξ = r_b1(φ + 2πi/z_1) + hand_1 z tan β_b (…) [mm] of tooth pair i at z [mm] and pinion rotation φ [rad]."""
         angle = np.asarray(rotation, dtype=float) + 2.0 * math.pi * np.asarray(tooth) / self.pinion.z
         return np.asarray(self.pinion.base_radius * (angle + self.pinion.twist * np.asarray(z, dtype=float)))
 
     def teeth_in_contact(self, rotation: float) -> list[int]:
-        """Indices i, ascending, of the tooth pairs that have a contact line at pinion rotation φ [rad]."""
+        """Indices i, ascending, of the tooth pairs with a contact line at pinion rotation φ [rad]."""
         start, end = self.path_of_contact
         reach = self.face_width / 2.0 * math.tan(self.pinion.base_helix_angle)
         pitch = self.pinion.transverse_base_pitch
@@ -188,7 +190,7 @@ class PairGeometry:
         return list(range(math.ceil((start - reach - here) / pitch), math.floor((end + reach - here) / pitch) + 1))
 
     def contact_line_length(self, rotation: float) -> float:
-        """Total length [mm] of the contact lines at pinion rotation φ [rad], undeformed flanks without modification.
+        """Total length [mm] of the contact lines at pinion rotation φ [rad], for rigid flanks without modifications.
 
         Its mean over a pitch is ε_α b_w / cos β_b.
         """

@@ -1,4 +1,4 @@
-"""What two gears must satisfy so that they can run together."""
+"""Limits of a gear pair: rules under which two gears can run together."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair_geometry import PairGeometry
 
 ROUNDING = 1e-3
-"""In normal modules: shifts, diameters and centre distances printed to three or four digits may miss by this much."""
+"""Tolerance in normal modules, for shifts, diameters and centre distances given with three or four digits."""
 
 
 def check_pair(pair: PairGeometry) -> None:
-    """Raise GeometryError if the two gears can't run together at this centre distance."""
+    """Raises GeometryError if the two gears cannot run together at this centre distance."""
     check_partners(pair)
     check_distance(pair)
     check_roots(pair)
@@ -21,7 +21,7 @@ def check_pair(pair: PairGeometry) -> None:
 
 
 def check_partners(pair: PairGeometry) -> None:
-    """Same rack, opposite hands."""
+    """Both gears have the same rack, and helical ones opposite hands. Raises GeometryError."""
     pinion, wheel = pair.gears
     for key in ("normal_module", "normal_pressure_angle_deg", "helix_angle_deg"):
         one, two = getattr(pinion, key), getattr(wheel, key)
@@ -42,7 +42,7 @@ def check_partners(pair: PairGeometry) -> None:
 
 
 def check_distance(pair: PairGeometry) -> None:
-    """A line of action exists and the teeth fit into each other's spaces."""
+    """The centre distance: a line of action exists, and the backlash is not negative. Raises GeometryError."""
     distance, module = pair.centre_distance, pair.pinion.normal_module
     bases = pair.pinion.base_radius + pair.wheel.base_radius
     require(
@@ -69,7 +69,7 @@ def check_distance(pair: PairGeometry) -> None:
 
 
 def check_roots(pair: PairGeometry) -> None:
-    """No tip reaches the mate's root circle or runs on its fillet."""
+    """The roots: no tip reaches the root circle or the fillet of its mate. Raises GeometryError."""
     curvature_1, _ = pair.curvature_radii(pair.path_of_contact[0])
     _, curvature_2 = pair.curvature_radii(pair.path_of_contact[1])
     check_root("pinion", pair.pinion, "wheel", pair.wheel, pair.tip_clearances[1], float(curvature_1))
@@ -79,7 +79,11 @@ def check_roots(pair: PairGeometry) -> None:
 def check_root(
     name: str, gear: GearParameters, mate_name: str, mate: GearParameters, clearance: float, roll_length: float
 ) -> None:
-    """One gear's root: the clearance under its mate's tip, and the roll length down to which that tip touches it."""
+    """The root of one gear, called `name`, against the tip of its mate. Raises GeometryError.
+
+    clearance: between the root circle and the mate's tip [mm].
+    roll_length: smallest roll length at which the mate's tip touches the flank [mm].
+    """
     key, tip, form = f"{mate_name}.tip_diameter", mate.tip_diameter, gear.rack_form_roll_length
     require(
         clearance > 0.0,
@@ -100,7 +104,7 @@ def check_root(
 
 
 def check_contact(pair: PairGeometry) -> None:
-    """One tooth pair takes over before the last one leaves."""
+    """The contact: a path of contact exists, and the total contact ratio is at least 1. Raises GeometryError."""
     start, end = pair.path_of_contact
     require(
         end > start,

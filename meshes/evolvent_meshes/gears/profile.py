@@ -1,14 +1,13 @@
-"""The exact transverse profile of one tooth sector, mid-face section, in the gear's own frame. NumPy only.
+"""Exact transverse profile of one tooth sector at mid-face, in the gear's frame.
 
-The half profile of the θ > 0 flank runs from the sector's cut at θ = π/z over root arc, fillet, involute and tip arc to
-the tooth's centre line θ = 0 (`SEGMENTS`, in this order); `mirror` gives the other half. The involute carries no
-modifications: those belong to `evolvent_meshes.gears.flank`.
+The half profile at θ > 0 runs from the sector's cut at θ = π/z over root arc, fillet, involute and tip arc to the
+tooth's centre line θ = 0 (`SEGMENTS`, in this order); `mirror` gives the other half. The involute has no modifications;
+`evolvent_meshes.gears.flank` has them.
 
-The fillet is the envelope of the generating rack's rounded tip. The rack is straight along its teeth, so the transverse
-section of a helical gear is cut by the transverse section of the rack: the normal section with its tip circle stretched
-by 1/cos β along the pitch line, an ellipse. This is exact; the usual circle of a virtual spur gear is not needed. The
-law of gearing gives the rack's travel at which a point of the tip cuts: its normal passes through the pitch point
-(Litvin and Fuentes, Gear Geometry and Applied Theory, 2004, chapter 6; ISO 6336-3 uses the same fillet).
+The fillet is the envelope of the generating rack's rounded tip. The transverse section of a helical gear is generated
+by the transverse section of the rack, in which the tip circle is an ellipse, stretched by 1/cos β along the pitch line.
+This is exact, without a virtual spur gear. By the law of gearing a point of the tip cuts when its normal passes through
+the pitch point (Litvin and Fuentes, Gear Geometry and Applied Theory, 2004, chapter 6; ISO 6336-3 has the same fillet).
 """
 
 from __future__ import annotations
@@ -25,62 +24,65 @@ from evolvent_meshes.gears.gear import GearParameters
 
 SEGMENTS = ("root", "fillet", "involute", "tip")
 FILLET_TABLE = 513
-"""Points of the table that spreads the fillet's parameter by arc length; the points themselves stay exact."""
+"""Points of the table of the fillet's arc length over its parameter; points of the fillet are exact."""
 
 
 def polar(radius: ArrayLike, angle: ArrayLike) -> Floats:
-    """Points (…, 2) from radii [mm] and polar angles [rad]."""
+    """Points (…, 2) [mm] at radii (…) [mm] and polar angles (…) [rad]."""
     r, theta = np.asarray(radius, dtype=float), np.asarray(angle, dtype=float)
     return np.stack([r * np.cos(theta), r * np.sin(theta)], axis=-1)
 
 
 def mirror(points: Floats) -> Floats:
-    """The points (…, 2) of the other half of the tooth: θ → −θ."""
+    """Mirror images (…, 2) of points (…, 2) on the other half of the tooth, θ → −θ."""
     return np.asarray(points * np.array([1.0, -1.0]))
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Half profile of a gear's tooth sector, θ from π/z (cut) to 0 (tooth centre); all points (…, 2) in mm."""
+    """Half profile of a tooth sector, from θ = π/z (cut) to θ = 0 (centre of the tooth); points (…, 2) [mm].
+
+    gear: the gear.
+    """
 
     gear: GearParameters
 
     @property
     def sector_angle(self) -> float:
-        """θ of the cut, π/z."""
+        """θ of the cut, π/z [rad]."""
         return math.pi / self.gear.z
 
     @property
     def radii(self) -> tuple[float, float, float]:
-        """(root, form, tip) radius: root arc | fillet | involute | tip corner."""
+        """Radii of the root, root form and tip circles [mm]."""
         return self.gear.root_diameter / 2.0, self.gear.root_form_diameter / 2.0, self.gear.tip_diameter / 2.0
 
     @property
     def roll_lengths(self) -> tuple[float, float]:
-        """ρ_y at the two ends of the involute, form circle and tip circle."""
+        """Roll lengths ρ at the root form circle and the tip circle [mm]."""
         return self.gear.rack_form_roll_length, self.gear.roll_length(self.gear.tip_diameter)
 
     @property
     def tip_angle(self) -> float:
-        """θ of the tip corner."""
+        """θ of the tip corner [rad]."""
         return self.gear.half_angle(self.gear.tip_diameter)
 
     @property
     def root_angle(self) -> float:
-        """θ where fillet and root arc meet, ≤ π/z (equal: a full round root, no arc)."""
+        """θ at which fillet and root arc meet [rad], at most π/z; π/z for a full round root without arc."""
         return float(self._generated(math.pi / 2.0)[1])
 
     def angle(self, radius: ArrayLike) -> Floats:
-        """θ(r) of the involute [rad], radii ≥ r_b [mm]."""
+        """θ(r) (…) [rad] of the involute at radii r ≥ r_b (…) [mm]."""
         return np.asarray(self._involute_angle(self.roll_length(radius)))
 
     def roll_length(self, radius: ArrayLike) -> Floats:
-        """ρ(r) = √(r² − r_b²) [mm]."""
+        """Roll lengths ρ(r) = √(r² − r_b²) (…) [mm] at radii (…) [mm]; 0 below the base circle."""
         r, base = np.asarray(radius, dtype=float), self.gear.base_radius
         return np.sqrt(np.maximum((r - base) * (r + base), 0.0))
 
     def radius(self, roll_length: ArrayLike) -> Floats:
-        """r(ρ) = √(r_b² + ρ²) [mm]."""
+        """Radii r(ρ) = √(r_b² + ρ²) (…) [mm] at roll lengths (…) [mm]."""
         return np.hypot(self.gear.base_radius, np.asarray(roll_length, dtype=float))
 
     def _involute_angle(self, roll_length: Floats) -> Floats:
@@ -88,30 +90,32 @@ class Profile:
         return np.asarray(self.gear.base_half_angle - (tangent - np.arctan(tangent)))
 
     def involute(self, radius: ArrayLike) -> Floats:
-        """Points of the exact involute at radii [mm]."""
+        """Points (…, 2) of the involute at radii (…) [mm]."""
         return polar(radius, self.angle(radius))
 
     def involute_at_roll(self, roll_length: ArrayLike) -> Floats:
-        """Points of the exact involute at roll lengths ρ [mm] from the base tangent point."""
+        """Points (…, 2) of the involute at roll lengths ρ (…) [mm]."""
         rho = np.asarray(roll_length, dtype=float)
         return polar(self.radius(rho), self._involute_angle(rho))
 
     def normal(self, roll_length: ArrayLike) -> Floats:
-        """Outward unit normals (…, 2) of the involute at roll lengths ρ: along the tangent to the base circle."""
+        """Outward unit normals (…, 2) of the involute at roll lengths ρ (…) [mm], tangent to the base circle."""
         angle = self.gear.base_half_angle - np.asarray(roll_length, dtype=float) / self.gear.base_radius
         return np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
 
     @cached_property
     def _rack_tip_centre(self) -> tuple[float, float]:
-        """Centre of the tip circle in the rack's normal section: (half land, height over the pitch line ≤ 0)."""
+        """Centre of the rack's tip circle, normal section: half land, height above the pitch line (at most 0) [mm]."""
         depth = (self.gear.reference_diameter - self.gear.root_diameter) / 2.0
         return self.gear.rack_tip_half_land, self.gear.rack_tip_radius - depth
 
     def _generated(self, direction: ArrayLike) -> tuple[Floats, Floats]:
-        """(r, θ) cut by the rack tip's point whose normal stands at an angle from the pitch line, α_n to π/2.
+        """Radii and angles θ (…) generated by points of the rack's tip.
 
-        u is the tangential, v the radial coordinate from the pitch point in the rack's frame. The rack travels s while
-        the gear turns by s/r; u, v cuts at s = v n_u/n_v − u, when its normal passes through the pitch point.
+        direction: (…) angle of the tip's normal from the pitch line, from α_n to π/2 [rad].
+        u and v are the tangential and radial coordinates from the pitch point in the rack's frame. The rack moves by s
+        while the gear turns by s/r; the point (u, v) cuts at s = v n_u/n_v − u, when its normal passes through the
+        pitch point.
         """
         psi = np.asarray(direction, dtype=float)
         stretch, reference = math.cos(self.gear.helix_angle), self.gear.reference_diameter / 2.0
@@ -125,35 +129,35 @@ class Profile:
 
     @cached_property
     def _fillet_table(self) -> tuple[Floats, Floats]:
-        """(arc length from the root arc [mm], direction of the rack tip's normal)."""
+        """Arc lengths (n,) from the root arc [mm], and directions (n,) of the rack tip's normal [rad]."""
         psi = np.linspace(math.pi / 2.0, self.gear.normal_pressure_angle, FILLET_TABLE)
         steps = np.linalg.norm(np.diff(polar(*self._generated(psi)), axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)]), psi
 
     def fillet(self, t: ArrayLike) -> Floats:
-        """Exact trochoid points at t ∈ [0, 1], by arc length from the root arc (0) to the form circle (1)."""
+        """Points (…, 2) of the fillet at t ∈ [0, 1] (…), by arc length from the root arc to the root form circle."""
         length, psi = self._fillet_table
         return polar(*self._generated(np.interp(np.asarray(t, dtype=float) * length[-1], length, psi)))
 
     def root_arc(self, t: ArrayLike) -> Floats:
-        """Points of the root circle at t ∈ [0, 1] from the cut θ = π/z to the fillet."""
+        """Points (…, 2) of the root circle at t ∈ [0, 1] (…), from the cut θ = π/z to the fillet."""
         angle = self.sector_angle + np.asarray(t, dtype=float) * (self.root_angle - self.sector_angle)
         return polar(np.full_like(angle, self.radii[0]), angle)
 
-    def flank(self, t: ArrayLike) -> Floats:
-        """Exact involute points at t ∈ [0, 1], by arc length from the form circle to the tip corner."""
+    def involute_arc(self, t: ArrayLike) -> Floats:
+        """Points (…, 2) of the involute at t ∈ [0, 1] (…), by arc length from the form circle to the tip corner."""
         start, end = self.roll_lengths
         squares = start**2 + np.asarray(t, dtype=float) * (end**2 - start**2)  # arc length is ρ² / 2r_b
         return self.involute_at_roll(np.sqrt(squares))
 
     def tip_arc(self, t: ArrayLike) -> Floats:
-        """Points of the tip circle at t ∈ [0, 1] from the tip corner to the tooth's centre line."""
+        """Points (…, 2) of the tip circle at t ∈ [0, 1] (…), from the tip corner to the tooth's centre line."""
         angle = self.tip_angle * (1.0 - np.asarray(t, dtype=float))
         return polar(np.full_like(angle, self.radii[2]), angle)
 
     def segment(self, name: str, t: ArrayLike) -> Floats:
-        """Points of one of SEGMENTS at fractions t ∈ [0, 1] of its arc length, in the order of the half profile."""
-        curves = dict(zip(SEGMENTS, (self.root_arc, self.fillet, self.flank, self.tip_arc), strict=True))
+        """Points (…, 2) of one of SEGMENTS at t ∈ [0, 1] (…), by arc length in the direction of the half profile."""
+        curves = dict(zip(SEGMENTS, (self.root_arc, self.fillet, self.involute_arc, self.tip_arc), strict=True))
         return curves[name](t)
 
     @property
@@ -169,7 +173,7 @@ class Profile:
         }
 
     def outline(self, points_per_segment: int = 33) -> Floats:
-        """(n, 2) points of the whole sector's profile, θ from −π/z to π/z, for pictures and area integrals."""
+        """Points (n, 2) of the profile of the whole sector, θ from −π/z to π/z, for figures and area integrals."""
         t = np.linspace(0.0, 1.0, points_per_segment)
         pieces = [self.segment(name, t)[int(i > 0) :] for i, name in enumerate(SEGMENTS)]
         half = np.concatenate(pieces)

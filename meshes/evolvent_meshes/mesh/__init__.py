@@ -1,1 +1,1 @@
-"""Cells, named groups, structured grids, mesh quality, gmsh and VTK files."""
+"""Meshes as arrays with named groups; structured grids, mesh quality, gmsh and VTK files."""

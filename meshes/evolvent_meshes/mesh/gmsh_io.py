@@ -1,4 +1,4 @@
-"""gmsh files and models to MeshData and back. The only file that talks to gmsh."""
+"""Conversion of gmsh files and models to MeshData and back; no other file uses gmsh."""
 
 from __future__ import annotations
 
@@ -14,34 +14,27 @@ import gmsh
 import numpy as np
 
 from evolvent_meshes.arrays import Floats, Ints
-from evolvent_meshes.files import whole
+from evolvent_meshes.files import atomic_file
 from evolvent_meshes.input_checks import shown
-from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, TURNED, MeshData, MeshError
+from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, REVERSED_CELL, MeshData, MeshError
 
 ELEMENT_TYPES: dict[int, tuple[str, int]] = {
-    1: ("interval", 1),
-    2: ("triangle", 1),
-    3: ("quadrilateral", 1),
-    4: ("tetrahedron", 1),
-    5: ("hexahedron", 1),
-    8: ("interval", 2),
-    9: ("triangle", 2),
-    10: ("quadrilateral", 2),
-    11: ("tetrahedron", 2),
-    12: ("hexahedron", 2),
-}
+    1: ("interval", 1), 2: ("triangle", 1), 3: ("quadrilateral", 1), 4: ("tetrahedron", 1), 5: ("hexahedron", 1),
+    8: ("interval", 2), 9: ("triangle", 2), 10: ("quadrilateral", 2), 11: ("tetrahedron", 2), 12: ("hexahedron", 2),
+}  # fmt: skip
+"""Element type of gmsh -> (shape, order)."""
 _TYPE_NUMBERS = {shape: number for number, shape in ELEMENT_TYPES.items()}
 _SERENDIPITY = (16, 17)
 MSH_HEADERS = (b"$MeshFormat", b"$Comments")
 
 
 class NoMeshFile(MeshError, FileNotFoundError):
-    """There is no file to read a mesh from."""
+    """There is no mesh file at the given path."""
 
 
 @contextmanager
 def gmsh_model(name: str) -> Iterator[None]:
-    """A fresh, silent gmsh model that is removed afterwards; works inside a caller's own gmsh session too."""
+    """Context with a new gmsh model without messages, removed at its end; also inside a gmsh session of the caller."""
     owns_session = not gmsh.isInitialized()
     if owns_session:
         gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
@@ -59,24 +52,32 @@ def gmsh_model(name: str) -> Iterator[None]:
 
 
 def read_msh(path: Path | str) -> MeshData:
-    """Read a gmsh file (MSH 4.1 or 2.2) with named physical volumes (surfaces in 2D) and named facet groups, order 1 or
-    2, one cell shape.
+    """Read a gmsh file (MSH 4.1 or 2.2): one cell shape of order 1 or 2, in named physical volumes, in 2D surfaces.
 
-    Lengths are taken as mm. Elements in no physical group are left out, and so are nodes no cell uses; plane surfaces
-    that are numbered clockwise are turned over. Raises MeshError, NoMeshFile where there is none.
+    Lengths are in mm. Named physical groups of facets become the mesh's facet groups. Elements of no physical group and
+    nodes of no cell are left out; plane surfaces that are numbered clockwise are turned over.
+
+    Raises MeshError for an unusable mesh, NoMeshFile where there is no file.
+
+    >>> from evolvent_meshes.shapes.blocks import rectangle
+    >>> with TemporaryDirectory() as folder:
+    ...     write_msh(rectangle(40.0, 20.0, nx=4, ny=2), f"{folder}/block.msh")
+    ...     mesh = read_msh(f"{folder}/block.msh")
+    >>> len(mesh.cells), sorted(mesh.facets), list(mesh.volumes)
+    (8, ['bottom', 'left', 'right', 'top'], ['body'])
     """
     if not isinstance(path, str | os.PathLike):
         raise MeshError(f"mesh file: wanted the path of a gmsh file, found {shown(path)}; write read_msh('block.msh')")
     _refuse_scripts(Path(path))
     with gmsh_model("read"), TemporaryDirectory() as folder:
         alias = Path(folder) / "mesh.msh"
-        alias.symlink_to(Path(path).resolve())  # away from a .opt file beside it, which gmsh would run
+        alias.symlink_to(Path(path).resolve())  # away from a .opt file beside it, which gmsh would execute
         try:
             gmsh.merge(str(alias))
         except Exception as error:
             raise MeshError(
-                f"mesh file {path}: wanted a whole mesh in gmsh's format, found what gmsh cannot read; write it by "
-                "gmsh.write, or export it as MSH 4.1 or 2.2"
+                f"mesh file {path}: wanted a complete mesh in gmsh's format, found one that gmsh cannot read; "
+                "write it by gmsh.write, or export it as MSH 4.1 or 2.2"
             ) from error
         try:
             return from_gmsh()
@@ -85,7 +86,7 @@ def read_msh(path: Path | str) -> MeshData:
 
 
 def _refuse_scripts(path: Path) -> None:
-    """Whatever is no mesh gmsh takes for a .geo script and runs, shell commands in it too. Raises MeshError."""
+    """Raises MeshError for a file that is no mesh: gmsh would execute it as a .geo script, with its shell commands."""
     try:
         if not path.is_file():
             found = "a folder" if path.is_dir() else "what is no file" if path.exists() else "nothing"
@@ -106,7 +107,7 @@ def _refuse_scripts(path: Path) -> None:
 
 
 def from_gmsh() -> MeshData:
-    """The current gmsh model's mesh, by its physical groups; see read_msh. Raises MeshError."""
+    """The mesh of the current gmsh model, by its physical groups; see `read_msh`. Raises MeshError."""
     dimension = max((d for d, _ in gmsh.model.getPhysicalGroups()), default=0)
     if dimension < 2:
         raise MeshError(
@@ -132,13 +133,13 @@ def from_gmsh() -> MeshData:
     return MeshData(points, shape, order, cells.reshape(cell_nodes.shape).astype(np.int64), facets, indices)
 
 
-Group = dict[int, tuple[Ints, Ints]]
+ElementGroup = dict[int, tuple[Ints, Ints]]
+"""Element type of gmsh -> element tags (n,), node tags (n, nodes)."""
 
 
-def _groups(dimension: int, plane: bool = False) -> dict[str, Group]:
-    """Physical groups of a dimension: name -> element type -> (element tags (n,), node tags (n, nodes)). plane: turn
-    surfaces counter-clockwise."""
-    groups: dict[str, Group] = {}
+def _groups(dimension: int, plane: bool = False) -> dict[str, ElementGroup]:
+    """Physical groups of a dimension, by name. plane: number the cells of surfaces counter-clockwise."""
+    groups: dict[str, ElementGroup] = {}
     for _, number in gmsh.model.getPhysicalGroups(dimension):
         name = gmsh.model.getPhysicalName(dimension, number)
         if not name:
@@ -151,7 +152,7 @@ def _groups(dimension: int, plane: bool = False) -> dict[str, Group]:
     return groups
 
 
-def _elements(dimension: int, entities: list[int], plane: bool) -> Group:
+def _elements(dimension: int, entities: list[int], plane: bool) -> ElementGroup:
     tags: dict[int, list[Ints]] = {}
     nodes: dict[int, list[Ints]] = {}
     for entity in entities:
@@ -163,17 +164,17 @@ def _elements(dimension: int, entities: list[int], plane: bool) -> Group:
 
 
 def _counter_clockwise(kind: int, cells: Ints) -> Ints:
-    """The cells of one surface, turned over where most of it is numbered clockwise: its normal then points down."""
-    turned = TURNED.get(ELEMENT_TYPES.get(kind, ("", 0)))
-    if turned is None or not len(cells):
+    """The cells of one surface, reversed where their signed area is negative, so that their normal is −z."""
+    permutation = REVERSED_CELL.get(ELEMENT_TYPES.get(kind, ("", 0)))
+    if permutation is None or not len(cells):
         return cells
-    tags, local = np.unique(cells[:, : 3 if len(turned) in (3, 6) else 4], return_inverse=True)
+    tags, local = np.unique(cells[:, : 3 if len(permutation) in (3, 6) else 4], return_inverse=True)
     x, y = np.moveaxis(_points(tags)[local.reshape(len(cells), -1), :2], -1, 0)
     area = np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1))
-    return cells[:, turned] if area < 0.0 else cells
+    return cells[:, permutation] if area < 0.0 else cells
 
 
-def _single_type(volumes: dict[str, Group], dimension: int) -> tuple[str, int]:
+def _single_type(volumes: dict[str, ElementGroup], dimension: int) -> tuple[str, int]:
     kinds = {kind for group in volumes.values() for kind in group}
     names = [gmsh.model.mesh.getElementProperties(kind)[0] for kind in sorted(kinds)]
     if kinds & set(_SERENDIPITY):
@@ -190,7 +191,7 @@ def _single_type(volumes: dict[str, Group], dimension: int) -> tuple[str, int]:
     return ELEMENT_TYPES[kinds.pop()]
 
 
-def _check_facets(groups: dict[str, Group], wanted: tuple[str, int]) -> None:
+def _check_facets(groups: dict[str, ElementGroup], wanted: tuple[str, int]) -> None:
     for name, group in groups.items():
         if set(group) != {_TYPE_NUMBERS[wanted]}:
             found = ", ".join(gmsh.model.mesh.getElementProperties(kind)[0] for kind in sorted(group))
@@ -201,7 +202,7 @@ def _check_facets(groups: dict[str, Group], wanted: tuple[str, int]) -> None:
 
 
 def _unique_cells(groups: dict[str, tuple[Ints, Ints]]) -> tuple[Ints, Ints, dict[str, Ints]]:
-    """Element tags, their nodes, and each group's indices into them; a cell may be in several groups."""
+    """Element tags, their nodes, and the indices of each group's cells; a cell may be in several groups."""
     tags, first = np.unique(np.concatenate([t for t, _ in groups.values()]), return_index=True)
     nodes = np.concatenate([n for _, n in groups.values()])[first]
     return tags, nodes, {name: np.searchsorted(tags, t).astype(np.int64) for name, (t, _) in groups.items()}
@@ -218,22 +219,22 @@ def _renumbered(used: Ints, nodes: Ints, name: str) -> Ints:
 
 
 def _points(used: Ints) -> Floats:
-    """Coordinates (n, 3) of node tags; control points of curves that no cell uses stay out."""
+    """Coordinates (n, 3) of node tags, without control points of curves that are nodes of no cell."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(tags)
     return np.asarray(coordinates.reshape(-1, 3)[order[np.searchsorted(tags[order], used)]])
 
 
 def write_msh(mesh: MeshData, path: Path | str) -> None:
-    """Write a gmsh file (format by the suffix, .msh: 4.1) with the mesh's groups as named physical groups.
+    """Write a gmsh file (format by the suffix, .msh: MSH 4.1); the groups of the mesh become named physical groups.
 
-    Raises MeshError for cells in no volume group: gmsh leaves these out silently; WriteError.
+    Raises MeshError for cells of no volume group, which gmsh would leave out; WriteError.
     """
     path = Path(path)
-    with gmsh_model("write"), whole(path, 8 * mesh.points.size + 8 * mesh.cells.size) as part:
+    with gmsh_model("write"), atomic_file(path, 8 * mesh.points.size + 8 * mesh.cells.size) as part:
         to_gmsh(mesh)
         binary = gmsh.option.getNumber("Mesh.Binary")
-        gmsh.option.setNumber("Mesh.Binary", 1)  # text would round the coordinates
+        gmsh.option.setNumber("Mesh.Binary", 1)  # a text file would round the coordinates
         try:
             gmsh.write(str(part))
         except Exception as error:  # gmsh raises nothing narrower
@@ -244,7 +245,7 @@ def write_msh(mesh: MeshData, path: Path | str) -> None:
 
 
 def _require_end(path: Path) -> None:
-    """On a full disk gmsh cuts a file short and says nothing. Raises OSError."""
+    """Raises OSError for a file without its last section: on a full disk gmsh writes part of it, without an error."""
     with open(path, "rb") as stream:
         stream.seek(max(0, path.stat().st_size - 64))
         if not re.search(rb"\$End\w+\s*$", stream.read()):
@@ -252,7 +253,7 @@ def _require_end(path: Path) -> None:
 
 
 def to_gmsh(mesh: MeshData) -> None:
-    """Put the mesh into the current gmsh model as discrete entities with named physical groups; see write_msh."""
+    """Add the mesh to the current gmsh model: discrete entities in named physical groups. Raises MeshError."""
     in_group = np.zeros(len(mesh.cells), dtype=bool)
     for index in mesh.volumes.values():
         in_group[index] = True
@@ -268,7 +269,7 @@ def to_gmsh(mesh: MeshData) -> None:
 
 
 def _distinct_facets(mesh: MeshData) -> tuple[Ints, dict[str, Ints]]:
-    """All facets of the groups, each once, and every group's indices into them."""
+    """All facets of the groups, each once, and the indices of each group's facets."""
     if not mesh.facets:
         return np.empty((0, 1), dtype=np.int64), {}
     every = np.concatenate(list(mesh.facets.values()))
@@ -280,7 +281,7 @@ def _distinct_facets(mesh: MeshData) -> tuple[Ints, dict[str, Ints]]:
 def _add_elements(
     dimension: int, shape: str, order: int, nodes: Ints, groups: dict[str, Ints], points: Floats | None
 ) -> None:
-    """One discrete entity for every combination of groups, and one physical group for every name."""
+    """Add one discrete entity for each combination of groups, and one physical group for each name."""
     member = np.zeros((len(nodes), len(groups)), dtype=bool)
     for column, index in enumerate(groups.values()):
         member[index, column] = True

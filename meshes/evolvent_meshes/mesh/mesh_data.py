@@ -1,4 +1,4 @@
-"""A mesh as plain arrays, with named groups; the only thing that passes from gmsh to the solver."""
+"""A mesh as plain arrays with named groups, the interface between gmsh and the solver."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ FACET_SHAPE = {
     "tetrahedron": "triangle",
     "hexahedron": "quadrilateral",
 }
-
-def _as(value: Any, kinds: str, wanted: type) -> Any:
-    """An array of one of these kinds in the wanted type, not copied where it is; anything else as it is."""
-    return value.astype(wanted, copy=False) if isinstance(value, np.ndarray) and value.dtype.kind in kinds else value
-
-
-TURNED = {
+REVERSED_CELL = {
     ("triangle", 1): [0, 2, 1],
     ("triangle", 2): [0, 2, 1, 5, 4, 3],
     ("quadrilateral", 1): [0, 3, 2, 1],
     ("quadrilateral", 2): [0, 3, 2, 1, 7, 6, 5, 4, 8],
 }
-"""Nodes of a plane cell in gmsh's order that make it run the other way round."""
+"""(shape, order) -> permutation of a plane cell's nodes (gmsh order) that reverses its sense of rotation."""
 
 
 class MeshError(InputError):
-    """A mesh that cannot be used as it is; the message says what was wanted, what was found and what to do."""
+    """A mesh that cannot be used; the message says what was wanted, what was found and what to do."""
 
 
 @dataclass(frozen=True)
 class MeshData:
-    """One body's mesh, Lagrange cells of order 1 or 2, node numbering as gmsh's.
+    """Mesh of one body: Lagrange cells of one shape, with named groups of facets and cells.
 
     points: (n, 3) node coordinates [mm]; a 2D mesh has z = 0.
-    shape: "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
-    order: 1 or 2 (complete Lagrange: quad9, hex27, tri6, tet10).
-    cells: (n_cells, nodes per cell) node indices in gmsh's node order.
-    facets: name -> (n_f, nodes per facet) node indices in gmsh's node order (line2/3, quad4/9, tri3/6), outward
-        orientation not guaranteed.
+    shape: of the cells, "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
+    order: of the cells, 1 or 2 (complete Lagrange: quad9, hex27, tri6, tet10).
+    cells: (n_cells, nodes per cell) node indices in the node order of gmsh.
+    facets: name -> (n_f, nodes per facet) node indices in the node order of gmsh (line2/3, quad4/9, tri3/6), of any
+        orientation.
     volumes: name -> (n_c,) cell indices.
+
+    >>> points = np.array([[0.0, 0.0, 0.0], [40.0, 0.0, 0.0], [40.0, 20.0, 0.0], [0.0, 20.0, 0.0]])
+    >>> facets = {"bottom": np.array([[0, 1]]), "top": np.array([[2, 3]])}
+    >>> mesh = MeshData(points, "quadrilateral", 1, np.array([[0, 1, 2, 3]]), facets, {"block": np.array([0])})
+    >>> mesh.dimension
+    2
     """
 
     points: Floats
@@ -57,10 +57,10 @@ class MeshData:
     volumes: dict[str, Ints]
 
     def __post_init__(self) -> None:
-        """Arrays of numbers in the types that the solver works with; `soundness` refuses all others."""
-        given = {"points": _as(self.points, "f", np.float64), "cells": _as(self.cells, "iu", np.int64)}
+        """Converts arrays of numbers to float64 and int64; `soundness.check_mesh` refuses anything else."""
+        given = {"points": _converted(self.points, "f", np.float64), "cells": _converted(self.cells, "iu", np.int64)}
         if isinstance(self.facets, dict):
-            given["facets"] = {name: _as(rows, "iu", np.int64) for name, rows in self.facets.items()}
+            given["facets"] = {name: _converted(rows, "iu", np.int64) for name, rows in self.facets.items()}
         for name, value in given.items():
             object.__setattr__(self, name, value)
 
@@ -70,8 +70,15 @@ class MeshData:
         return CELL_DIMENSION[self.shape]
 
     def turned_over(self) -> MeshData:
-        """The same mesh with the nodes of its 2D cells in the opposite sense of rotation: of a mesh that is numbered
-        clockwise, one that is numbered counter-clockwise. Raises MeshError in 3D."""
+        """The same 2D mesh with the opposite sense of rotation of its cells, counter-clockwise instead of clockwise.
+
+        Raises MeshError in 3D.
+        """
         if self.dimension == 3:
-            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; number the cells of a 3D mesh anew")
-        return replace(self, cells=np.ascontiguousarray(self.cells[:, TURNED[self.shape, self.order]]))
+            raise MeshError(f"turn over: wanted a 2D mesh, found {self.shape}s; renumber the nodes of its cells")
+        return replace(self, cells=np.ascontiguousarray(self.cells[:, REVERSED_CELL[self.shape, self.order]]))
+
+
+def _converted(value: Any, kinds: str, dtype: type) -> Any:
+    """An array of one of these kinds as `dtype`, copied only where necessary; anything else unchanged."""
+    return value.astype(dtype, copy=False) if isinstance(value, np.ndarray) and value.dtype.kind in kinds else value

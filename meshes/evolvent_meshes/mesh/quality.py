@@ -1,4 +1,4 @@
-"""How far from degenerate the cells of a mesh are: the scaled Jacobian of curved cells."""
+"""Quality of curved cells: scaled Jacobians and determinants of the Jacobian."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshData, MeshError
 from evolvent_meshes.mesh.reference_cells import node_positions, shape_gradients
 
 _CHUNK = 20_000
-_ROUNDING = 1e-12  # a cell whose volume is this share of its extent's is flat
+_ROUNDING = 1e-12  # a cell is flat whose volume over that of its bounding cube is below this
 
 
 def scaled_jacobians(mesh: MeshData) -> Floats:
-    """Smallest scaled Jacobian (n cells,) of each cell over its nodes and Gauss points.
+    """Smallest scaled Jacobian of each cell (n_cells,) over its nodes and Gauss points.
 
-    Quadrilaterals and hexahedra: det J / product of the lengths of J's columns. Triangles and tetrahedra: the same with
-    the least favourable corner, times 2/√3 or √2. One for a square, cube or regular simplex, negative when inverted.
-    In 2D the normal is +z: clockwise cells are negative. Source: the Verdict library's "scaled Jacobian" (Stimpson et
-    al., Sandia SAND2007-1751), evaluated at more points than the corners because the cells are curved.
+    Quadrilaterals and hexahedra: det J / product of the lengths of J's columns. Triangles and tetrahedra: the same at
+    the least favourable corner, times 2/√3 or √2. It is 1 for a square, cube or regular simplex, and negative for an
+    inverted cell, in 2D a clockwise one.
+
+    Source: "scaled Jacobian" of the Verdict library (Stimpson et al. 2007, Sandia SAND2007-1751), here at more points
+    than the corners because the cells are curved.
     """
     dimension = CELL_DIMENSION[mesh.shape]
     gradients = shape_gradients(mesh.shape, mesh.order, _sample_points(mesh.shape, mesh.order))
@@ -33,8 +35,10 @@ def scaled_jacobians(mesh: MeshData) -> Floats:
 
 
 def least_determinants(mesh: MeshData) -> Floats:
-    """Smallest det J (n cells,) of each cell over its nodes and Gauss points, as a share of the largest one there, and
-    zero where that is below rounding; negative in 2D for cells that are numbered clockwise."""
+    """Smallest det J of each cell (n_cells,) over its nodes and Gauss points, divided by the largest |det J| there.
+
+    Zero where it is below rounding; negative in 2D for cells that are numbered clockwise.
+    """
     dimension = CELL_DIMENSION[mesh.shape]
     affine = mesh.order == 1 and mesh.shape in ("triangle", "tetrahedron")
     where = np.zeros((1, dimension)) if affine else _sample_points(mesh.shape, mesh.order)
@@ -55,7 +59,7 @@ def least_determinants(mesh: MeshData) -> Floats:
 
 
 def _determinants(J: Floats) -> Floats:
-    """Of matrices (d, d, ...): their entries come first."""
+    """Determinants (...) of matrices (d, d, ...)."""
     if len(J) == 2:
         return np.asarray(J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0])
     cofactors = (J[1, b] * J[2, c] - J[1, c] * J[2, b] for b, c in ((1, 2), (2, 0), (0, 1)))
@@ -63,7 +67,7 @@ def _determinants(J: Floats) -> Floats:
 
 
 def check_quality(mesh: MeshData, minimum: float) -> None:
-    """Raise MeshError, with the place of the worst cell, if a scaled Jacobian is below `minimum`."""
+    """Raises MeshError, with the position of the worst cell, if a scaled Jacobian is below `minimum`."""
     values = scaled_jacobians(mesh)
     worst = int(np.argmin(values))
     if not values[worst] >= minimum:
@@ -76,7 +80,7 @@ def check_quality(mesh: MeshData, minimum: float) -> None:
 
 
 def _sample_points(shape: str, order: int) -> Floats:
-    """The reference nodes and interior Gauss points (three a direction; simplices: three or four points)."""
+    """Nodes and Gauss points (n, d) of the reference cell: three a direction, of simplices three or four points."""
     nodes = node_positions(shape, order) / 2.0
     dimension = CELL_DIMENSION[shape]
     if shape in ("triangle", "tetrahedron"):

@@ -1,7 +1,7 @@
-"""Reference cells in gmsh's node order: node positions, facets, shape function gradients.
+"""Reference cells in the node order of gmsh: node positions, facets, gradients of shape functions.
 
-Positions are kept as integers: 0 and 2 are the ends of a reference edge, 1 its middle. gmsh's documentation,
-"Node ordering", is the source of the tables.
+Positions are integers: 0 and 2 are the ends of a reference edge, 1 is its middle. Source of the tables: gmsh reference
+manual, "Node ordering".
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ CORNERS: dict[str, list[tuple[int, ...]]] = {
     ],
 }
 
-# The corners whose mean is the position of each further second-order node, in gmsh's order.
 _HEXAHEDRON_EDGES = "01 03 04 12 15 23 26 37 45 47 56 67"
 SECOND_ORDER_MEANS: dict[str, str] = {
     "interval": "01",
@@ -33,6 +32,7 @@ SECOND_ORDER_MEANS: dict[str, str] = {
     "tetrahedron": "01 12 20 30 23 13",
     "hexahedron": _HEXAHEDRON_EDGES + " 0321 0154 0473 1265 2376 4567 01234567",
 }
+"""Shape -> for each second-order node, in the order of gmsh, the corners whose mean is its position."""
 
 FACET_CORNERS: dict[str, str] = {
     "triangle": "01 12 20",
@@ -44,7 +44,7 @@ FACET_CORNERS: dict[str, str] = {
 
 @lru_cache
 def node_positions(shape: str, order: int) -> Ints:
-    """Integer reference positions (n, dimension) of the nodes in gmsh's order; 0 and 2 are ends, 1 is the middle."""
+    """Integer reference positions (n, d) of the nodes in the order of gmsh; 0 and 2 are ends, 1 is the middle."""
     corners = np.array(CORNERS[shape], dtype=np.int64)
     if order == 1:
         return corners
@@ -70,11 +70,11 @@ def node_count(shape: str, order: int) -> int:
 
 
 def sub_cell_nodes(shape: str, sub_shape: str, corners: Ints, order: int) -> Ints:
-    """Local nodes of sub-cells (facets, simplices) given by corners of a cell.
+    """Local node numbers (n, nodes of sub_shape) of sub-cells, facets or simplices, of a cell.
 
-    corners: (n, corners of sub_shape) local corner numbers of `shape`; returns (n, nodes of sub_shape at `order`) local
-    node numbers of `shape`. Every second-order node of the sub-cell is the mean of its corners and so a node of the
-    cell: this is what makes a 27-node hexahedron split into 10-node tetrahedra without new nodes.
+    corners: (n, corners of sub_shape) local corner numbers of the sub-cells.
+    Each second-order node of a sub-cell is the mean of its corners and therefore a node of the cell: a 27-node
+    hexahedron is split into 10-node tetrahedra without new nodes.
     """
     index = _position_index(shape, order)
     positions = np.array(CORNERS[shape])[corners]
@@ -87,15 +87,15 @@ def sub_cell_nodes(shape: str, sub_shape: str, corners: Ints, order: int) -> Int
 
 @lru_cache
 def facet_nodes(shape: str, order: int) -> Ints:
-    """Local node numbers (n facets, nodes per facet) of each facet, in gmsh's order of the facet's shape."""
+    """Local node numbers (n_facets, nodes per facet) of the facets of a cell, in the node order of gmsh."""
     corners = np.array([[int(c) for c in facet] for facet in FACET_CORNERS[shape].split()])
     return sub_cell_nodes(shape, FACET_SHAPE[shape], corners, order)
 
 
 def shape_gradients(shape: str, order: int, where: Floats) -> Floats:
-    """Gradients (n points, n nodes, dimension) of the Lagrange functions at reference points `where` (n, dimension).
+    """Gradients (p, k, d) of the k Lagrange shape functions at reference points `where` (p, d).
 
-    Reference cells have edges of length one: [0, 1]^d or the unit simplex.
+    Reference cells: [0, 1]^d or the unit simplex.
     """
     if shape in ("triangle", "tetrahedron"):
         return _simplex_gradients(shape, order, where)
@@ -115,7 +115,7 @@ def _tensor_gradients(shape: str, order: int, where: Floats) -> Floats:
 
 
 def _line_functions(order: int, x: Floats) -> tuple[Floats, Floats]:
-    """Values and slopes (..., order + 1) of the Lagrange polynomials on [0, 1], nodes in increasing order."""
+    """Values and derivatives (..., order + 1) of the Lagrange polynomials on [0, 1], nodes in increasing order."""
     if order == 1:
         return np.stack([1 - x, x], axis=-1), np.stack([-np.ones_like(x), np.ones_like(x)], axis=-1)
     values = np.stack([(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)], axis=-1)

@@ -1,4 +1,4 @@
-"""What the solver asks of a mesh: types, indices, points that are numbers, and cells that are not folded."""
+"""Checks of a mesh before it is used: types, indices, finite points, groups, cells without folds."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, FACET_SHAPE, MeshData
 from evolvent_meshes.mesh.quality import least_determinants
 from evolvent_meshes.mesh.reference_cells import corner_count, node_count
 
-FLAT = 1e-9  # of a plane mesh's size: how far its nodes may lie from a plane of constant z
+FLAT = 1e-9  # largest extent in z of a 2D mesh over that in x and y
 
 
 def check_mesh(mesh: MeshData, name: str) -> None:
-    """Raises MeshError, which begins with `name`, for what the solver would stumble over or get wrong results from."""
+    """Raises MeshError for a mesh that the solver cannot use or that gives wrong results.
+
+    name: of the body, first in the message.
+    """
     if not isinstance(mesh, MeshData):
         raise MeshError(f"{name}: wanted a MeshData, found {shown(mesh)}; read a gmsh file with read_msh(path)")
     check_cells(mesh.points, mesh.cells, mesh.shape, mesh.order, name)
@@ -24,7 +27,7 @@ def check_mesh(mesh: MeshData, name: str) -> None:
     if len(loose):
         raise MeshError(
             f"{name}: wanted every point in a cell, found {len(loose)} points in none, the first is point {loose[0]}; "
-            "leave them out and number the others anew"
+            "remove them and renumber the others"
         )
     _check_groups(mesh, name)
     if mesh.dimension == 2 and np.ptp(mesh.points[:, 2]) > FLAT * np.ptp(mesh.points[:, :2]):
@@ -37,7 +40,10 @@ def check_mesh(mesh: MeshData, name: str) -> None:
 
 
 def check_cells(points: Any, cells: Any, shape: Any, order: Any, name: str) -> None:
-    """Raises MeshError unless these are finite points (n, 3) and complete Lagrange cells on them."""
+    """Raises MeshError unless these are finite points (n, 3) and complete Lagrange cells on them.
+
+    name: of the body, first in the message.
+    """
     if not isinstance(shape, str) or shape not in CELL_DIMENSION:
         raise MeshError(
             f"{name}: wanted cells of shape {', '.join(CELL_DIMENSION)}, found {shown(shape)}; mesh with these"
@@ -51,8 +57,8 @@ def check_cells(points: Any, cells: Any, shape: Any, order: Any, name: str) -> N
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise MeshError(
-            f"{name}: wanted finite coordinates, found {len(bad)} points of {len(points)} that are none, the first is "
-            f"point {bad[0]}; mend the file"
+            f"{name}: wanted finite coordinates, found {len(bad)} points of {len(points)} that are not, the first is "
+            f"point {bad[0]}; correct the file"
         )
     refuse_huge(f"{name}, points", points)
     _check_indices(f"{name}: cells", cells, node_count(shape, order), f"{shape} cells of order {order}", len(points))
@@ -96,7 +102,7 @@ def _check_distinct(mesh: MeshData, name: str) -> None:
 
 
 def _check_folds(mesh: MeshData, name: str) -> None:
-    """A cell that is folded or flat has no stiffness that means anything."""
+    """Raises MeshError for cells that are folded, flat or numbered clockwise; their stiffness would be wrong."""
     least = least_determinants(mesh)
     bad = least <= 0.0
     if not bad.any():
@@ -110,6 +116,6 @@ def _check_folds(mesh: MeshData, name: str) -> None:
     x, y, z = mesh.points[mesh.cells[worst]].mean(axis=0)
     raise MeshError(
         f"{name}: wanted cells with a Jacobian above zero everywhere, found {np.count_nonzero(bad)} of {len(bad)} "
-        f"cells folded or flat, the worst is cell {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) mm; mend the mesh there, or "
-        "number these cells the other way round if only that is wrong"
+        f"cells folded or flat, the worst is cell {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) mm; correct the mesh there, "
+        "or number these cells the other way round if only that is wrong"
     )

@@ -1,4 +1,4 @@
-"""VTK's XML files, made in memory: VTK itself crashes where it writes to a full disk."""
+"""XML files of VTK, made in memory: VTK crashes where it writes to a full disk."""
 
 from __future__ import annotations
 
@@ -6,7 +6,11 @@ from typing import Any
 
 
 def xml_bytes(writer: Any, data: Any) -> bytes:
-    """The content of the file that a writer of VTK's makes of a data set. Raises RuntimeError where it cannot."""
+    """The content of a file as a VTK writer writes it. Raises RuntimeError where VTK fails.
+
+    writer: vtkXMLWriter of the type of the data.
+    data: VTK data set.
+    """
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
     writer.SetDataModeToAppended()

@@ -1,1 +1,1 @@
-"""The mesh of one tooth sector: a transverse section, swept along the helix."""
+"""Mesh of one tooth sector: its transverse section, swept along the helix."""

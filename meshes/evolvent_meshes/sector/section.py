@@ -1,4 +1,4 @@
-"""The transverse mesh of one tooth sector: second-order quadrilaterals, fine under the loaded flank only.
+"""Transverse mesh of one tooth sector: second-order quadrilaterals, fine under the loaded flank only.
 
 The tooth above the flank start lies in polar rows of constant radius: thin layers under the loaded flank, a column of
 3:1 transitions, then coarse columns to the back flank. Below, a band one cell thick follows fillets and root; under it
@@ -12,8 +12,8 @@ lie the neck, the base and two root blocks down to the bore:
      |root |  base  | root|
      |_____|________|_____|  bore
 
-Built as arrays and not by gmsh: the same numbers with every gmsh version, exact nodes from the start, and the cuts on
-both sides match by construction.
+The mesh is built from arrays, without gmsh: it is the same with every version of gmsh, its nodes are exact, and the
+cuts on both sides match by construction.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ import numpy as np
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.profile import Profile, polar
-from evolvent_meshes.mesh.mesh_data import MeshError
+from evolvent_meshes.mesh.mesh_data import REVERSED_CELL, MeshError
 from evolvent_meshes.mesh.structured_grid import boundary_facets, subdivided, transfinite, weld
 from evolvent_meshes.sector.root_band import RootBand
 from evolvent_meshes.sector.section_blocks import (
     Piece,
     ToothRows,
-    grid,
-    growing,
-    mirrored,
+    graded_fractions,
+    grid_piece,
+    half_steps,
+    mirrored_piece,
     row_radii,
-    steps,
     three_to_one,
 )
 
@@ -47,20 +47,24 @@ WELD = 1e-7
 
 @dataclass(frozen=True)
 class SectorResolution:
-    """Element counts and sizes of one tooth sector.
+    """Numbers and sizes of the elements of one tooth sector.
 
-    profile_elements: along the loaded flank from the flank start to the tip corner; a multiple of 3, as three meet one
-        coarse row.
-    face_elements: layers in z; end_size_ratio: length of the end layers over that of the middle ones.
-    layer_depths: thickness [mm] of the three thin layers below the flank, the outermost first; near a thin tip they
-        shrink together to `tip_depth_share` of the tooth's thickness.
-    flank_start_diameter: where the fine flank starts [mm]; give a little less than the start of active profile, so that
-        the contact's whole width lies above. Default: the root form diameter.
-    size_at: relative element length along the profile at radii [mm]; default uniform.
-    fillet_elements: from the flank start to the sector's cut on the loaded side, back_elements on the other side;
-        neck_elements of both lie above the middle of the fillet. core_elements: coarse columns of the tooth between
-        transition and back band. rim_elements: from the root band to the bore.
-    back_alike: refine the back flank as the loaded one, to show what leaving it coarse changes.
+    profile_elements: along the loaded flank from the flank start to the tip corner; a multiple of 3, as three elements
+        join one coarse row.
+    face_elements: layers along z.
+    end_size_ratio: length of the end layers over that of the middle ones.
+    layer_depths: thickness of the three thin layers below the flank, the outermost first [mm].
+    tip_depth_share: largest share of the tooth's thickness that the thin layers take; near a thin tip they shrink.
+    flank_start_diameter: start of the fine flank [mm], a little below the start of the active profile, so that the
+        whole width of the contact lies on it; None: the root form diameter.
+    size_at: relative element length along the profile at radii [mm]; None: uniform.
+    fillet_elements: from the flank start to the sector's cut on the loaded side.
+    back_elements: the same on the back side.
+    neck_elements: of the two before, those above the middle of the fillet.
+    core_elements: coarse columns of the tooth between transitions and back band.
+    rim_elements: from the root band to the bore.
+    fine_back: whether the back flank is as fine as the loaded one, to measure the effect of a coarse one.
+    Raises MeshError for counts and sizes that do not make a mesh.
     """
 
     profile_elements: int = 27
@@ -75,7 +79,7 @@ class SectorResolution:
     neck_elements: int = 3
     core_elements: int = 2
     rim_elements: int = 4
-    back_alike: bool = False
+    fine_back: bool = False
 
     def __post_init__(self) -> None:
         if self.profile_elements % 3 or len(self.layer_depths) != 3:
@@ -95,10 +99,14 @@ class SectorResolution:
 
 @dataclass(frozen=True)
 class Section:
-    """The mid-face section: points (n, 2) [mm], cells (m, 9) and outline edges name -> (k, 3) in gmsh's node order.
+    """Mesh of the mid-face section, in the node order of gmsh.
 
-    flank_weight (n,): 1 on the loaded flank, falling to 0 through the thin layers: the part of a flank modification
-        that a node follows. flank_start_radius: the lowest radius of the loaded flank [mm].
+    points: (n, 2) [mm].
+    cells: (m, 9) node indices.
+    edges: name -> (k, 3) node indices of the outline's edges.
+    flank_weight: (n,) share of a flank modification by which a node moves: 1 on the loaded flank, falling to 0 through
+        the thin layers.
+    flank_start_radius: lowest radius of the loaded flank [mm].
     """
 
     points: Floats
@@ -109,7 +117,7 @@ class Section:
 
 
 def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
-    """Mesh the mid-face section of tooth 0's sector, θ ∈ [−π/z, π/z], without modifications; loaded flank θ > 0.
+    """Mesh of the mid-face section of tooth 0's sector, θ ∈ [−π/z, π/z], without modifications; loaded flank at θ > 0.
 
     Raises MeshError if the flank start does not lie on the involute.
     """
@@ -117,15 +125,15 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     start = _flank_start(profile, resolution)
     radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at)
     band = sum(resolution.layer_depths)
-    alike = resolution.back_alike
-    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, alike)
+    fine_back = resolution.fine_back
+    rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, fine_back)
     at_cut = max(band, 0.3 * gear.normal_module)
     widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
     neck = resolution.neck_elements
     loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)
-    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - alike], at_cut), mirrored=True)
-    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(alike))]
-    pieces += [mirrored(_strip_end(loaded, resolution))] if alike else []
+    back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - fine_back], at_cut), mirrored=True)
+    pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(fine_back))]
+    pieces += [mirrored_piece(_strip_end(loaded, resolution))] if fine_back else []
     pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, rows.inner, resolution)]
     points, cells = _joined(pieces)
     edges = _named_edges(profile, start, points[:, :2], boundary_facets("quadrilateral", 2, cells))
@@ -146,7 +154,7 @@ def _flank_start(profile: Profile, resolution: SectorResolution) -> float:
 
 
 def _layer_columns(resolution: SectorResolution) -> Floats:
-    """Columns (4,) of the ends of the thin layers, from 0 to 1."""
+    """Columns (4,) of the boundaries of the thin layers, from 0 to 1."""
     depths = np.cumsum((0.0, *resolution.layer_depths))
     return np.asarray(depths / depths[-1])
 
@@ -155,13 +163,13 @@ def _tooth(rows: ToothRows, resolution: SectorResolution) -> list[Piece]:
     """Strip, transitions and coarse columns above the flank start."""
     n = resolution.profile_elements
     layers = subdivided(_layer_columns(resolution), 2)
-    strip = grid(rows.points(*np.meshgrid(steps(0, n), layers, indexing="ij")), 1 - layers)
+    strip = grid_piece(rows.points(*np.meshgrid(half_steps(0, n), layers, indexing="ij")), 1 - layers)
     coarse_rows = np.linspace(0, n, 2 * n // 3 + 1)
-    columns = steps(2, 2 + rows.coarse)
-    coarse = grid(rows.points(*np.meshgrid(coarse_rows, columns, indexing="ij")))
+    columns = half_steps(2, 2 + rows.coarse)
+    coarse = grid_piece(rows.points(*np.meshgrid(coarse_rows, columns, indexing="ij")))
     transition = [three_to_one(partial(_transition_point, rows, first)) for first in range(0, n, 3)]
     fine = [strip, *transition]
-    return [*fine, coarse, *(map(mirrored, fine) if rows.alike else [])]
+    return [*fine, coarse, *(map(mirrored_piece, fine) if rows.fine_back else [])]
 
 
 def _transition_point(rows: ToothRows, first: int, u: Floats, v: Floats) -> Floats:
@@ -169,7 +177,7 @@ def _transition_point(rows: ToothRows, first: int, u: Floats, v: Floats) -> Floa
 
 
 def _strip_end(side: RootBand, resolution: SectorResolution) -> Piece:
-    """The band's first cell below the strip: its three layers join to one."""
+    """The first cell of the band, below the strip of thin layers, where three layers join to one."""
     layers = _layer_columns(resolution)
 
     def place(u: Floats, v: Floats) -> Floats:
@@ -182,39 +190,39 @@ def _strip_end(side: RootBand, resolution: SectorResolution) -> Piece:
 
 
 def _neck(rows: ToothRows, loaded: RootBand, back: RootBand) -> Piece:
-    """Between the bands of both sides, from the flank start down to the middles of the fillets."""
-    q = steps(0, loaded.neck)
-    columns = steps(1, 1 + rows.inner)
+    """The block between the bands of both sides, from the flank start down to the middles of the fillets."""
+    q = half_steps(0, loaded.neck)
+    columns = half_steps(1, 1 + rows.inner)
     top = rows.points(np.zeros_like(columns), columns)
     bottom = _line(loaded.inner(q[-1:])[0], back.inner(q[-1:])[0], _even(columns))
-    return grid(transfinite(loaded.inner(q), back.inner(q), top, bottom, _even(q), _even(columns)))
+    return grid_piece(transfinite(loaded.inner(q), back.inner(q), top, bottom, _even(q), _even(columns)))
 
 
 def _rim(
     loaded: RootBand, back: RootBand, gear: GearParameters, inner: int, resolution: SectorResolution
 ) -> list[Piece]:
-    """Root blocks of both sides and the base between them, down to the bore."""
+    """The root blocks of both sides and the base between them, down to the bore."""
     corners = [side.inner(np.array([float(side.neck)]))[0] for side in (loaded, back)]
     radius = gear.bore_diameter / 2
     cut = np.pi / gear.z
     depths, angles = _to_polar(np.array(corners))
     length = depths[0] - radius
-    ends = subdivided(growing(length, 1.3 * loaded.widths[1], resolution.rim_elements), 2)
+    ends = subdivided(graded_fractions(length, 1.3 * loaded.widths[1], resolution.rim_elements), 2)
     blocks = []
     for side, angle, end in zip((loaded, back), angles, (cut, -cut), strict=True):
-        top = side.inner(steps(side.neck, side.cells))
+        top = side.inner(half_steps(side.neck, side.cells))
         blocks.append(_down_to_bore(top, radius, (angle, end), ends))
-    columns = _even(steps(0, inner))
+    columns = _even(half_steps(0, inner))
     blocks.append(_down_to_bore(_line(corners[0], corners[1], columns), radius, (angles[0], angles[1]), ends))
     return blocks
 
 
 def _down_to_bore(top: Floats, radius: float, angles: tuple[float, float], ends: Floats) -> Piece:
-    """The block between a line of points (n, 2) and the bore's arc between two angles."""
+    """The block between a line of points (n, 2) and the arc of the bore between two angles [rad]."""
     across = np.linspace(0, 1, len(top))
     bore = polar(np.full(len(top), radius), angles[0] + across * (angles[1] - angles[0]))
     west, east = (_line(top[k], bore[k], ends) for k in (0, -1))
-    return grid(transfinite(top, bore, west, east, across, ends))
+    return grid_piece(transfinite(top, bore, west, east, across, ends))
 
 
 def _even(numbers: Floats) -> Floats:
@@ -229,17 +237,13 @@ def _line(start: Floats, end: Floats, fraction: Floats) -> Floats:
     return np.asarray(start + fraction[:, None] * (end - start))
 
 
-_REVERSED = [0, 3, 2, 1, 7, 6, 5, 4, 8]
-"""A nine-node quadrilateral walked the other way round."""
-
-
 def _joined(pieces: list[Piece]) -> tuple[Floats, Ints]:
-    """All pieces as one mesh with anticlockwise cells."""
+    """Points (n, 3) and counter-clockwise cells (m, 9) of all pieces, welded."""
     cells, start = [], 0
     for points, piece_cells in pieces:
         diagonals = points[piece_cells[:, [2, 3]], :2] - points[piece_cells[:, [0, 1]], :2]
         clockwise = np.linalg.det(diagonals).sum() < 0
-        cells.append(start + (piece_cells[:, _REVERSED] if clockwise else piece_cells))
+        cells.append(start + (piece_cells[:, REVERSED_CELL["quadrilateral", 2]] if clockwise else piece_cells))
         start += len(points)
     points = np.concatenate([points for points, _ in pieces])
     keep, number = weld(points, WELD)
@@ -247,7 +251,7 @@ def _joined(pieces: list[Piece]) -> tuple[Floats, Ints]:
 
 
 def _with_single_middles(points: Floats, cells: Ints) -> tuple[Floats, Ints]:
-    """One middle node an edge: where two pieces bend their common edge differently, the first one's is taken."""
+    """The mesh with one middle node an edge: that of the first piece where two pieces curve their edge differently."""
     corners = np.sort(cells[:, [[0, 1], [1, 2], [2, 3], [3, 0]]], axis=2).reshape(-1, 2)
     _, first, edge = np.unique(corners, axis=0, return_index=True, return_inverse=True)
     middles = cells[:, 4:8].reshape(-1)
@@ -258,7 +262,7 @@ def _with_single_middles(points: Floats, cells: Ints) -> tuple[Floats, Ints]:
 
 
 def _named_edges(profile: Profile, start: float, points: Floats, edges: Ints) -> dict[str, Ints]:
-    """The outline's edges by what their middle nodes lie on."""
+    """The edges of the outline, named after the curve on which their middle nodes lie."""
     radius, angle = _to_polar(points[edges[:, 2]])
     chosen = {
         "bore": abs(radius - profile.gear.bore_diameter / 2) < WELD,

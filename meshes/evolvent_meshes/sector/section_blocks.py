@@ -1,8 +1,8 @@
-"""The pieces a section is made of, and the polar rows of its tooth.
+"""Structured pieces of a section, and the polar rows of its tooth.
 
-The tooth above the flank start is numbered by rows u, from 0 (flank start) to profile_elements (tip), and columns c:
-from 0 (loaded flank) to 1 through the thin layers, to 2 through the 3:1 transitions, then one number a coarse column up
-to the back flank. A row has one radius, so every node of it lies at that radius exactly.
+Above the flank start a point of the tooth has a row u and a column c. Rows run from 0 (flank start) to profile_elements
+(tip); each has one radius. Columns run from 0 (loaded flank) to 1 through the thin layers, to 2 through the 3:1
+transitions, then by 1 for each coarse column up to the back flank.
 """
 
 from __future__ import annotations
@@ -19,19 +19,22 @@ from evolvent_meshes.mesh.reference_cells import node_positions
 from evolvent_meshes.mesh.structured_grid import lattice_cells, subdivided
 
 Piece = tuple[Floats, Ints]
-"""Points (n, 3), the third coordinate is the flank weight, and cells (m, 9) of a part of the section."""
+"""Part of a section: points (n, 3), of which the third coordinate is the flank weight, and cells (m, 9)."""
 
 TABLE = 801
-"""Points of the tables that spread nodes by arc length; the nodes' points themselves stay exact."""
+"""Points of the tables by which nodes are distributed along an arc; the positions of the nodes are exact."""
 
 
-def steps(start: float, end: float) -> Floats:
-    """Numbers of the nodes and middle nodes between two whole numbers: every half."""
+def half_steps(start: float, end: float) -> Floats:
+    """Numbers of the nodes and middle nodes of second-order cells between two integers: every half."""
     return np.linspace(start, end, round(2 * abs(end - start)) + 1)
 
 
-def grid(points: Floats, weight: Floats | float = 0.0) -> Piece:
-    """A structured piece from points (2n + 1, 2m + 1, 2)."""
+def grid_piece(points: Floats, weight: Floats | float = 0.0) -> Piece:
+    """A structured piece of n × m cells from points (2n + 1, 2m + 1, 2) [mm].
+
+    weight: flank weight, a number or (2n + 1, 2m + 1) broadcast.
+    """
     n, m = points.shape[:2]
     weights = np.broadcast_to(weight, (n, m))[..., None]
     return np.concatenate([points, weights], axis=2).reshape(-1, 3), lattice_cells(((n - 1) // 2, (m - 1) // 2), 2)
@@ -48,21 +51,27 @@ _THREE_TO_ONE = np.array(
 
 
 def three_to_one(place: Callable[[Floats, Floats], Floats]) -> Piece:
-    """Four cells that join three edges (u from 0 to 3 at v = 0) to one (v = 1); place(u, v) gives points (n, 3)."""
+    """Four cells between three edges (u from 0 to 3 at v = 0) and one (v = 1).
+
+    place: gives the points (n, 3) at u (n,) and v (n,).
+    """
     a, b = node_positions("quadrilateral", 2).T / 2.0
     bilinear = np.stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=1)
     u, v = np.einsum("nc,qcd->dqn", bilinear, _THREE_TO_ONE).reshape(2, -1)
     return place(u, v), np.arange(36).reshape(4, 9)
 
 
-def mirrored(piece: Piece) -> Piece:
-    """The piece on the side θ < 0, which follows no modification of the flank."""
+def mirrored_piece(piece: Piece) -> Piece:
+    """The mirror image at θ < 0, with flank weights 0."""
     points, cells = piece
     return points * [1.0, -1.0, 0.0], cells
 
 
-def growing(length: float, first: float, n: int) -> Floats:
-    """Cell ends (n + 1,), from 0 to 1, of n cells over `length` that grow geometrically from about `first`."""
+def graded_fractions(length: float, first: float, n: int) -> Floats:
+    """Cell ends (n + 1,), as fractions from 0 to 1, of n cells over `length` that grow geometrically from `first`.
+
+    The cells are equal where n cells of the length `first` are too long.
+    """
     if n == 1 or first * n >= length:
         return np.linspace(0, 1, n + 1)
     ratio = brentq(lambda r: first * (r**n - 1) / (r - 1) - length, 1 + 1e-9, length / first + 1)
@@ -71,17 +80,20 @@ def growing(length: float, first: float, n: int) -> Floats:
 
 
 def _smaller(first: Floats, second: Floats) -> Floats:
-    """A smooth minimum of positive numbers."""
+    """A smooth approximation from below of the minimum of positive numbers."""
     return np.asarray((first**-6.0 + second**-6.0) ** (-1 / 6))
 
 
 @dataclass(frozen=True)
 class ToothRows:
-    """The tooth above the flank start.
+    """The rows of a tooth above the flank start.
 
-    radii (2 rows + 1,): of all row nodes. band: depth of the thin layers together [mm], tip_share: its largest part of
-    the tooth's thickness. columns: behind the thin layers, the transitions are the first. alike: the back flank has
-    thin layers and transitions as well; the transitions are the last of the columns.
+    profile: of the gear.
+    radii: (2 rows + 1,) radii of the nodes [mm].
+    band: depth of the thin layers together [mm].
+    tip_share: largest share of the tooth's thickness that the thin layers take.
+    columns: columns behind the thin layers; the first is the transitions.
+    fine_back: whether the back flank has thin layers and transitions as well; the transitions are then the last column.
     """
 
     profile: Profile
@@ -89,7 +101,7 @@ class ToothRows:
     band: float
     tip_share: float
     columns: int
-    alike: bool = False
+    fine_back: bool = False
 
     @property
     def start(self) -> float:
@@ -98,51 +110,54 @@ class ToothRows:
 
     @property
     def inner(self) -> int:
-        """Columns between the bands of both flanks."""
-        return self.columns if self.alike else self.columns - 1
+        """Number of columns between the bands of both flanks."""
+        return self.columns if self.fine_back else self.columns - 1
 
     @property
     def coarse(self) -> int:
-        """Columns behind the transitions."""
-        return self.columns - 1 - self.alike
+        """Number of coarse columns."""
+        return self.columns - 1 - self.fine_back
 
     @property
     def sides(self) -> int:
-        """How many flanks have thin layers."""
-        return 1 + self.alike
+        """Number of flanks with thin layers."""
+        return 1 + self.fine_back
 
     def strip_width(self, radius: Floats) -> Floats:
-        """Arc length [mm] of the thin layers along a row: their depth is normal to the flank, the row is not."""
+        """Arc length [mm] of the thin layers along rows at radii [mm]; their depth is measured normal to the flank."""
         along_row = self.band * radius / self.profile.gear.base_radius
         most = self.tip_share / self.sides * 2 * radius * self.profile.angle(radius)
         return _smaller(along_row, most)
 
     def transition_width(self, radius: Floats) -> Floats:
-        """Arc length [mm] of the 3:1 transitions along a row: a coarse row's height, if the tooth is thick enough."""
+        """Arc length [mm] of the 3:1 transitions along rows: the height of a coarse row, or less in a thin tooth."""
         height = np.interp(radius, self.radii, 6 * np.gradient(self.radii))  # three fine rows: six nodes
         rest = 2 * radius * self.profile.angle(radius) / self.sides - self.strip_width(radius)
         return _smaller(0.45 * rest, height)
 
     def column_width(self, radius: Floats) -> Floats:
-        """Arc length [mm] of one coarse column behind the transitions along a row."""
+        """Arc length [mm] of a coarse column along rows at radii [mm]."""
         thickness = 2 * radius * self.profile.angle(radius)
         rest = thickness - self.sides * (self.strip_width(radius) + self.transition_width(radius))
         return np.asarray(rest / self.coarse)
 
     def points(self, row: Floats, column: Floats) -> Floats:
-        """Points (..., 2) at rows (whole and half numbers) and columns."""
+        """Points (..., 2) [mm] at rows and columns (...); rows are multiples of a half."""
         radius = np.interp(row, np.arange(len(self.radii)) / 2, self.radii)
         arc = self.strip_width(radius) * np.clip(column, 0, 1)
         arc += self.transition_width(radius) * np.clip(column - 1, 0, 1)
         arc += self.column_width(radius) * np.clip(column - 2, 0, self.coarse)
         arc += self.transition_width(radius) * np.maximum(column - 2 - self.coarse, 0)
         points = polar(radius, self.profile.angle(radius) - arc / radius)
-        last = (np.asarray(column) == 1 + self.columns) & (not self.alike)
+        last = (np.asarray(column) == 1 + self.columns) & (not self.fine_back)
         return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
 
 
 def row_radii(profile: Profile, start: float, n: int, size_at: Callable[[Floats], Floats] | None) -> Floats:
-    """Radii (2n + 1,) of n cells along the involute from radius `start` to the tip, as long as size_at, relatively."""
+    """Radii (2n + 1,) [mm] of the nodes of n cells along the involute, from radius `start` [mm] to the tip.
+
+    size_at: relative length of the cells at radii [mm]; None: uniform.
+    """
     base = profile.gear.base_radius
     ends = profile.roll_length(np.array([start, profile.radii[2]])) ** 2 / (2 * base)
     arc = np.linspace(ends[0], ends[1], TABLE)

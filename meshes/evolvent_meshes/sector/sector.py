@@ -1,8 +1,8 @@
-"""One tooth sector: the section swept along the helix into 27-node hexahedra, every node recomputed exactly.
+"""Mesh of one tooth sector: the section swept along the helix into 27-node hexahedra with exact nodes.
 
-The section at height z is the mid-face section turned by twist·z, at second-order nodes too: all nodes of the loaded
-flank lie on the involute helicoid, with modifications on the modified flank, and the two cuts are the same surface one
-pitch apart.
+The section at height z is the mid-face section turned by twist·z, also at middle nodes: all nodes of the loaded flank
+lie on the involute helicoid, with modifications on the modified flank, and the two cuts are the same surface one pitch
+apart.
 """
 
 from __future__ import annotations
@@ -20,19 +20,29 @@ from evolvent_meshes.mesh.structured_grid import split_to_simplices
 from evolvent_meshes.sector.section import Section, SectorResolution, section_mesh
 
 MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
-"""Smallest scaled Jacobian of a sector; long thin layers make long thin simplices, which are not inverted ones."""
+"""Cell shape -> smallest scaled Jacobian allowed; long thin layers make long thin simplices, not inverted ones."""
 
 _FIXED_POINT_STEPS = 6
 
 
 def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str = "hexahedron") -> MeshData:
-    """Second-order mesh of tooth 0's sector, θ ∈ [−π/z, π/z] about its centre line, in the gear's own frame [mm].
+    """Second-order mesh of tooth 0's sector, θ ∈ [−π/z, π/z] about its centre line, in the gear's frame [mm].
 
-    shape: "hexahedron" or "tetrahedron" (each hexahedron cut into six on the same nodes) for the whole face width;
-    "quadrilateral" or "triangle" for the mid-face section, for plane strain. Volume group: tooth. Facet groups: flank
-    (the loaded one, θ > 0, above the flank start), fillet (from there to the cut), back (all of θ < 0), tip, bore,
-    cut_low (θ = −π/z), cut_high, and in 3D face_low, face_high (z ends). The nodes of cut_high are those of cut_low
-    turned by 2π/z. Raises MeshError for a wrong shape, a flank start off the involute, or bad cells.
+    shape: "hexahedron" or "tetrahedron" (six a hexahedron, on the same nodes) for the whole face width, "quadrilateral"
+        or "triangle" for the mid-face section in plane strain.
+
+    Volume group: tooth. Facet groups: flank (loaded, θ > 0, above the flank start), fillet (from there to the cut),
+    back (all of θ < 0), tip, bore, cut_low (θ = −π/z), cut_high (θ = π/z), in 3D face_low and face_high (ends of z).
+    The nodes of cut_high are those of cut_low turned by 2π/z.
+
+    Raises MeshError for an unknown shape, a flank start off the involute, or cells of bad quality.
+
+    >>> gear = GearParameters.from_rack(
+    ...     z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=60.0
+    ... )
+    >>> mesh = sector_mesh(gear, SectorResolution(profile_elements=12, face_elements=4))
+    >>> mesh.shape, len(mesh.facets["flank"])
+    ('hexahedron', 48)
     """
     if shape not in MINIMUM_QUALITY:
         raise MeshError(f"sector: wanted one of {', '.join(MINIMUM_QUALITY)}, found shape {shape!r}")
@@ -51,7 +61,7 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
 
 
 def layer_heights(face_width: float, resolution: SectorResolution) -> Floats:
-    """Heights (2 layers + 1,) of the nodes, ends and middles of the layers, which shrink towards both ends."""
+    """Heights (2 layers + 1,) [mm] of the nodes: ends and middles of layers that become thinner towards both faces."""
     n = resolution.face_elements
     even = np.linspace(-1, 1, n + 1)
     swing = (1 - resolution.end_size_ratio) / (1 + resolution.end_size_ratio)
@@ -61,7 +71,7 @@ def layer_heights(face_width: float, resolution: SectorResolution) -> Floats:
 
 
 def _radius_rank(section: Section) -> Ints:
-    """A number for every node of the section, ascending with the radius: equal on both cuts, as their radii are."""
+    """Rank (n,) of the section's nodes by radius, so that both cuts, which have the same radii, are split alike."""
     rank = np.empty(len(section.points), dtype=np.int64)
     rank[np.argsort(np.hypot(*section.points.T))] = np.arange(len(rank))
     return rank
@@ -77,7 +87,7 @@ def _volumes(n: int) -> dict[str, Ints]:
 
 
 def _swept(section: Section, heights: Floats) -> MeshData:
-    """Cells and facets of the sweep; node number = level · section nodes + section node. Points are left empty."""
+    """Cells and facets of the swept mesh, without points; node number = level · section nodes + section node."""
     n, layers = len(section.points), len(heights) // 2
     cells = _extruded(section.cells, "quadrilateral", "hexahedron", n, layers)
     facets = {name: _extruded(edge, "interval", "quadrilateral", n, layers) for name, edge in section.edges.items()}
@@ -87,7 +97,7 @@ def _swept(section: Section, heights: Floats) -> MeshData:
 
 
 def _extruded(nodes: Ints, base: str, shape: str, level: int, layers: int) -> Ints:
-    """Section entities (m, nodes) of shape `base` swept to (layers · m, nodes) of `shape`; levels are `level` apart."""
+    """Cells or edges (m, nodes) of shape `base` swept to (layers · m, nodes) of `shape`; `level` nodes a level."""
     index = {tuple(p): i for i, p in enumerate(node_positions(base, 2).tolist())}
     positions = node_positions(shape, 2).tolist()
     below = np.array([index[tuple(p[:-1])] for p in positions])
@@ -97,7 +107,7 @@ def _extruded(nodes: Ints, base: str, shape: str, level: int, layers: int) -> In
 
 
 def _placed(gear: GearParameters, section: Section, heights: Floats) -> Floats:
-    """Points (levels · section nodes, 3): the section turned to every height, the flank moved by its modifications."""
+    """Points (levels · section nodes, 3) [mm]: the section at all heights, the flank with its modifications."""
     radius, angle = np.hypot(*section.points.T), np.arctan2(section.points[:, 1], section.points[:, 0])
     turned = angle + gear.twist * heights[:, None]
     if not gear.modifications.is_empty:
@@ -111,10 +121,10 @@ def _placed(gear: GearParameters, section: Section, heights: Floats) -> Floats:
 
 
 def _turn(gear: GearParameters, radius: Floats, z: Floats) -> Floats:
-    """Angle [rad] from the helicoid to the modified flank at radii and heights (broadcast): nodes keep both.
+    """Angle [rad] about the axis from the helicoid to the modified flank, at radii and heights [mm] (broadcast).
 
-    A modified point (ρ, z0) − c n lies at roll length ρ − c cos β_b and height z0 + c hand sin β_b. That it lies at the
-    wanted radius and height is a fixed point for (ρ, z0), contracting with the modification's slope.
+    The modified point of (ρ, z0) lies at roll length ρ − c cos β_b and height z0 + c hand sin β_b. A fixed-point
+    iteration for (ρ, z0), which contracts with the slope of the modification, brings it to the given radius and height.
     """
     flank = Flank(gear)
     wanted, height = np.broadcast_arrays(flank.roll_length(radius), z)

@@ -1,9 +1,20 @@
-"""The verification shapes: blocks, discs and a spherical cap, as structured grids with graded contact zones.
+"""Verification shapes: blocks, discs and spherical caps, as structured grids with graded contact zones.
 
-In 2D x runs to the right and y up, in 3D x to the right, y to the back and z up. Contact shapes touch at the origin:
-the disc and the cap stand on it from above, the graded blocks lie below it with their tops at height zero. Every node
-of a curved contact boundary, mid-side nodes too, lies on the circle or sphere itself. All cells are in the volume group
-"body".
+In 2D x points to the right and y up, in 3D x to the right, y to the back and z up. Shapes touch at the origin: discs
+and caps lie above it, graded blocks below it with their tops at height zero. All nodes of a curved contact boundary,
+also mid-side nodes, lie on the circle or sphere. All cells are in the volume group "body".
+
+Parameters that all functions share:
+
+order: of the cells, 1 or 2.
+shape: of the cells, in 2D "quadrilateral" or "triangle", in 3D "hexahedron" or "tetrahedron".
+size: largest cells in the contact zone [mm].
+fine: half-width of the contact zone [mm].
+fine_depth: depth of the contact zone [mm]; None: fine / 2.
+growth: largest ratio of the lengths of neighbouring cells outside the contact zone.
+
+Each raises MeshError for a shape or order that it has not, graded ones unless size > 0, fine lies inside the block and
+growth >= 1.
 """
 
 from __future__ import annotations
@@ -19,7 +30,7 @@ from evolvent_meshes.mesh.structured_grid import (
     facets_where,
     graded_ends,
     lattice_cells,
-    mirrored,
+    mirrored_line,
     split_to_simplices,
     subdivided,
     tensor_points,
@@ -37,7 +48,16 @@ def rectangle(
     shape: str = "quadrilateral",
     origin: tuple[float, float] = (0.0, 0.0),
 ) -> MeshData:
-    """Uniform rectangle [mm] with its lower left corner at `origin`; facet groups left, right, bottom, top."""
+    """Uniform rectangle of nx × ny cells.
+
+    width, height: [mm].
+    origin: lower left corner [mm].
+    Facet groups: left, right, bottom, top.
+
+    >>> mesh = rectangle(40.0, 20.0, nx=4, ny=2)
+    >>> mesh.cells.shape, mesh.points.shape, list(mesh.facets)
+    ((8, 9), (45, 3), ['left', 'right', 'bottom', 'top'])
+    """
     x = origin[0] + np.linspace(0, width, nx + 1)
     y = origin[1] + np.linspace(0, height, ny + 1)
     return _tensor_block((x, y), order, shape, {"left": 0, "right": 0, "bottom": 1, "top": 1})
@@ -50,9 +70,12 @@ def box(
     shape: str = "hexahedron",
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> MeshData:
-    """Uniform box [mm] with its lowest corner at `origin`.
+    """Uniform box.
 
-    Facet groups: left and right (x low, high), front and back (y low, high), bottom and top (z low, high).
+    size: lengths along x, y, z [mm].
+    counts: cells along x, y, z.
+    origin: lowest corner [mm].
+    Facet groups: left and right (ends of x), front and back (ends of y), bottom and top (ends of z).
     """
     lines = tuple(o + np.linspace(0, s, n + 1) for o, s, n in zip(origin, size, counts, strict=True))
     axes = {"left": 0, "right": 0, "front": 1, "back": 1, "bottom": 2, "top": 2}
@@ -69,11 +92,12 @@ def graded_rectangle(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Block |x| <= width/2, -height <= y <= 0 [mm] refined at its top centre; groups left, right, bottom, top.
+    """Rectangle |x| <= width/2, -height <= y <= 0, refined at the centre of its top.
 
-    Cells of `size` over |x| <= fine and down to `fine_depth` (default fine/2), each next one `growth` times larger.
+    width, height: [mm].
+    Facet groups: left, right, bottom, top.
     """
-    x = mirrored(graded_ends(width / 2, size, fine, growth))
+    x = mirrored_line(graded_ends(width / 2, size, fine, growth))
     y = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     return _tensor_block((x, y), order, shape, {"left": 0, "right": 0, "bottom": 1, "top": 1})
 
@@ -88,8 +112,9 @@ def graded_box(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Quarter block 0 <= x, y <= side, -height <= z <= 0 [mm] refined at the origin, the centre of its top.
+    """Quarter of a block, 0 <= x, y <= side, -height <= z <= 0, refined at the origin, the centre of the block's top.
 
+    side, height: [mm].
     Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), right (x = side), back (y = side), bottom, top.
     """
     line = graded_ends(side, size, fine, growth)
@@ -109,11 +134,13 @@ def sphere_quarter(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Quarter of a square block with a spherical underside that touches the origin from above.
+    """Quarter of a square block above z = 0 with a spherical underside that touches the origin.
 
-    0 <= x, y <= side, from the sphere of `radius` about (0, 0, radius) up to the flat top at z = height [mm]. Facet
-    groups: arc (the sphere), top, symmetry_x, symmetry_y, right, back. Raises MeshError unless the sphere rises less
-    than 0.7 height over the block.
+    radius: of the sphere about (0, 0, radius) [mm].
+    side: of the quarter, 0 <= x, y <= side [mm].
+    height: z of the flat top [mm].
+    Facet groups: arc (the sphere), top, symmetry_x (x = 0), symmetry_y (y = 0), right, back.
+    Raises MeshError unless the sphere rises less than 0.7 height over the block.
     """
     line = graded_ends(side, size, fine, growth)
     z = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
@@ -124,8 +151,12 @@ def sphere_quarter(
 
 
 def over_sphere(points: Floats, radius: float, height: float) -> Floats:
-    """Points (n, 3) of an upright block, 0 <= z <= height [mm], lifted: its underside comes to lie on the sphere of
-    `radius` about (0, 0, radius), its top stays. Raises MeshError unless the sphere rises less than 0.7 height."""
+    """Points (n, 3) [mm] of a block, 0 <= z <= height, moved along z so that its underside lies on a sphere.
+
+    radius: of the sphere about (0, 0, radius) [mm].
+    height: z of the top, which does not move [mm].
+    Raises MeshError unless the sphere rises less than 0.7 height over the block.
+    """
     x, y, _ = points.T
     reach = float(np.hypot(x, y).max())
     if reach >= radius or radius - np.sqrt(radius**2 - reach**2) > 0.7 * height:
@@ -137,7 +168,7 @@ def over_sphere(points: Floats, radius: float, height: float) -> Floats:
 
 
 def lifted(points: Floats, sag: Floats, height: float) -> Floats:
-    """Points (n, 3) of an upright block, 0 <= z <= height [mm]: its underside is raised by sag (n,), its top stays."""
+    """Points (n, 3) [mm] of a block, 0 <= z <= height, whose underside is raised by sag (n,) [mm]; its top stays."""
     x, y, z = points.T
     return np.column_stack([x, y, sag + z * (1 - sag / height)])
 
@@ -152,13 +183,15 @@ def cylinder_2d(
     contact: float | None = None,
     growth: float = 1.3,
 ) -> MeshData:
-    """Disc of `radius` [mm] about (0, radius), or its lower half, refined where it touches the origin.
+    """Disc about (0, radius), or its lower half, refined where it touches the origin.
 
-    Cells of `size` along the arc over |x| <= fine and down to fine/2, growing outwards and upwards. Facet groups: arc
-    (the arc over |x| <= contact, default 2 fine, at most up to 45° from the lowest point), and of a half disc top (the
-    flat cut at y = radius).
+    radius: [mm].
+    half: whether only the lower half is meshed.
+    contact: half-width of the facet group arc [mm]; None: 2 fine. The group ends at 45° from the lowest point.
+    Facet groups: arc (|x| <= contact), of a half disc top (the flat cut at y = radius).
+    The contact zone is fine/2 deep.
     """
-    bottom = subdivided(mirrored(graded_ends(np.pi / 4, size / radius, fine / radius, growth)), order)
+    bottom = subdivided(mirrored_line(graded_ends(np.pi / 4, size / radius, fine / radius, growth)), order)
     depth = subdivided(graded_ends((1 - _CORE) * radius, size, fine / 2, growth), order)
     points, cells = _disc(radius, bottom, depth, order, half)
     facets = boundary_facets("quadrilateral", order, cells)
@@ -173,11 +206,11 @@ def cylinder_2d(
 
 
 _CORE = 0.5
-"""Half-width of the disc's core, as a part of the radius."""
+"""Half-width of the disc's core over the radius."""
 
 
 def _disc(radius: float, bottom: Floats, depth: Floats, order: int, half: bool) -> tuple[Floats, Ints]:
-    """Points (n, 2) and cells of a disc made of a core and shells; depths are below the arc at its lowest point."""
+    """Points (n, 2) and cells of a disc of a core and shells; depth: distances from the arc, ending at the core."""
     n_side = max(4, len(bottom) // (4 * order))
     right = subdivided(np.linspace(0.25, 0.5 if half else 0.75, n_side + 1), order) * np.pi
     shells = [bottom, right, -right[::-1]] if half else [bottom, right, -right[::-1], bottom + np.pi]
@@ -193,14 +226,14 @@ def _disc(radius: float, bottom: Floats, depth: Floats, order: int, half: bool) 
 
 
 def _shell(angles: Floats, depth: Floats, radius: float) -> Floats:
-    """Grid (n angles, n depths, 2) from the arc (depth 0) to the core (depth 1); angles from the lowest point."""
+    """Grid (n_angles, n_depths, 2) from the arc (depth 0) to the core (depth 1); angles from the lowest point [rad]."""
     outer = _polar(angles, np.full_like(angles, radius), radius)
     inner = _core_edge(angles, radius)
     return np.asarray(outer[:, None] + depth[:, None] * (inner - outer)[:, None])
 
 
 def _core(bottom: Floats, right: Floats, radius: float, half: bool) -> Floats:
-    """Grid (n bottom, n right, 2) of the core by transfinite interpolation of its four edges."""
+    """Grid (n_bottom, n_right, 2) of the core by transfinite interpolation of its four edges."""
     south, east, west = (_core_edge(angles, radius) for angles in (bottom, right, -right))
     if half:
         north = np.column_stack([south[:, 0] * east[-1, 0] / south[-1, 0], np.full(len(south), radius)])
@@ -212,18 +245,18 @@ def _core(bottom: Floats, right: Floats, radius: float, half: bool) -> Floats:
 
 
 def _core_edge(angles: Floats, radius: float) -> Floats:
-    """Points (n, 2) of the core's edge: a square with bulging sides."""
+    """Points (n, 2) of the core's edge, a square with convex sides."""
     square = 1 / np.maximum(abs(np.sin(angles)), abs(np.cos(angles)))
     return _polar(angles, _CORE * radius * (0.7 * square + 0.3), radius)
 
 
 def _polar(angles: Floats, distance: Floats, radius: float) -> Floats:
-    """Points (n, 2) at a distance from the centre (0, radius); angles from the lowest point, positive to the right."""
+    """Points (n, 2) at a distance from the centre (0, radius); angles [rad] from the lowest point, x > 0 positive."""
     return np.column_stack([distance * np.sin(angles), radius - distance * np.cos(angles)])
 
 
 def _tensor_block(lines: tuple[Floats, ...], order: int, shape: str, axes: dict[str, int]) -> MeshData:
-    """Tensor grid of cell ends; `axes` gives each facet group's direction, low side first."""
+    """Mesh of a tensor grid of cell ends; axes: facet group -> its direction, the group of the low end first."""
     positions = [subdivided(line, order) for line in lines]
     points = tensor_points(*positions)
     cells = lattice_cells(tuple(len(line) - 1 for line in lines), order)
@@ -240,7 +273,7 @@ def _tensor_block(lines: tuple[Floats, ...], order: int, shape: str, axes: dict[
 def _finished(
     points: Floats, cells: Ints, order: int, shape: str, groups: dict[str, Ints], key: Ints | None
 ) -> MeshData:
-    """The mesh in the wanted shape; points may have two coordinates. Raises MeshError for a wrong shape or order."""
+    """The mesh in the wanted cell shape, from points (n, 2) or (n, 3). Raises MeshError for a wrong shape or order."""
     dimension = points.shape[1]
     tensor = TENSOR_SHAPE[dimension]
     if order not in (1, 2) or shape not in (tensor, SIMPLEX[tensor]):

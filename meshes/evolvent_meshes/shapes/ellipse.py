@@ -1,6 +1,7 @@
-"""Quarter blocks for elliptical contacts: ring meshes stretched along x, so that a ring of cells ends at an ellipse.
+"""Quarters of blocks for elliptical contacts: ring meshes stretched along x, with a ring that ends at an ellipse.
 
-x runs to the right along the major half-axis, y to the back, z up; both shapes touch at the origin.
+x points along the major half-axis, y along the minor one, z up; both shapes touch at the origin. Parameters that are
+not explained: `rings`.
 """
 
 from __future__ import annotations
@@ -21,11 +22,14 @@ def ellipse_block(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Quarter of an upright elliptical cylinder below z = 0, `side` high and `side` wide along y, all in mm.
+    """Quarter of an upright elliptical cylinder below z = 0, of hexahedra.
 
-    half_axes: a ≥ b of the contact; a/b stretches everything along x. Cells of at most `size` along y and z up to
-    `fine`, along x of a/b times that. Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top.
-    Hexahedra. Raises MeshError unless 0 < b <= a and b < fine < side.
+    half_axes: (a, b) of the contact, a >= b [mm]; all lengths along x are stretched by a/b.
+    side: height, and half-axis along y [mm].
+    size: largest cells along y and z in the contact zone [mm].
+    fine: half-width of the contact zone along y [mm].
+    Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top.
+    Raises MeshError unless 0 < b <= a and b < fine < side.
     """
     a, b = half_axes
     if not 0 < b <= a:
@@ -44,10 +48,12 @@ def ellipse_punch(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """The same above z = 0, with the paraboloid z = A x² + B y² as its underside and a flat top at z = `side`.
+    """Quarter of an upright elliptical cylinder above z = 0, its underside the paraboloid z = A x² + B y².
 
-    curvatures: A, B [1/mm]. Facet groups: arc (the paraboloid), top, symmetry_x, symmetry_y, side. Raises MeshError as
-    above, and unless the paraboloid rises less than 0.7 of the height.
+    curvatures: (A, B) [1/mm].
+    The other parameters are those of `ellipse_block`; the flat top is at z = side.
+    Facet groups: arc (the paraboloid), top, symmetry_x, symmetry_y, side.
+    Raises MeshError as `ellipse_block`, and unless the paraboloid rises less than 0.7 side.
     """
     block = ellipse_block((half_axes[1], half_axes[1]), side, size, fine, order, growth, fine_depth)
     points = block.points[:, [1, 0, 2]] * (half_axes[0] / half_axes[1], 1.0, -1.0)  # turned upside down about x = y

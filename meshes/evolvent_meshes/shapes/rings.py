@@ -1,8 +1,20 @@
-"""Quarter blocks for round contacts: around a square core the cells lie in rings, and one of them ends at a circle.
+"""Quarters of blocks for circular contacts: rings of cells around a square core, one of which ends at the edge.
 
-The pressure of a round contact rises like a square root from its edge. Square cells that the edge cuts at all angles
-follow it badly; rings whose cells end at the expected edge follow it as the cells of a line contact do. x runs to the
-right, y to the back, z up; both shapes touch at the origin, the block from below and the sphere from above.
+Near the edge of the contact the pressure varies as the square root of the distance. Rings of cells that end at the
+expected edge resolve it as the cells of a line contact do; square cells, which the edge cuts at all angles, do not.
+x points to the right, y to the back, z up; both shapes touch at the origin, the block below and the sphere above it.
+
+Parameters that both functions share:
+
+side: radius of the upright cylinder [mm].
+height: of the cylinder [mm].
+ring: radius at which a ring of cells ends [mm].
+size: largest cells within the radius `ring` [mm]. Outside, the number of cells along the circle is the same, so that
+    they widen with the radius.
+fine: radius up to which cells are at most `size` long along the radius [mm].
+order: of the cells, 1 or 2.
+growth: largest ratio of the lengths of neighbouring cells outside `fine`.
+fine_depth: depth of the cells of `size` [mm]; None: fine / 2.
 """
 
 from __future__ import annotations
@@ -22,8 +34,8 @@ from evolvent_meshes.mesh.structured_grid import (
 )
 from evolvent_meshes.shapes.blocks import over_sphere
 
-CORE = 0.5  # half-width of the square core, as a part of the ring's radius
-BULGE = 0.7  # 1: the core is a square, 0: a disc; between, no cell is far from a right angle
+CORE = 0.5  # half-width of the square core over the radius of the ring
+BULGE = 0.7  # 1: the core is a square, 0: a disc; in between the angles of the cells are near 90°
 
 
 def ring_block(
@@ -36,13 +48,10 @@ def ring_block(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Quarter of an upright cylinder of radius `side`, -height <= z <= 0 [mm], refined at the centre of its top.
+    """Quarter of an upright cylinder, -height <= z <= 0, of hexahedra, refined at the centre of its top.
 
-    A ring of cells ends at the radius `ring`, and up to there the cells are at most `size` wide. Outside it their
-    number along the circle stays, so that they widen with the radius; outwards they are at most `size` long up to the
-    radius `fine`, and as deep down to `fine_depth` (default fine/2), each next one at most `growth` times more. Facet
-    groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top. Hexahedra. Raises MeshError unless
-    0 < ring < fine < side.
+    Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top.
+    Raises MeshError unless 0 < ring < fine < side.
     """
     depth = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     points, cells = _swept(side, ring, size, fine, order, growth, depth)
@@ -60,10 +69,11 @@ def ring_sphere(
     growth: float = 1.3,
     fine_depth: float | None = None,
 ) -> MeshData:
-    """Quarter of an upright cylinder of radius `side` with a sphere of `radius` about (0, 0, radius) as its underside.
+    """Quarter of an upright cylinder above z = 0, of hexahedra, its underside a sphere that touches the origin.
 
-    Its flat top is at z = height [mm]. Sizes as for `ring_block`. Facet groups: arc (the sphere), top, symmetry_x,
-    symmetry_y, side. Raises MeshError unless 0 < ring < fine < side and the sphere rises less than 0.7 height.
+    radius: of the sphere about (0, 0, radius) [mm].
+    Facet groups: arc (the sphere), top (z = height), symmetry_x, symmetry_y, side.
+    Raises MeshError unless 0 < ring < fine < side and the sphere rises less than 0.7 height.
     """
     line = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
     points, cells = _swept(side, ring, size, fine, order, growth, line)
@@ -74,7 +84,7 @@ def ring_sphere(
 def _swept(
     side: float, ring: float, size: float, fine: float, order: int, growth: float, z: Floats
 ) -> tuple[Floats, Ints]:
-    """Points (n, 3) and cells of the quarter's section (core and two shells) over the cell ends z."""
+    """Points (n, 3) and cells of the quarter: its section, a core and two shells, swept over the cell ends z [mm]."""
     if not 0 < ring < fine < side:
         raise MeshError(f"rings: wanted 0 < ring < fine < side, found ring {ring}, fine {fine}, side {side} mm")
     n_angle = _count(np.pi / 4 * ring, size)
@@ -94,17 +104,17 @@ def _swept(
 
 
 def _count(length: float, size: float) -> int:
-    """Cells of at most `size` on a line."""
+    """Number of cells of at most `size` on a line."""
     return max(1, int(np.ceil(length / size - 1e-9)))
 
 
 def _core_edge(angles: Floats, ring: float) -> Floats:
-    """Radius of the core's edge: a square with bulging sides."""
+    """Radii (n,) of the core's edge, a square with convex sides, at angles (n,) [rad]."""
     return CORE * ring * (BULGE / np.maximum(np.cos(angles), np.sin(angles)) + 1 - BULGE)
 
 
 def _shell(angles: Floats, radii: Floats, ring: float) -> Floats:
-    """Grid (n radii, n angles, 2) from the core's edge outwards, of circles from the ring on."""
+    """Grid (n_radii, n_angles, 2) from the core's edge outwards; circles from the radius `ring` on."""
     inside = np.maximum(0.0, ring - radii) / (ring - radii[0])
     r = radii[:, None] + inside[:, None] * (_core_edge(angles, ring) - radii[0])
     return np.stack([r * np.cos(angles), r * np.sin(angles)], axis=2)
@@ -123,7 +133,7 @@ def _core(angles: Floats, ring: float) -> Floats:
 
 
 def _finished(points: Floats, cells: Ints, order: int, ends: dict[str, Floats], side: float) -> MeshData:
-    """The mesh with its facet groups; `ends` names the lower and upper surface by what vanishes there."""
+    """The mesh with its facet groups; ends: name of the lower and the upper surface -> values (n,) that are 0 on it."""
     facets = boundary_facets("hexahedron", order, cells)
     x, y = points[:, 0], points[:, 1]
     zero = {"symmetry_x": x, "symmetry_y": y, "side": np.hypot(x, y) - side, **ends}

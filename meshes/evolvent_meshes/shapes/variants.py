@@ -1,4 +1,4 @@
-"""Meshes made from others: with a part of a facet group as a group of its own, doubled by mirroring."""
+"""Meshes derived from others: with part of a facet group as another group, or doubled by reflection."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from evolvent_meshes.mesh.structured_grid import weld
 
 
 def with_part(mesh: MeshData, group: str, part: str, reach: float) -> MeshData:
-    """The mesh with a further facet group `part`: the facets of `group` whose middle is nearer than `reach` [mm] to the
-    z axis, in 2D to the y axis.
+    """The mesh with a further facet group of the facets that may come into contact.
 
-    What cannot touch then costs no compliance. Raises MeshError where there is none.
+    group: the facet group to take them from.
+    part: name of the new group; as contact surface it needs fewer functionals than `group`.
+    reach: largest distance of a facet's centre from the z axis, in 2D from the y axis [mm].
+    Raises MeshError where there are no such facets.
     """
     facets = mesh.facets[group]
     away = np.linalg.norm(mesh.points[facets, : mesh.dimension - 1].mean(axis=1), axis=1)
@@ -27,10 +29,11 @@ def with_part(mesh: MeshData, group: str, part: str, reach: float) -> MeshData:
 
 
 def doubled(mesh: MeshData, plane: str, axis: int = 0) -> MeshData:
-    """The mesh and its mirror image in the coordinate plane of the facet group `plane`, welded there.
+    """The mesh of quadrilaterals or hexahedra and its mirror image in a coordinate plane, welded there.
 
-    axis: the coordinate that vanishes in the plane. All other facet groups and the volumes have both halves, `plane`
-    is gone. Quadrilaterals and hexahedra. Raises MeshError where the group is not in the plane.
+    plane: the facet group in the plane; the doubled mesh does not have it. All other groups have both halves.
+    axis: the coordinate that is 0 in the plane.
+    Raises MeshError for simplices, and where the group is not in the plane.
     """
     off = float(np.abs(mesh.points[np.unique(mesh.facets[plane]), axis]).max())
     scale = float(np.ptp(mesh.points, axis=0).max())
@@ -50,12 +53,12 @@ def doubled(mesh: MeshData, plane: str, axis: int = 0) -> MeshData:
 
 
 def _both(cells: Ints, shape: str, order: int, count: int) -> Ints:
-    """Cells and their images, whose nodes are `count` further on; the image's nodes are reordered to keep its sense."""
+    """Cells and their images, with node numbers larger by `count` and the nodes reordered to keep the orientation."""
     return np.concatenate([cells, cells[:, _mirrored_order(shape, order)] + count])
 
 
 def _mirrored_order(shape: str, order: int) -> Ints:
-    """The node at the mirrored place of the reference cell, for each of its nodes."""
+    """For each node of the reference cell the node at its mirror image. Raises MeshError for simplices."""
     if shape not in ("interval", "quadrilateral", "hexahedron"):
         raise MeshError(f"doubled: wanted quadrilaterals or hexahedra, found {shape}; mirror before splitting them")
     place: Floats = node_positions(shape, order).astype(float)

@@ -138,7 +138,7 @@ def prescribed_displacements(body: Body) -> tuple[Bools, Floats]:
                 other = f"{value[nodes, axis][clash][0]:g} mm of another support" if clash.any() else "a rigid coupling"
                 raise InputError(
                     f"{body.name}, support of {support.group!r}: wanted one displacement along {AXES[axis]} a node, "
-                    f"found {given:g} mm and {other} at shared nodes; let the groups not touch, or prescribe the same"
+                    f"found {given:g} mm and {other} at shared nodes; separate the groups, or prescribe the same"
                 )
             held[nodes, axis], value[nodes, axis] = True, given
     return held, value
@@ -277,8 +277,8 @@ def _refuse_loose_pieces(body: Body, held: Bools) -> None:
         stopped = (modes / np.abs(modes).max(axis=(0, 1)))[held[nodes]]
         if not len(stopped) or np.linalg.matrix_rank(stopped, tol=1e-10) < modes.shape[2]:
             raise MeshError(
-                f"{body.name}: wanted a mesh in one piece, or every piece held by supports, found {count} pieces, and "
-                f"that with point {nodes[0]} is not held; weld nodes that coincide (gmsh.model.mesh."
+                f"{body.name}: wanted a mesh in one piece, or every piece held by supports, found {count} pieces, of "
+                f"which that with point {nodes[0]} is not held; weld nodes that coincide (gmsh.model.mesh."
                 "removeDuplicateNodes), or make each piece a body of its own"
             )
 

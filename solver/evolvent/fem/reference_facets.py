@@ -53,7 +53,7 @@ class ReferenceCell:
 def reference_cell(shape: str, order: int) -> ReferenceCell:
     """The reference cell of a facet: interval, quadrilateral or triangle, order 1 or 2. Raises ValueError."""
     if (shape, order) not in REVERSED_FACET:
-        raise ValueError(f"facets must be {sorted(REVERSED_FACET)}; found {(shape, order)}: mesh with one of these")
+        raise ValueError(f"facet: wanted one of {sorted(REVERSED_FACET)}, found {(shape, order)}; mesh with these")
     nodes = node_points(shape, order)
     dimension = nodes.shape[1]
     powers = np.array(list(np.ndindex(*(order + 1,) * dimension)), dtype=np.int64)

@@ -160,7 +160,7 @@ def _nodal_normals(surface: Surface) -> Floats:
     if np.any(folded := np.sum(vectors * centre, axis=2).min(axis=1) <= 0.0):
         bad = int(np.argmax(folded))
         raise ValueError(f"{folded.sum()} of {len(every)} facets are folded or empty (first: {bad}, its normals at the "
-                         "nodes and at the centre should differ by less than 90°): mend or refine the mesh")
+                         "nodes and at the centre should differ by less than 90°): correct or refine the mesh")
     unit = vectors / np.linalg.norm(vectors, axis=2, keepdims=True)
     total = np.zeros_like(surface.points)
     np.add.at(total, surface.facets, surface.areas()[:, None, None] * unit)
@@ -265,7 +265,7 @@ def facet_group(mesh: MeshData, group: str, of: str) -> Ints:
     lost = np.setdiff1d(np.arange(len(facets)), _facets_and_cells(mesh.cells, facets, len(mesh.points))[0])
     if len(lost):
         raise MeshError(
-            f"{of}, facet group {group!r}: wanted facets of the mesh's cells, found {len(lost)} that are none, the "
+            f"{of}, facet group {group!r}: wanted facets of the mesh's cells, found {len(lost)} of no cell, the "
             f"first has the nodes {facets[lost[0]].tolist()}; mesh the boundary together with the body"
         )
     return facets

@@ -8,17 +8,17 @@ three or four pairs that touch is then a curve over the whole engagement, each r
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from evolvent.results.contact_slices import Slices
 from evolvent.results.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
 from evolvent.results.run_data import RunData, SolvedPosition
-from evolvent.results.tip_zones import AT_THE_END
+from evolvent.results.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Floats, Ints
 
-BESIDE = 3.0 * AT_THE_END
+BESIDE = 3.0 * AT_LIMIT
 """Roll distance [mm] from the end of a tip-edge zone within which a spur pair's position stands at it."""
 
 
@@ -115,24 +115,22 @@ def engagement(run: RunData, index: int, inner: tuple[float, float] | None = Non
     angle, position, tooth, *values = columns
     radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
     curve = Engagement(run.frictions[index], angle, position, tooth, *values)
-    there = [np.abs(radius * angle - peak.ξ) <= BESIDE for peak in entered]
+    there = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in entered]
     return replace(
         curve,
         at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
         zone_ends=tuple(
-            TurnPeak(peak.ξ / radius, peak.pressure, True, int((peak.ξ / radius - run.angles[0]) // run.pitch))
-            for peak in entered
+            TurnPeak(angle, peak.pressure, True, int((angle - run.angles[0]) // run.pitch))
+            for peak in entered for angle in [peak.roll_distance / radius]
         ),
-    )
+    )  # fmt: skip
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:
     """Of a spur pair; a helical line's own slices enter the zones one by one, see `line_peak`."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
-    cuts = [each[index].cut for each in run.positions]
-    whole = Slices(*(np.concatenate([getattr(cut, each.name) for cut in cuts]) for each in fields(Slices)))
-    return zone_end_peaks(run.pair, whole, inner)
+    return zone_end_peaks(run.pair, Slices.joined([each[index].cut for each in run.positions]), inner)
 
 
 def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:

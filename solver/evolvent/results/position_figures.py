@@ -1,4 +1,4 @@
-"""A drive's figures at one position, which a pitch's are the means or the extremes of."""
+"""Engineering figures of a drive at one position; those of a pitch are their means or extremes."""
 
 from __future__ import annotations
 
@@ -19,15 +19,19 @@ def loss_percent(_: RunData, solved: SolvedPosition) -> float:
 
 
 def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """The tangent dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction (tangent_stiffness.py). F:
-    torque over base radius and face width, δ: transmission error. Its mean over the pitch is c_γ of ISO 6336-1 where
-    the gear bodies are stiff."""
+    """Tangent stiffness dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction.
+
+    F: torque over base radius and face width, δ: transmission error. Its mean over the pitch is c_γ of ISO 6336-1 where
+    the gear bodies are stiff.
+    """
     return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
 
 
 def secant_stiffness(run: RunData, solved: SolvedPosition) -> float:
-    """T_1/(r_b1 b) over the transmission error [N/(mm·µm)], in which modifications of the flanks count as deflection;
-    NaN where a flank has a chart, as there is no telling how much of the error is missing material."""
+    """T_1/(r_b1 b) over the transmission error [N/(mm·µm)]; modifications of the flanks count as deflection.
+
+    NaN where a flank has a chart: which part of the transmission error is missing material is not known.
+    """
     if any(getattr(run.scene, name).flank_csv is not None for name in GEARS):
         return math.nan
     force = run.width * solved.result.torques[0] / run.pair.pinion.base_radius / run.pair.face_width

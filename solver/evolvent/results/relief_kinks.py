@@ -55,7 +55,7 @@ def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
         return []
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     modulus = contact_modulus(*run.scene.materials())
-    at = np.concatenate([each[index].cut.ξ for each in run.positions])
+    at = np.concatenate([each[index].cut.roll_distance for each in run.positions])
     hertz = np.concatenate([each[index].cut.hertz for each in run.positions])
     found = []
     for ξ, angle, roll in _kinks(run.pair):

@@ -11,7 +11,7 @@ from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications, involute
+from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
 from evolvent_meshes.gears.pair import GearPair
 
 ADDENDUM, DEDENDUM, RACK_TIP_RADIUS = 1.0, 1.25, 0.38
@@ -124,8 +124,8 @@ def working_angle(normal: float, transverse: float, shift_per_tooth: float) -> f
     normal, transverse: pressure angles α_n and α_t [rad]. shift_per_tooth: (x1 + x2)/(z1 + z2). Raises ValueError where
     no angle from 0 to 60° satisfies the equation.
     """
-    wanted, steepest = involute(transverse) + 2 * math.tan(normal) * shift_per_tooth, math.radians(60)
-    return float(brentq(lambda angle: involute(angle) - wanted, 0.0, steepest, xtol=1e-15))
+    wanted, steepest = involute_function(transverse) + 2 * math.tan(normal) * shift_per_tooth, math.radians(60)
+    return float(brentq(lambda angle: involute_function(angle) - wanted, 0.0, steepest, xtol=1e-15))
 
 
 def working_angle_of(pinion: GearParameters, wheel: GearParameters) -> float:

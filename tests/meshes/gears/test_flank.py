@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import (
     Flank,
+    action_plane_points,
     contact_lines,
     contact_normal,
-    contact_points,
     misalignment_rotation,
     nominal_angles,
     separation,
@@ -156,7 +156,7 @@ def test_flanks_touch_along_the_predicted_lines(pair: GearPair, phi: float) -> N
         xi, z = line.points(7)
         np.testing.assert_allclose(xi, pair.roll_distance(phi, line.tooth, z), atol=1e-12)
         rho_1, rho_2 = pair.curvature_radii(xi)
-        predicted = contact_points(pair, xi, z)
+        predicted = action_plane_points(pair, xi, z)
         first = pinion_in_space(pair, phi, line.tooth, pinion.point(rho_1, z))
         np.testing.assert_allclose(first, predicted, atol=1e-9)
         np.testing.assert_allclose(into_wheel(pair, phi, line.tooth, predicted), wheel.point(rho_2, z), atol=1e-9)
@@ -207,10 +207,10 @@ def test_contact_lines_agree_with_the_length_and_the_contact_ratio(pair: GearPai
     angles = np.linspace(0.0, 2.0 * math.pi / pair.pinion.z, 401)[:-1] + 1e-7
     cosine = math.cos(pair.pinion.base_helix_angle)
     lines = [contact_lines(pair, phi) for phi in angles]
-    for phi, found in zip(angles, lines, strict=True):
-        total = sum(line.z[1] - line.z[0] for line in found) / cosine
+    for phi, touching in zip(angles, lines, strict=True):
+        total = sum(line.z[1] - line.z[0] for line in touching) / cosine
         assert total == pytest.approx(pair.contact_line_length(phi))
-    mean_count = np.mean([len(found) for found in lines])
+    mean_count = np.mean([len(touching) for touching in lines])
     assert mean_count == pytest.approx(pair.total_contact_ratio, abs=0.01)
 
 

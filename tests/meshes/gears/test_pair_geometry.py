@@ -64,14 +64,14 @@ def test_every_printed_figure_to_the_last_digit(pair: GearPair, printed: str) ->
     0.19 µm off the printed one. One exception: the wheel's tip thickness of Yang is 1.34549, printed 1.346.
     """
     assert pair.tight_centre_distance == pytest.approx(pair.centre_distance, abs=2e-4)
-    found = figures(replace(pair, centre_distance=pair.tight_centre_distance))
+    computed = figures(replace(pair, centre_distance=pair.tight_centre_distance))
     words = printed.split()
     for symbol, text in zip(words[::2], words[1::2], strict=True):
         digits = len(text.rstrip("~").partition(".")[2])
         if text.endswith("~"):
-            assert abs(found[symbol] - float(text[:-1])) < 10.0**-digits, symbol
+            assert abs(computed[symbol] - float(text[:-1])) < 10.0**-digits, symbol
         else:
-            assert f"{found[symbol]:.{digits}f}" == text, symbol
+            assert f"{computed[symbol]:.{digits}f}" == text, symbol
 
 
 def test_contact_ratio_of_the_larger_tip_circle() -> None:

@@ -101,7 +101,7 @@ def test_fillet_is_the_envelope_of_the_rolling_rack(gear: GearParameters) -> Non
     is met within the square of that), without use of the law of gearing that the code solves.
     """
     profile = Profile(gear)
-    points = np.concatenate([profile.fillet(np.linspace(0.0, 1.0, 9)), profile.flank(np.linspace(0.0, 1.0, 4))])
+    points = np.concatenate([profile.fillet(np.linspace(0.0, 1.0, 9)), profile.involute_arc(np.linspace(0.0, 1.0, 4))])
     radius, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0]) - math.pi / gear.z
     reference = gear.reference_diameter / 2.0
     travel = np.linspace(-8.0 * gear.normal_module, 8.0 * gear.normal_module, 16001)[:, None]

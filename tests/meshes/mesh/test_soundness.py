@@ -1,4 +1,4 @@
-"""What the solver asks of a mesh: folded cells are counted as an independent measure counts them, whole ones pass."""
+"""Checks of a mesh: as many cells are folded as by an independent measure, and sound cells pass."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def _block(shape: str, order: int, count: int = 4) -> MeshData:
 
 @pytest.mark.parametrize(("shape", "order"), SHAPES)
 def test_folded_cells_are_counted(shape, order):
-    """Four inner nodes thrown by most of a cell's size: as many cells are refused as have a scaled Jacobian that
-    is not above zero, and the worst cell that is named is one of them. Before, the whole mesh passes."""
+    """Four inner nodes moved by most of a cell's size: as many cells are refused as have a scaled Jacobian that is not
+    above zero, and the worst cell that is named is one of them. The mesh before passes."""
     mesh = _block(shape, order)
     check_mesh(mesh, "block")
     d = mesh.dimension

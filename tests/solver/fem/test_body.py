@@ -1,4 +1,4 @@
-"""A body's stiffness, loads, supports and rigid motions, against what elasticity says exactly."""
+"""Stiffness, loads, supports and rigid motions of a body, against exact solutions of elasticity."""
 
 from __future__ import annotations
 

@@ -25,18 +25,18 @@ def test_cell_stress_of_a_uniform_strain(shape, order):
     ε = np.zeros((3, 3))
     ε[:d, :d] = 0.5 * (gradient + gradient.T)
     λ, μ = material.lame
-    found = cell_stress(mesh, material, mesh.points[:, :d] @ gradient.T)
-    assert np.allclose(found, λ * np.trace(ε) * np.eye(3) + 2.0 * μ * ε, atol=1e-9)
+    stress = cell_stress(mesh, material, mesh.points[:, :d] @ gradient.T)
+    assert np.allclose(stress, λ * np.trace(ε) * np.eye(3) + 2.0 * μ * ε, atol=1e-9)
     if plane:
-        assert np.allclose(found[:, 2, 2], 0.3 * (found[:, 0, 0] + found[:, 1, 1]))
+        assert np.allclose(stress[:, 2, 2], 0.3 * (stress[:, 0, 0] + stress[:, 1, 1]))
 
 
 def test_von_mises_stress_of_known_states():
     """Uniaxial tension gives its own value, pure shear √3 times it, a hydrostatic pressure nothing."""
     tension, shear = np.diag([200.0, 0.0, 0.0]), np.zeros((3, 3))
     shear[0, 1] = shear[1, 0] = 100.0
-    found = von_mises(np.stack([tension, shear, -50.0 * np.eye(3)]))
-    assert np.allclose(found, [200.0, np.sqrt(3.0) * 100.0, 0.0])
+    stress = von_mises(np.stack([tension, shear, -50.0 * np.eye(3)]))
+    assert np.allclose(stress, [200.0, np.sqrt(3.0) * 100.0, 0.0])
 
 
 def test_largest_von_mises_stress_below_a_line_contact():

@@ -17,6 +17,7 @@ FACES = [c for c in CELLS if c[0] != "interval"]
 
 
 def flat(u, v):
+    """(u, v) -> the rectangle 3 × 2 mm at z = 0."""
     return np.stack([3.0 * u, 2.0 * v, 0.0 * u], axis=1)
 
 

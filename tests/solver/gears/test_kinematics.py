@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent.gears.kinematics import Stand, nominal_slip, spin, turn
-from evolvent_meshes.gears.flank import Flank, contact_normal, contact_points, separation
+from evolvent_meshes.gears.flank import Flank, action_plane_points, contact_normal, separation
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.paper_pairs import he, yang
@@ -28,7 +28,7 @@ def test_flanks_of_a_tooth_pair_meet_on_the_line_of_action(pair: GearPair, angle
     stand = Stand(pair, angle)
     z = np.array([-3.0, 0.0, 2.0])
     ξ = stand.roll_distance(tooth, z)
-    wanted = contact_points(pair, ξ, z)
+    wanted = action_plane_points(pair, ξ, z)
     for gear, ρ in zip(Member, pair.curvature_radii(ξ)):
         own = Flank(pair.gears[gear]).point(ρ, z)
         placed = own @ stand.rotation(gear, 3, tooth).T + stand.centre(gear, 3)

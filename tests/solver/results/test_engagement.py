@@ -82,7 +82,7 @@ def test_largest_peak(run: RunData) -> None:
     curved: where a line enters the tip-edge zone towards the pinion's root."""
     top, curve = largest_peak(run, 0), engagement(run, 0)
     assert top.pressure == np.nanmax(curve.max_pressure)
-    assert top.ξ == pytest.approx(run.inner_path[0], abs=0.02)
+    assert top.roll_distance == pytest.approx(run.inner_path[0], abs=0.02)
     assert top.at_zone_end and curve.at_zone_end[int(np.nanargmax(curve.max_pressure))]
     assert not curve.at_zone_end[curve.angle > 0.2].any()  # there all of a line is past the zone
 

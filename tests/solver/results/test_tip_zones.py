@@ -46,7 +46,7 @@ def test_pressure_does_not_depend_on_where_positions_lie(runs: list[RunData]) ->
     spread = [np.ptp(values) / np.mean(values) for values in (sampled, [peak.pressure for peak in found])]
     assert spread[0] > 0.08 and spread[1] < 0.5 * spread[0], spread
     step = runs[0].pair.pinion.base_radius * runs[0].pitch / 10
-    assert np.ptp([peak.ξ for peak in found]) < step / 8.0
+    assert np.ptp([peak.roll_distance for peak in found]) < step / 8.0
 
 
 def test_warned_of_as_helical_pairs_are(runs: list[RunData]) -> None:
@@ -54,7 +54,7 @@ def test_warned_of_as_helical_pairs_are(runs: list[RunData]) -> None:
     low = runs[1].inner_path[0]
     (said,) = [sentence for sentence in warnings_of(runs[1], GOOD) if "where the zone of a tip edge begins" in sentence]
     assert f"ξ = −{-low:.2f} mm" in said
-    assert not any(abs(solved.cut.ξ - low).min() < 1e-4 for each in runs[1].positions for solved in each)
+    assert not any(abs(solved.cut.roll_distance - low).min() < 1e-4 for each in runs[1].positions for solved in each)
 
 
 def test_curve_has_its_ends(runs: list[RunData]) -> None:
@@ -78,5 +78,5 @@ def test_pressure_at_the_end_follows_the_load() -> None:
     cut = Slices(np.zeros(len(ξ), dtype=int), 0.0 * ξ, ξ, ones, load, peak, peak, ones, hertz, edge)
     (found,) = zone_end_peaks(pair, cut, (-4.9, 5.0))
     exact = 1.03 * line_peak_pressure(695.0, pair.relative_curvature_radius(-4.9), 115e3)
-    assert (found.ξ, found.at_zone_end) == (-4.9, True)
+    assert (found.roll_distance, found.at_zone_end) == (-4.9, True)
     assert found.pressure == pytest.approx(float(exact), rel=2e-3)

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
+from evolvent.run.certificates import BALANCE_LIMIT
 
 from evolvent.results.archive.archive import read_arrays
-from evolvent.run.certificates import BALANCE_LIMIT
 from tests.conftest import Run
 from tests.support.gear_cases import HELICAL
 

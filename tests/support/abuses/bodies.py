@@ -135,7 +135,7 @@ LOADS = [
     Abuse(
         "traction across cells",
         lambda _: Body(group(TALL, "far", [[0, 8]]), loads=(Traction("far", (0.0, 1.0)),)),
-        ("'far'", "found 1 that are none, the first has the nodes \\[0, 8\\]"),
+        ("'far'", "found 1 of no cell, the first has the nodes \\[0, 8\\]"),
         MeshError,
     ),
     Abuse(

@@ -1,8 +1,7 @@
-"""Interface to dolfinx from version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on it.
+"""Interface to dolfinx, version 0.5.2 (Debian 12) to 0.9.0 (Debian 13) and later; no other file depends on the version.
 
-Differences are told by the names of functions and arguments, not by version numbers. Each body is meshed and assembled
-on one process (MPI.COMM_SELF). Node numbers are those of the caller's mesh, in which dolfinx numbers nodes anew: the
-maps back are here.
+Versions are distinguished by the names of functions and arguments, not by numbers. Each body is meshed and assembled on
+one process (MPI.COMM_SELF). dolfinx renumbers nodes and cells; the functions here take and give the caller's numbers.
 """
 
 from __future__ import annotations
@@ -127,7 +126,7 @@ def facet_indices(mesh: Mesh, facets: Ints) -> NDArray[np.int32]:
     if np.any(indices < 0):
         missing = facets[np.argmax(indices < 0)]
         raise MeshError(
-            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()}, which are none; mesh the "
+            f"facets: wanted facets of the mesh's cells, found nodes {missing.tolist()} of no facet; mesh the "
             "boundary together with the volume"
         )
     return indices
@@ -230,7 +229,7 @@ def _first_parameter(function: Callable[..., Any], *names: str) -> str:
             return name
     raise RuntimeError(
         f"dolfinx {dolfinx.__version__}: {function.__name__} wanted with one of the arguments {', '.join(names)}, "
-        f"found {', '.join(known)}; solver/evolvent/fem/backend/dolfinx_compat.py must learn this version"
+        f"found {', '.join(known)}; evolvent.fem.backend.dolfinx_compat has to be adapted to this version"
     )
 
 
@@ -284,5 +283,5 @@ def _defaults(package: str, *names: str) -> dict[str, Any]:
             return {key: entry[0 if len(entry) == 2 else 1] for key, entry in getattr(loaded, table).items()}
     raise RuntimeError(
         f"{package}: wanted one of {', '.join(names)}, found none; "
-        "evolvent.fem.backend.dolfinx_compat must learn this version"
+        "evolvent.fem.backend.dolfinx_compat has to be adapted to this version"
     )

@@ -48,6 +48,11 @@ def compliance(
     free: degrees of freedom that are not fixed (default: all).
     graph: (n × n) the pattern that nested dissection divides, see `OrderedMatrix.of` (default: K's).
     Raises NotPositiveDefinite and OutOfMemory.
+
+    >>> springs = sp.csr_matrix([[2.0, -1.0], [-1.0, 2.0]])
+    >>> first = sp.csr_matrix([[1.0, 0.0]])
+    >>> print(f"{compliance(springs, first)[0, 0]:.4f} mm/N")
+    0.6667 mm/N
     """
     count, kept = functionals.shape[0], np.arange(stiffness.shape[0]) if free is None else free
     nothing = sp.coo_matrix((count, count))

@@ -167,8 +167,8 @@ def _memory_file(size: int) -> str:
         finally:
             os.close(descriptor)
     raise OSError(
-        f"{' or '.join(MEMORY_FOLDERS)}: wanted {size / 1e6:.0f} MB for what the ranks of a node share, found less; "
-        "make room (docker run --shm-size=8g), set TMPDIR to a larger disk, or use one rank"
+        f"{' or '.join(MEMORY_FOLDERS)}: wanted {size / 1e6:.0f} MB of memory shared by the ranks of a node, found "
+        "less; make room (docker run --shm-size=8g), set TMPDIR to a larger disk, or use one rank"
     )
 
 

@@ -13,7 +13,7 @@ from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.sector.root_band import LONGEST
+from evolvent_meshes.sector.root_band import FIRST_CELL_ASPECT
 from evolvent_meshes.sector.section import SectorResolution
 
 ELEMENTS_PER_WIDTH = {"quick": 1.7, "standard": 3.0, "fine": 6.0}
@@ -104,7 +104,7 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
     """The back flank meshed as the loaded one, three times as many elements elsewhere."""
     return replace(
         resolution,
-        back_alike=True,
+        fine_back=True,
         core_elements=3 * resolution.core_elements,
         rim_elements=3 * resolution.rim_elements,
         fillet_elements=3 * resolution.fillet_elements,
@@ -115,7 +115,7 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
 
 def _neck_elements(depth: float) -> int:
     """Cells n that cover the neck, each at most twice as long as the one above. depth: of the thin layers [modules]."""
-    return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (LONGEST * depth))))
+    return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (FIRST_CELL_ASPECT * depth))))
 
 
 class _ContactWidth:

@@ -27,10 +27,10 @@ class PitchImbalance(BalanceError):
 
 
 def balance_error(result: PositionResult) -> float:
-    """The larger of the relative force imbalance of a position, and of the power that its teeth store over the input.
+    """The larger of two ratios at a position: force residual over load, stored power over input power.
 
-    Stored power is no error by itself: deflected flanks are not conjugate, and where a tip's edge bears the energy of
-    the teeth changes by up to some hundredths of the input. It has to come back within the pitch: `pitch_imbalance`.
+    Stored power is no error by itself: deflected flanks are not conjugate, and where a tip edge bears, the strain
+    energy of the teeth changes by up to some hundredths of the input. Over a pitch it must cancel (`pitch_imbalance`).
     """
     return max(result.residual, abs(result.stored_power) / abs(result.torques[0]))
 
@@ -38,10 +38,9 @@ def balance_error(result: PositionResult) -> float:
 def pitch_imbalance(results: Sequence[PositionResult]) -> float:
     """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
 
-    After a pitch all teeth are as deflected as before it, so that nothing is stored. What remains is the error of the
-    contact's geometry, where it takes the flanks' normals before deflection: it falls with the load, not with the mesh
-    (7e-4 where a is 3 % of the radius of curvature and tips bear, a fifteenth of it at a tenth of the load, and as
-    little on deflected flanks, deflected_flanks.py).
+    After a pitch the teeth are deflected as before it, so no energy is stored. What remains is the error of normals
+    taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of
+    the radius of curvature and tips bear; a fifteenth of that at a tenth of the load, and on deflected flanks).
     """
     return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)
 

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, sheet
 from evolvent.results.engagement import engagements
 from evolvent.results.figures.stress import OWN_ANGLE
@@ -133,8 +134,8 @@ def _efficiency(row: FrictionRow) -> str:
 def line_load(run: RunData, index: int = 0) -> Figure:
     """Line load and sliding along the path of contact."""
     start, end = run.pair.path_of_contact
-    cuts = [each[index].cut for each in run.positions]
-    ξ, load, edge = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "line_load", "edge"))
+    cut = Slices.joined([each[index].cut for each in run.positions])
+    ξ, load, edge = cut.roll_distance, cut.line_load, cut.edge
     even = run.scene.hertz_estimate()
     low, mean, high = (
         even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0])

@@ -9,7 +9,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.results.contact_slices import on_tip_edge
+from evolvent.results.contact_slices import Slices, on_tip_edge
 from evolvent.results.drawing.style import ABOVE, INK, PRESSURE_MAP, foot, sheet
 from evolvent.results.engagement import largest_peak
 from evolvent.results.fields.flank_field import flank_field, flank_patch
@@ -74,7 +74,8 @@ def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
     curve over ξ there.
     """
     cuts = [each[index].cut for each in run.positions]
-    z, line = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("z", "ξ"))
+    whole = Slices.joined(cuts)
+    z, line = whole.z, whole.roll_distance
     peak = np.concatenate([pooled_peaks(cut) for cut in cuts])
     reach = 0.75 * run.pair.pinion.base_radius * run.pitch / len(run.positions)
     heights, known = np.unique(z), np.isfinite(peak)
@@ -185,7 +186,8 @@ def _diameters(axes: Axes, run: RunData) -> None:
 
 def _see_map(run: RunData, index: int) -> str:
     top = largest_peak(run, index)
-    side = "below the pitch line, towards the root" if top.ξ < 0 else "above the pitch line, towards the tip"
-    where = f"at ξ = {signed(top.ξ, 2)} mm, {side}" if np.isfinite(top.ξ) else "nowhere"
+    ξ = top.roll_distance
+    side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
+    where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
     see = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
     return see + "; dashed: contact lines of rigid flanks."

@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from evolvent.contact.hertz import LoadFactors
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
+from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
 from evolvent.results.drawing.teeth import compares_yang
 from evolvent.results.engagement import largest_peak
@@ -28,8 +29,8 @@ WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 
 def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     """Peak pressures of all slices beside Hertz for their own line load, and beside estimates."""
-    cuts = [each[index].cut for each in run.positions]
-    ξ, peak, hertz = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in ("ξ", "peak", "hertz"))
+    cut = Slices.joined([each[index].cut for each in run.positions])
+    ξ, peak, hertz = cut.roll_distance, cut.peak, cut.hertz
     start, end = run.pair.path_of_contact
     inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
     ratio = peak[inside] / hertz[inside] - 1.0
@@ -80,7 +81,8 @@ def _largest(axes: Axes, run: RunData, index: int) -> None:
     face = {"markerfacecolor": "white" if top.at_zone_end else INK}
     label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")
     size = bar if np.isfinite(bar) else None
-    axes.errorbar(top.ξ, top.pressure, yerr=size, color=INK, capsize=4.0, linewidth=1.2, label=label, **(HOLLOW | face))
+    line = {"color": INK, "capsize": 4.0, "linewidth": 1.2}
+    axes.errorbar(top.roll_distance, top.pressure, yerr=size, label=label, **(line | HOLLOW | face))
 
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:

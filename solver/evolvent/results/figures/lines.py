@@ -214,7 +214,7 @@ def line_of(cut: Slices, tooth: int) -> tuple[Floats, Floats, Floats]:
     peak = pooled_peaks(cut)
     here = np.flatnonzero((cut.tooth == tooth) & np.isfinite(peak))
     here = here[np.argsort(cut.z[here])]
-    return cut.z[here], cut.ξ[here], peak[here]
+    return cut.z[here], cut.roll_distance[here], peak[here]
 
 
 def at_point(cut: Slices, point: Point) -> float:

@@ -16,7 +16,7 @@ from evolvent.results.fields.paraview import poly_data
 from evolvent.results.fields.polygons import Polygons, all_teeth, place, placed_teeth
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.flank import contact_points
+from evolvent_meshes.gears.flank import action_plane_points
 from evolvent_meshes.gears.member import Member
 
 Image = NDArray[np.uint8]
@@ -79,7 +79,7 @@ def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Fl
 
 def _at_the_mesh(run: RunData, gear: Member) -> Camera:
     """On a gear's teeth at the pitch point, from where the other gear stood."""
-    middle = contact_points(run.pair, 0.0, 0.0)
+    middle = action_plane_points(run.pair, 0.0, 0.0)
     width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
     along = (0.75, 1.0, 0.3) if gear == Member.PINION else (-0.75, -1.0, 0.3)
     return Camera(tuple(middle.tolist()), along, 0.5 * width)

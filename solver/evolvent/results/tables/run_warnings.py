@@ -87,7 +87,7 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
     )
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
-        ξ = next(peak.ξ for peak in peaks if peak.at_zone_end)
+        ξ = next(peak.roll_distance for peak in peaks if peak.at_zone_end)
         yield (
             f"The largest pressure stands where the zone of a tip edge begins (ξ = {signed(ξ, 2)} mm) and would be "
             "larger further in: its value depends on where that is, and so on the mesh; relieve the tips."

@@ -60,7 +60,7 @@ def sector_size(resolution: SectorResolution, order: int, plane: bool) -> Sector
     A section without holes has corners − edges + cells = 1 (Euler), and 4 cells + outline = 2 edges.
     """
     counts = resolution
-    alike, rows = counts.back_alike, counts.profile_elements // 3
+    alike, rows = counts.fine_back, counts.profile_elements // 3
     inner = counts.core_elements + 1 + alike  # columns between the bands of both sides
     below = counts.fillet_elements + counts.back_elements - 2 * counts.neck_elements + inner  # columns of the rim
     tooth = rows * (13 * (1 + alike) + counts.core_elements + 1 - alike)  # 3 × 3 thin, 4 joining, then coarse cells

@@ -21,6 +21,7 @@ from scipy.integrate import cumulative_trapezoid
 from evolvent.contact.hertz import line_half_width, line_peak_pressure
 from evolvent.fem.material import contact_modulus
 from evolvent.gears.sweep.position import PositionResult
+from evolvent.results.contact_slices import Slices
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_field
 from evolvent.results.run_data import RunData
@@ -62,11 +63,8 @@ class ContactProfile:
     @staticmethod
     def of(run: RunData, gear: Member) -> ContactProfile:
         """Of a plane pair's pitch at its first friction coefficient."""
-        cuts = [each[0].cut for each in run.positions]
-        ξ, load, peak, hertz, b = (
-            np.concatenate([getattr(cut, name) for cut in cuts])
-            for name in ("ξ", "line_load", "peak", "hertz", "half_width")
-        )
+        cut = Slices.joined([each[0].cut for each in run.positions])
+        ξ, load, peak, hertz, b = cut.roll_distance, cut.line_load, cut.peak, cut.hertz, cut.half_width
         fitted = np.flatnonzero(np.isfinite(peak) & np.isfinite(b) & (hertz > 0.0))
         fitted = fitted[np.argsort(ξ[fitted])]
         ξ, load, peak, hertz, b = (values[fitted] for values in (ξ, load, peak, hertz, b))

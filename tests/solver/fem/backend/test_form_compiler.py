@@ -1,4 +1,4 @@
-"""Compiled forms: kept where they are found again, and compiled without a word; an application's logging is its own.
+"""Compilation of forms: silent, with a full disk, without a compiler; the logging of an application is unchanged.
 
 Each test is a process of its own with an empty cache, for what is imported or compiled once is so for good.
 """

@@ -31,15 +31,15 @@ print(sorted(PETSc.Options().getAll().items()))
 def test_petsc_options_of_others_are_not_read(place: str, tmp_path: Path) -> None:
     """A .petscrc in the current folder, which is also home, and PETSC_OPTIONS: none of them gets in."""
     (tmp_path / ".petscrc").write_text(FOREIGN if place == "file" else "", encoding="utf-8")
-    found = options(tmp_path, **({"PETSC_OPTIONS": FOREIGN} if place == "environment" else {}))
-    assert "foreign" not in found and "snes" not in found
-    assert "skip_petscrc" in found
+    listed = options(tmp_path, **({"PETSC_OPTIONS": FOREIGN} if place == "environment" else {}))
+    assert "foreign" not in listed and "snes" not in listed
+    assert "skip_petscrc" in listed
 
 
 def test_petsc_options_of_evolvent_are_read(tmp_path: Path) -> None:
     """EVOLVENT_PETSC_OPTIONS, which --petsc-options sets, is read."""
-    found = options(tmp_path, EVOLVENT_PETSC_OPTIONS="-mat_view :a.txt")
-    assert "('mat_view', ':a.txt')" in found
+    listed = options(tmp_path, EVOLVENT_PETSC_OPTIONS="-mat_view :a.txt")
+    assert "('mat_view', ':a.txt')" in listed
 
 
 FORM = """
@@ -55,7 +55,7 @@ def test_ffcx_options_of_others_are_not_read(tmp_path: Path) -> None:
     """Files that tell FFCx to drop table values below 0.3 and the compiler to stop at an error, in the current folder
     and in the home's .config: a stiffness is what it is without."""
     ffcx, jit = '{"epsilon": 0.3, "table_atol": 0.3}', '{"cffi_extra_compile_args": ["-Dnonsense(", "-Werror"]}'
-    found = []
+    sums = []
     for kind in ("none", "options", "parameters"):
         home = tmp_path / kind
         for folder in (home, home / ".config" / "ffcx", home / ".config" / "dolfinx"):
@@ -68,5 +68,5 @@ def test_ffcx_options_of_others_are_not_read(tmp_path: Path) -> None:
             [sys.executable, "-c", FORM], cwd=home, env=variables, capture_output=True, text=True, timeout=120
         )
         assert done.returncode == 0, done.stderr
-        found.append(done.stdout)
-    assert found[0] == found[1] == found[2]
+        sums.append(done.stdout)
+    assert sums[0] == sums[1] == sums[2]

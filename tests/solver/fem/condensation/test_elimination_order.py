@@ -34,11 +34,12 @@ def cut(matrix: sp.csr_matrix, graph: sp.csr_matrix | None = None) -> np.ndarray
     return bisect(vertices)[place]
 
 
-def leaves(part: SeparatorTree) -> Iterator[SeparatorTree]:
-    if not part.children:
-        yield part
-    for inner in part.children:
-        yield from leaves(inner)
+def leaves(tree: SeparatorTree) -> Iterator[SeparatorTree]:
+    """The ranges of rows that are not divided."""
+    if not tree.children:
+        yield tree
+    for child in tree.children:
+        yield from leaves(child)
 
 
 @pytest.mark.parametrize("dofs", [1, 3])
@@ -57,19 +58,19 @@ def test_rows_of_a_node_are_one_vertex() -> None:
     vertices, place = compress(grid(12, 9, 3)[order][:, order].tocsr(), None)
     assert (vertices.weights == 3).all()
     assert len(vertices.weights) == 12 * 9
-    own = np.empty(len(order), dtype=int)
-    own[order] = place
-    assert (own.reshape(-1, 3) == own.reshape(-1, 3)[:, :1]).all()
+    vertex = np.empty(len(order), dtype=int)
+    vertex[order] = place
+    assert (vertex.reshape(-1, 3) == vertex.reshape(-1, 3)[:, :1]).all()
     assert vertices.graph.diagonal().sum() == 0.0
 
 
 def test_nothing_separates_a_full_graph() -> None:
-    """Everything is in the separator, so that the recursion comes to an end."""
+    """All rows are in the separator, so that the recursion ends."""
     assert (bisect(compress(sp.csr_matrix(np.diag(np.arange(1.0, 7.0)) + 1.0), None)[0]) == SEPARATOR).all()
     full = sp.csr_matrix(np.ones((6, 6)) + np.eye(6))
-    order, whole = dissect(full, None, 2)
+    order, tree = dissect(full, None, 2)
     assert np.array_equal(np.sort(order), np.arange(6))
-    assert whole == SeparatorTree(0, 0, 6)
+    assert tree == SeparatorTree(0, 0, 6)
 
 
 def test_rows_without_neighbours_are_divided() -> None:
@@ -111,10 +112,10 @@ def test_separator_tree_tiles_the_rows() -> None:
     """Children begin where the one before ends, a range of rows is divided or no larger than a leaf, and no entry of
     the matrix in elimination order joins two children."""
     matrix = grid(30, 30, 2)
-    order, whole = dissect(matrix, None, 100)
+    order, tree = dissect(matrix, None, 100)
     assert np.array_equal(np.sort(order), np.arange(matrix.shape[0]))
     new = matrix[order][:, order]
-    assert max(leaf.end - leaf.begin for leaf in leaves(whole)) <= 100
+    assert max(leaf.end - leaf.begin for leaf in leaves(tree)) <= 100
 
     def check(part: SeparatorTree) -> None:
         if not part.children:
@@ -125,12 +126,12 @@ def test_separator_tree_tiles_the_rows() -> None:
         for inner in part.children:
             check(inner)
 
-    check(whole)
-    assert len(list(leaves(whole))) >= 16
+    check(tree)
+    assert len(list(leaves(tree))) >= 16
 
 
 def test_elimination_order_is_reproducible() -> None:
-    """Runs repeat bit for bit, so the seeds are fixed."""
+    """Seeds are fixed: the same graph has the same order twice."""
     assert np.array_equal(dissect(grid(30, 30), None, 50)[0], dissect(grid(30, 30), None, 50)[0])
 
 

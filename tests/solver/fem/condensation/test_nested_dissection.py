@@ -16,9 +16,9 @@ def test_compliance_does_not_depend_on_the_leaf_size(leaf: int) -> None:
     """Cut into parts of at most 600 or 60 rows, the compliance is that of one factorisation, to rounding."""
     matrix, free, functionals = block((9, 6, 6))
     exact = compliance(matrix, functionals, free=free)
-    found = compliance(matrix, functionals, free=free, settings=DissectionSettings(leaf=leaf))
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-    assert np.array_equal(found, found.T)
+    C = compliance(matrix, functionals, free=free, settings=DissectionSettings(leaf=leaf))
+    assert np.abs(C - exact).max() < 1e-13 * np.abs(exact).max()
+    assert np.array_equal(C, C.T)
 
 
 def test_dissection_of_separate_bodies() -> None:
@@ -27,12 +27,12 @@ def test_dissection_of_separate_bodies() -> None:
     one, p = matrix[free][:, free], functionals[:, free]
     both = sp.block_diag([one, one, 2.0 * one], format="csr")
     q = sp.bmat([[p, None, sp.csr_matrix(p.shape)], [None, p, None]], format="csr")
-    found = compliance(both, q, settings=DissectionSettings(leaf=100))
+    C = compliance(both, q, settings=DissectionSettings(leaf=100))
     exact = compliance(one, p)
     size = len(exact)
-    assert np.abs(found[:size, :size] - exact).max() < 1e-13 * np.abs(exact).max()
-    assert np.abs(found[size:, size:] - exact).max() < 1e-13 * np.abs(exact).max()
-    assert not found[:size, size:].any()
+    assert np.abs(C[:size, :size] - exact).max() < 1e-13 * np.abs(exact).max()
+    assert np.abs(C[size:, size:] - exact).max() < 1e-13 * np.abs(exact).max()
+    assert not C[:size, size:].any()
 
 
 def test_dissection_of_many_pieces() -> None:
@@ -41,8 +41,8 @@ def test_dissection_of_many_pieces() -> None:
     chain = sp.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(3, 3))
     many = sp.block_diag([chain] * 600, format="csr")
     seen = sp.csr_matrix((np.ones(3), ([0, 1, 2], [0, 900, 1799])), shape=(3, 1800))
-    found = compliance(many, seen, settings=DissectionSettings(leaf=3))
-    assert np.abs(found - 0.75 * np.eye(3)).max() < 1e-14
+    C = compliance(many, seen, settings=DissectionSettings(leaf=3))
+    assert np.abs(C - 0.75 * np.eye(3)).max() < 1e-14
 
 
 def test_impossible_leaf_is_refused() -> None:
@@ -60,9 +60,9 @@ def widely_coupled() -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
 
 
 def test_compliance_does_not_depend_on_the_dissected_graph() -> None:
-    """Cuts along another graph than the matrix's own, thinner in places: C stays the one of dense algebra."""
+    """Dissection along another graph than the matrix's, with fewer entries: C equals that of dense algebra."""
     coupled, mesh, face = widely_coupled()
-    found = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
+    C = compliance(coupled, face, settings=DissectionSettings(leaf=300), graph=mesh)
     p = face.toarray()
     exact = p @ np.linalg.solve(coupled.toarray(), p.T)
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
+    assert np.abs(C - exact).max() < 1e-13 * np.abs(exact).max()

@@ -10,10 +10,10 @@ from evolvent.fem.condensation.packed_triangle import HEIGHT, PackedTriangle
 
 def square_of(triangle: PackedTriangle) -> np.ndarray:
     """The upper triangle as a square, zero below."""
-    found = np.zeros((triangle.size, triangle.size))
+    square = np.zeros((triangle.size, triangle.size))
     for start, strip in zip(triangle.starts, triangle.strips):
-        found[start : start + len(strip), start:] = strip
-    return np.triu(found)
+        square[start : start + len(strip), start:] = strip
+    return np.triu(square)
 
 
 @pytest.mark.parametrize("size", [0, 1, HEIGHT, 2 * HEIGHT + 7])

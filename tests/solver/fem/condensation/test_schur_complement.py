@@ -22,21 +22,21 @@ from tests.support.q1_elasticity import block, grid_cells, stiffness
 def test_compliance_equals_dense_algebra() -> None:
     """C = P K⁻¹ Pᵀ by numpy.linalg.solve, symmetric to the last bit, positive definite."""
     matrix, free, functionals = block((4, 3, 3))
-    found = compliance(matrix, functionals, free=free)
+    C = compliance(matrix, functionals, free=free)
     dense, p = matrix[free][:, free].toarray(), functionals[:, free].toarray()
     exact = p @ np.linalg.solve(dense, p.T)
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-    assert np.array_equal(found, found.T)
-    assert np.linalg.eigvalsh(found).min() > 0
+    assert np.abs(C - exact).max() < 1e-13 * np.abs(exact).max()
+    assert np.array_equal(C, C.T)
+    assert np.linalg.eigvalsh(C).min() > 0
 
 
 def test_compliance_equals_columns_at_size() -> None:
     """13,000 rows, 1,587 functionals (several tiles of the mirrored triangle): partial factorisation = solves."""
     matrix, free, functionals = block((22, 22, 8))
-    found = compliance(matrix, functionals, free=free)
+    C = compliance(matrix, functionals, free=free)
     restricted = functionals.tocsc()[:, free].tocsr()
     columns = compliance_by_columns(Factor(matrix[free][:, free]), restricted, restricted[::7])
-    assert np.abs(found[:, ::7] - columns).max() < 1e-12 * np.abs(columns).max()
+    assert np.abs(C[:, ::7] - columns).max() < 1e-12 * np.abs(columns).max()
 
 
 def test_compliance_of_unsymmetric_functionals() -> None:
@@ -45,19 +45,19 @@ def test_compliance_of_unsymmetric_functionals() -> None:
     dense = matrix[free][:, free].tocsr()
     right = functionals[:, free].tocsr()
     left = right[:5] * 2.0
-    found = compliance_by_columns(Factor(dense), left, right, block=7)
+    C = compliance_by_columns(Factor(dense), left, right, block=7)
     exact = left.toarray() @ np.linalg.solve(dense.toarray(), right.toarray().T)
-    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
+    assert np.abs(C - exact).max() < 1e-13 * np.abs(exact).max()
 
 
 def test_compliance_outlives_the_factor() -> None:
-    """The compliance is MUMPS' own memory: it stays valid when all else is gone and other factors come and go."""
+    """The compliance is memory of MUMPS: it stays valid when the factor and the matrices are freed and others made."""
     matrix, free, functionals = block((5, 5, 3))
-    found = compliance(matrix, functionals, free=free)
-    view, kept = found[3:, 2:], found.copy()
+    C = compliance(matrix, functionals, free=free)
+    view, kept = C[3:, 2:], C.copy()
     for _ in range(3):
         compliance(2.0 * matrix, functionals, free=free)
-    del found
+    del C
     gc.collect()
     assert np.array_equal(view, kept[3:, 2:])
 

@@ -1,4 +1,4 @@
-"""Ranks that wait lend their cores, and get them back."""
+"""Cores of waiting ranks are used by working ones, and returned."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ sys.stdout.write("fine\\n")
 
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_waiting_ranks_lend_their_cores(ranks: int, run_script: Run) -> None:
-    """One rank after the other works while the others wait: it has all cores then, BLAS threads in number, every
-    processor to run on; and its own again afterwards."""
+    """Each rank in turn works while the others wait: it has as many BLAS threads as there are ranks, and may run on
+    every processor; afterwards it has one thread and its own processors again."""
     done = run_script("-c", LEND, ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert done.stdout.count("fine") == ranks
 
 
 def test_cores_of_a_single_rank_are_unchanged() -> None:
-    """On one rank there is nobody to borrow from: BLAS keeps the threads that the user gave it."""
+    """A single rank has no other cores to use: BLAS keeps the number of threads that the user has set."""
     cores, before = Cores(MPI.COMM_SELF), threadpool_info()
     with cores.lent(), cores.used():
         assert cores.count == 1 and threadpool_info() == before

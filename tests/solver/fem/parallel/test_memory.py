@@ -1,4 +1,4 @@
-"""The stack of large arrays: where arrays lie, and what happens when there is no more."""
+"""Stack allocator and freed memory: reuse, release, and the error beyond the memory of the machine."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ print(kept - before, resident() - before)
 
 
 def test_released_memory_is_reused() -> None:
-    """Three arrays, two of them within a block: the next one made lies where the first of these was, and neither
-    touches the one below."""
+    """Three arrays, two of them in a context: the next one has the address of the first of these, and the one below is
+    unchanged."""
     stack = Stack()
     below = stack.empty(3, 5)
     below[:] = 1.0
@@ -48,7 +48,7 @@ def test_released_memory_is_reused() -> None:
 
 
 def test_memory_is_released_after_an_error() -> None:
-    """An error within a block gives up what was made in it."""
+    """Arrays are released where their context is left by an error."""
     stack = Stack()
     made = []
 

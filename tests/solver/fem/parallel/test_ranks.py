@@ -78,7 +78,7 @@ def test_failure_of_a_rank_is_raised_on_all(kind: str, found: str, run_script: R
 def test_no_room_for_shared_memory_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """A node without room is an error that says what to do, not a bus error later."""
     monkeypatch.setattr(ranks, "MEMORY_FOLDERS", ("/nowhere", "/proc/self"))
-    with pytest.raises(OSError, match=r"wanted 5 MB for what the ranks of a node share.*--shm-size"):
+    with pytest.raises(OSError, match=r"wanted 5 MB of memory shared by the ranks of a node.*--shm-size"):
         ranks._memory_file(5_000_000)
 
 

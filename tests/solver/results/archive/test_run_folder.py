@@ -149,20 +149,6 @@ def test_the_list_reaches_no_other_folder(tmp_path: Path) -> None:
     assert (tmp_path / "mine").exists()
 
 
-def test_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No room: WriteError with file, size and remedy; the earlier content is there, and no part."""
-    path = write_text(tmp_path / "table.csv", "before")
-
-    def full(_: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("evolvent_meshes.files.os.fsync", full)
-    with pytest.raises(WriteError, match=r"table\.csv: wanted to write 2e-06 MB, found No space left .*; make room"):
-        write_text(path, "ab")
-    assert list(tmp_path.iterdir()) == [path]
-    assert path.read_text() == "before"
-
-
 def test_no_room_in_the_list(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
     """No room for a file's line: WriteError, neither the line nor the file is there, and what was listed is."""
     before = (folder.out / MANIFEST).read_bytes()

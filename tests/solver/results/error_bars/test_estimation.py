@@ -133,7 +133,7 @@ def test_zones_of_the_companion_do_not_count() -> None:
     low, high = run.inner_path
 
     def blind(solved: SolvedPosition) -> SolvedPosition:
-        edge = (solved.cut.ξ < low + 0.5) | (solved.cut.ξ > high - 0.5)
+        edge = (solved.cut.roll_distance < low + 0.5) | (solved.cut.roll_distance > high - 0.5)
         return replace(solved, cut=replace(solved.cut, edge=edge, peak=np.where(edge, np.nan, solved.cut.peak)))
 
     companion = replace(run, positions=tuple(tuple(blind(solved) for solved in each) for each in run.positions))

@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
+from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import styled
 from evolvent.results.figures.drive import MOST_SLIDING, line_load, transmission_error
 from evolvent.results.run_data import RunData
@@ -31,11 +32,11 @@ def test_no_slice_is_cut_off() -> None:
     """Every slice of 12, also one on a tip edge beyond the path of contact of rigid flanks, lies within the axes by
     half of its mark. Problem: they are moved out by a millimetre, as deflected teeth meet early."""
     run = synthetic_run("contact.friction=[0.0, 0.1]", file=YANG)
-    wide = [
-        tuple(replace(each, cut=replace(each.cut, ξ=each.cut.ξ + np.where(each.cut.edge, np.sign(each.cut.ξ), 0.0)))
-              for each in position)
-        for position in run.positions
-    ]  # fmt: skip
+
+    def further(cut: Slices) -> Slices:
+        return replace(cut, roll_distance=cut.roll_distance + np.where(cut.edge, np.sign(cut.roll_distance), 0.0))
+
+    wide = [tuple(replace(each, cut=further(each.cut)) for each in position) for position in run.positions]
     upper, _ = sliding_of(replace(run, positions=wide))
     inside = upper.get_window_extent()
     for line in upper.lines[:2]:

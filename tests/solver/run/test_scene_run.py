@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from evolvent.run.certificates import BALANCE_LIMIT
 
+from evolvent.gears.solution.certificates import BALANCE_LIMIT
 from evolvent.results.archive.archive import read_arrays
 from tests.conftest import Run
 from tests.support.gear_cases import HELICAL

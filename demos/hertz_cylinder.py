@@ -1,14 +1,14 @@
-"""A steel cylinder on an aluminium block (NAFEMS R0094, benchmark 1), and one that is pushed sideways (Cattaneo).
+"""A steel cylinder on an aluminium block (NAFEMS R0094, benchmark 1), and a cylinder pushed sideways (Cattaneo).
 
     python demos/hertz_cylinder.py [--quick] [--out DIR]
 
-The block is no half-space: what a converged finite element solution differs from Hertz by (0.2 % in the peak, 0.9 % in
-the profile) is the problem's, not the mesh's. Errors are therefore measured against an overkill solution of the same
-problem. Which body carries the normals is part of the problem: the contact half-width is an eighth of the radius, and
-small displacements along the cylinder's normals or the block's differ by 0.3 % in the peak.
+The block is no half-space: a converged finite element solution differs from Hertz' by 0.2 % in the peak and 0.9 % in
+the profile. Errors are therefore measured against a solution of the same problem on a very fine mesh ("overkill"). The
+choice of the body that carries the normals is part of the problem: the half-width of the contact is an eighth of the
+radius, and small displacements along the cylinder's normals or the block's differ by 0.3 % in the peak.
 
 At a/4, a/8, a/16 a cell of the cylinder ends at Hertz' edge of contact. Where the edge cuts a cell, the profile's error
-at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/solver/contact/test_verification.py.
+at a/8 is up to 6 % (skew variant, γ = 0.3 C: 1.7 %); see tests/solver/contact/test_hertz_problems.py.
 """
 
 from __future__ import annotations
@@ -54,9 +54,12 @@ HALF_WIDTH, PEAK = hertz.line_half_width(LOAD, RADIUS, MODULUS), hertz.line_peak
 
 @dataclass(frozen=True)
 class Profile:
-    """λ and τ along the contact, linear between points: x (n,) sorted [mm], pressure and shear (n,) [MPa].
+    """Tractions along the contact, linear between points.
 
-    shear: what the cylinder pushes the block with, to the right.
+    x: (n,) sorted [mm].
+    pressure: (n,) [MPa].
+    shear: (n,) of the cylinder on the block, positive to the right [MPa].
+    half_width: of the contact [mm].
     """
 
     x: Floats
@@ -89,20 +92,16 @@ class Profile:
 def cylinder_on_block(
     cells: float, order: int = 2, ratio: float = 1.0, first: str = "block", friction: float = 0.0,
     shape: str = "quadrilateral",
-) -> Problem:
+) -> Problem:  # fmt: skip
     """The benchmark with cells of half-width/`cells` on the cylinder and `ratio` times finer ones on the block.
 
     first: "block" or "cylinder", the body that carries the pressure and the normals.
-    """  # fmt: skip
+    """
     size, fine = HALF_WIDTH / cells, 1.5 * HALF_WIDTH
-    cylinder = Body(
-        cylinder_2d(RADIUS, size, fine, order, shape),
-        STEEL, rigid=Rigid("top", (Freedom("y", load=-LOAD),)), name="cylinder",
-    )  # fmt: skip
-    block = Body(
-        graded_rectangle(BLOCK, BLOCK, size / ratio, fine, order, shape),
-        ALUMINIUM, supports=(Fixed("bottom"),), name="block",
-    )  # fmt: skip
+    loaded = Rigid("top", (Freedom("y", load=-LOAD),))
+    cylinder = Body(cylinder_2d(RADIUS, size, fine, order, shape), STEEL, rigid=loaded, name="cylinder")
+    mesh = graded_rectangle(BLOCK, BLOCK, size / ratio, fine, order, shape)
+    block = Body(mesh, ALUMINIUM, supports=(Fixed("bottom"),), name="block")
     sides = ((1, "top"), (0, "arc")) if first == "block" else ((0, "arc"), (1, "top"))
     return Problem((cylinder, block), (Contact(*sides, friction, reach=0.5 * HALF_WIDTH),))
 
@@ -120,7 +119,13 @@ def overkill(first: str, cells: int = 64) -> Profile:
 
 @dataclass(frozen=True)
 class Slip:
-    """Steel cylinder on a steel block, a/R = 0.01: P first, then half of what would make it slide."""
+    """Steel cylinder on a steel block, a/R = 0.01: the load P first, then half of the force that makes it slide.
+
+    half_width: a of the contact [mm].
+    radius: R of the cylinder [mm].
+    friction: μ.
+    share: tangential force over μP.
+    """
 
     half_width: float = 0.5
     radius: float = 50.0
@@ -129,6 +134,7 @@ class Slip:
 
     @property
     def modulus(self) -> float:
+        """Contact modulus E* [MPa]."""
         return hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
 
     @property
@@ -160,12 +166,11 @@ class Slip:
 
 
 def stick_half_width(profile: Profile, friction: float) -> float:
-    """Half-width [mm] of the interval of sticking nodes around the middle, to the middle between two nodes."""
+    """Half-width [mm] of the interval of sticking points around the middle, up to midpoints between two points."""
     sticks = np.abs(profile.shear) < friction * profile.pressure * (1.0 - 1e-9)
-    middle = int(np.argmin(np.abs(profile.x)))
+    x, middle = profile.x, int(np.argmin(np.abs(profile.x)))
     low = middle - int(np.argmin(sticks[middle::-1]))
     high = middle + int(np.argmin(sticks[middle:]))
-    x = profile.x
     return 0.25 * float(x[high] + x[high - 1] - x[low] - x[low + 1])
 
 
@@ -176,10 +181,10 @@ def convergence(cells: tuple[int, ...], reference: Profile) -> dict[int, list[Ro
     """Errors by order, on non-matching meshes with the coarser body first: (label, |p0 error|, L2 error)."""
     result: dict[int, list[Row]] = {}
     for order in (1, 2):
-        found = [pressed(cylinder_on_block(n, order, 1.37, "cylinder")) for n in cells]
+        profiles = [pressed(cylinder_on_block(n, order, 1.37, "cylinder")) for n in cells]
         result[order] = [
             (f"a/{n}", abs(p.peak / reference.peak - 1.0), p.error(reference))
-            for n, p in zip(cells, found, strict=True)
+            for n, p in zip(cells, profiles, strict=True)
         ]
     return result
 
@@ -235,8 +240,8 @@ def _stress(axis: Axes, shown: Solution) -> None:
     from matplotlib.collections import PolyCollection
 
     corners, values = [], []
-    for index, prepared in enumerate(shown.prepared):
-        body = prepared.assembled.body
+    for index, condensed in enumerate(shown.condensed):
+        body = condensed.assembled.body
         u = shown.displacement(index)
         position = body.mesh.points[:, :2] + u
         corners.append(position[body.mesh.cells[:, :4]])
@@ -258,10 +263,8 @@ def _pressure(axis: Axes, profile: Profile, reference: Profile) -> None:
     axis.plot(reference.x, reference.pressure, "k-", lw=1, label="overkill, h = a/64")
     axis.plot(profile.x, profile.pressure, "o", color="tab:red", ms=3, label="order 2, h = a/8 on a/11")
     axis.set(xlim=(-9, 9), ylim=(0, None), xlabel="x [mm]", ylabel="contact pressure [MPa]")
-    axis.set_title(
-        f"p0 {profile.peak:.0f} MPa (Hertz {PEAK:.0f}); profile off by {100 * profile.error(reference):.1f} %",
-        fontsize=10,
-    )
+    title = f"p0 {profile.peak:.0f} MPa (Hertz {PEAK:.0f}); profile off by {100 * profile.error(reference):.1f} %"
+    axis.set_title(title, fontsize=10)
     axis.legend(loc="lower center", fontsize=8)
 
 
@@ -282,10 +285,9 @@ def _slip(axis: Axes, pushed: Profile, slip: Slip) -> None:
 def _errors(axis: Axes, errors: dict[int, list[Row]]) -> None:
     for order, colour in ((1, "tab:orange"), (2, "tab:red")):
         h = [1.0 / float(label[2:]) for label, _, _ in errors[order]]
-        axis.loglog(
-            h, [100 * l2 for _, _, l2 in errors[order]], "o-", color=colour, label=f"profile (L2), order {order}"
-        )
-        axis.loglog(h, [100 * p for _, p, _ in errors[order]], "s--", color=colour, label=f"p0, order {order}")
+        profile, peak = ([100 * row[i] for row in errors[order]] for i in (2, 1))
+        axis.loglog(h, profile, "o-", color=colour, label=f"profile (L2), order {order}")
+        axis.loglog(h, peak, "s--", color=colour, label=f"p0, order {order}")
     axis.loglog(h, [14 * x for x in h], color="0.6", lw=1, label="slope 1")
     axis.set_xticks(h, [label for label, _, _ in errors[1]], minor=False)
     axis.xaxis.set_minor_locator(NullLocator())

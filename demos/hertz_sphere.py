@@ -3,14 +3,14 @@
     python demos/hertz_sphere.py [--quick] [--out DIR]
 
 Two planes of symmetry are supports, the far side of the ball moves as a rigid body under a quarter of the load. The
-contact is small against the bodies (a/R = 0.06), and errors are against Hertz' answer, the profile's over the whole
-disc. On the finest rings p0 is 0.01 % away from it with the block's normals, and 0.2 % with the ball's.
+contact is small against the bodies (a/R = 0.06). Errors are those against Hertz' solution; that of the profile is over
+the whole disc. On the finest rings p0 differs from Hertz' by 0.01 % with the block's normals, by 0.2 % with the ball's.
 
-The pressure rises like a square root from the edge of contact, and what a mesh misses of it, it misses in the cells
-that the edge cuts. So the cells lie in rings, one of which ends at Hertz' radius. Where the edge is not known, as on a
-grid of squares, the error is five to seven times as large: λ = γ[jump − gap]_+ carries the error of the jump in a cut
-cell γ times, and the symmetric method needs γ > 1.2 C. The skew one (θ = −1) needs no least γ, and with 0.3 C that
-error is a third; the table shows it.
+The pressure rises like a square root from the edge of contact, and nearly all of a mesh's error is in the cells that
+the edge cuts. Therefore the cells lie in rings, one of which ends at Hertz' radius. Where the edge is not known, as on
+a grid of squares, the error is five to seven times as large: λ = γ[jump − gap]_+ multiplies the error of the jump in a
+cut cell by γ, and the symmetric variant needs γ > 1.2 C. The skew variant (θ = −1) needs no least γ; with 0.3 C that
+error is a third, as the table shows.
 """
 
 from __future__ import annotations
@@ -56,7 +56,12 @@ SYMMETRIC, SKEW = Nitsche(), Nitsche(safety=0.3, theta=-1.0)
 
 @dataclass(frozen=True)
 class Profile:
-    """λ over the radius: radius (n,) [mm], pressure (n,) [MPa], weights (n,) [mm²] of the points."""
+    """Pressure over the radius at the n points of the contact.
+
+    radius: (n,) distance from the axis [mm].
+    pressure: (n,) [MPa].
+    weights: (n,) quadrature weights [mm²].
+    """
 
     radius: Floats
     pressure: Floats
@@ -75,7 +80,7 @@ class Profile:
 
     @property
     def error(self) -> float:
-        """Relative L2 distance of the pressure from Hertz', over the whole disc and what lies around it."""
+        """Relative L2 distance of the pressure from Hertz', over the disc and its surroundings."""
         exact = hertz.line_pressure(self.radius, HERTZ.radius, HERTZ.peak_pressure)
         return float(np.sqrt(self.weights @ (self.pressure - exact) ** 2 / (self.weights @ exact**2)))
 
@@ -111,7 +116,7 @@ def ball_on_block(
 
 
 def cases(quick: bool) -> dict[str, Problem]:
-    """What is solved, by name; the last name but two is the finest mesh of rings."""
+    """Name -> problem; the last but two is the finest mesh of rings."""
     cells = (2, 4) if quick else (2, 4, 6, 8)
     squares = f"squares, a/{cells[-1]}"
     return {
@@ -206,8 +211,8 @@ def _section(axis: Axes, solution: Solution) -> None:
     from matplotlib.collections import PolyCollection
 
     corners, values = [], []
-    for index, prepared in enumerate(solution.prepared):
-        body = prepared.assembled.body
+    for index, condensed in enumerate(solution.condensed):
+        body = condensed.assembled.body
         u = solution.displacement(index)
         facets = body.mesh.facets["symmetry_y"]
         behind = _cells_of(body.mesh, facets)
@@ -230,12 +235,12 @@ def _cells_of(mesh: MeshData, facets: np.ndarray) -> np.ndarray:
     on_facet[facets] = True
     rows = np.flatnonzero(on_facet[mesh.cells].sum(axis=1) >= facets.shape[1])
     centre = {tuple(np.sort(f)): i for i, f in enumerate(facets)}
-    found = np.empty(len(facets), dtype=np.int64)
+    behind = np.empty(len(facets), dtype=np.int64)
     for row in rows:
         key = tuple(np.sort(mesh.cells[row][on_facet[mesh.cells[row]]]))
         if key in centre:
-            found[centre[key]] = row
-    return found
+            behind[centre[key]] = row
+    return behind
 
 
 if __name__ == "__main__":

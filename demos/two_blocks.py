@@ -1,10 +1,10 @@
-"""Patch test: two blocks whose meshes do not match pass a uniform pressure, and a uniform shear, exactly.
+"""Patch test: two blocks with non-matching meshes transmit a uniform pressure, and a uniform shear, exactly.
 
     python demos/two_blocks.py [--quick] [--out DIR]
 
-A uniform stress is a solution that every mesh can represent, so the contact has to return it to solver accuracy, for
-every cell shape and order and whichever body carries the pressure. With friction the upper block is held sideways by
-nothing but the friction that holds it: the interface must stick under a shear below μp.
+Every mesh can represent a uniform stress, so that the contact has to transmit it to solver accuracy, for every cell
+shape and order and whichever body carries the pressure. With friction the upper block is held sideways by friction
+alone: the interface must stick under a shear below μp.
 """
 
 from __future__ import annotations
@@ -31,7 +31,13 @@ NAMES = {"triangle": "tri", "quadrilateral": "quad", "tetrahedron": "tet", "hexa
 
 @dataclass(frozen=True)
 class Patch:
-    """One variant: the cells of both blocks, the body that carries the pressure, friction."""
+    """One variant of the patch test.
+
+    shape: of the cells of both blocks.
+    order: of the cells, 1 or 2.
+    first: the body that carries the pressure, 0 upper, 1 lower.
+    friction: μ; without it no shear is applied.
+    """
 
     shape: str
     order: int
@@ -40,6 +46,7 @@ class Patch:
 
     @property
     def d(self) -> int:
+        """Dimension of space."""
         return 2 if self.shape in ("triangle", "quadrilateral") else 3
 
     def meshes(self) -> tuple[MeshData, MeshData]:
@@ -87,14 +94,14 @@ class Patch:
         return (Traction("top", tuple(top)), *ends), ends
 
     def errors(self, solution: Solution, rotation: Floats | None = None) -> Floats:
-        """|traction − exact| / pressure at the points of the interface, (q,)."""
+        """|traction − exact| / pressure at the points of the interface, (q,); rotation: of both blocks."""
         R = np.eye(self.d) if rotation is None else rotation
         sign = -1.0 if self.first == 0 else 1.0  # the outward normal of the upper block's face points down
         exact = sign * (
             np.asarray(self._vector(-1, PRESSURE)) - np.asarray(self._vector(0, SHEAR if self.friction else 0.0))
         )
-        found = solution.contacts[0].traction
-        return np.asarray(np.linalg.norm(found - exact @ R.T, axis=1) / PRESSURE)
+        traction = solution.contacts[0].traction
+        return np.asarray(np.linalg.norm(traction - exact @ R.T, axis=1) / PRESSURE)
 
 
 def variants(quick: bool) -> list[Patch]:
@@ -127,7 +134,7 @@ def main(out: Path = Path("out/two_blocks"), quick: bool = False) -> None:
 
 
 def draw(path: Path, solution: Solution, worst: dict[Patch, float]) -> None:
-    """The sheared blocks with what they press on each other with, and the errors of all variants."""
+    """The sheared blocks with the traction between them, and the errors of all variants."""
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
@@ -143,12 +150,12 @@ def _blocks(axis: Axes, solution: Solution, scale: float = 300.0) -> None:
     from matplotlib.collections import PolyCollection
 
     for index, colour in ((0, "#9ecae1"), (1, "#fdd0a2")):
-        mesh = solution.prepared[index].assembled.body.mesh
-        place = mesh.points[:, :2] + scale * solution.displacement(index)
-        corners = place[mesh.cells[:, : 3 if mesh.shape == "triangle" else 4]]
+        mesh = solution.condensed[index].assembled.body.mesh
+        position = mesh.points[:, :2] + scale * solution.displacement(index)
+        corners = position[mesh.cells[:, : 3 if mesh.shape == "triangle" else 4]]
         axis.add_collection(PolyCollection(list(corners), facecolors=colour, edgecolors="0.35", linewidths=0.7))
         if index == 1:
-            top = place[np.unique(mesh.facets["top"])]
+            top = position[np.unique(mesh.facets["top"])]
     result = solution.contacts[0]
     x = np.linspace(0.1, 1.9, 13)
     order = np.argsort(result.points[:, 0])

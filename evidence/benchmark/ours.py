@@ -10,8 +10,8 @@ import numpy as np
 
 from evidence.benchmark.task import Answer, Push, Task, Turn
 from evolvent import Contact, ContactResult, Problem, Step
-from evolvent.contact.problem.condensed_body import prepare
-from evolvent.contact.step.step_system import Position
+from evolvent.contact.problem.condensed_body import condense_bodies
+from evolvent.contact.step.step_system import StepSystem
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
@@ -55,9 +55,9 @@ def _supports(task: Task, index: int) -> tuple[Fixed, ...]:
 def solved(task: Task) -> Answer:
     """The answer, and what its parts took (CPU seconds)."""
     problem, marks = problem_of(task), [time.process_time()]
-    prepared = prepare(problem)
+    condensed = condense_bodies(problem)
     marks.append(time.process_time())
-    solution, _ = Position(problem, prepared, Step()).solve(None)
+    solution, _ = StepSystem(problem, condensed, Step()).solve(None)
     marks.append(time.process_time())
     found = solution.contacts[0]
     points = np.pad(found.points, ((0, 0), (0, 3 - found.points.shape[1])))

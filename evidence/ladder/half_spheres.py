@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from evidence.claims import Claim, Reference, Rung
 from evidence.ladder.axisymmetric import pressed_on_plane, sphere_section
-from evolvent import Contact, ContactResult, Placement, Position, Problem, Step, Sweep
+from evolvent import Contact, ContactResult, Placement, Problem, Step, StepSystem, Sweep
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, contact_modulus
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL
@@ -73,7 +73,7 @@ class Found:
         return 1.5 * self.force / (np.pi * a**2), a
 
 
-class AlongAxis(Position):
+class AlongAxis(StepSystem):
     """A position whose pressure acts along the axis, not along the normals of the first surface."""
 
     def __init__(self, *arguments: Any) -> None:
@@ -81,7 +81,7 @@ class AlongAxis(Position):
         (operator,) = self.operators
         axis = np.sign(operator.frames[:, :1, 2]) * (0.0, 0.0, 1.0)
         self.operators = [operator.pressing_along(axis)]
-        self.maps = [self._map(body) for body in range(len(self.prepared))]
+        self.maps = [self._map(body) for body in range(len(self.condensed))]
 
 
 def exact(share: float) -> Found:
@@ -94,8 +94,8 @@ def exact(share: float) -> Found:
 def along_axis(run: Sweep, share: float) -> Found:
     """With the pressure along the axis, on the pairs where the spheres touch."""
     step = step_of(share, WAYS[0])
-    first, second = Position(run.problem, run.prepared, step).meetings[0].placed
-    touching = AlongAxis(run.problem, run.prepared, step, ((first.points, second.points),))
+    first, second = StepSystem(run.problem, run.condensed, step).paired[0].placed
+    touching = AlongAxis(run.problem, run.condensed, step, ((first.points, second.points),))
     return Found.of(touching.solve(None)[0].contacts[0])
 
 

@@ -65,7 +65,7 @@ def measure() -> Rung:
     """Solves it once."""
     solution = solve(problem())
     profile = Profile.of(solution.contacts[0], HALF_WIDTH)
-    meshes = [prepared.assembled.body.mesh for prepared in solution.prepared]
+    meshes = [body.assembled.body.mesh for body in solution.condensed]
     bodies = tuple(axis_stress(mesh, STEEL, solution.displacement(i)) for i, mesh in enumerate(meshes))
     depth = np.linspace(0.0, 2.5, 400)
     exact = AxisStress(depth * HALF_WIDTH, PEAK * _exact_stress(depth))
@@ -103,7 +103,7 @@ def _surface_claims(profile: Profile) -> tuple[Claim, ...]:
 def _approach_claims(solution: Solution) -> tuple[Claim, ...]:
     claims = []
     for index, name in enumerate(("roller", "block")):
-        mesh = solution.prepared[index].assembled.body.mesh
+        mesh = solution.condensed[index].assembled.body.mesh
         depth, found = axis_compression(mesh, solution.displacement(index), DEPTH)
         wanted = hertz.line_approach(LOAD, HALF_WIDTH, depth, STEEL.youngs_modulus, STEEL.poissons_ratio)
         quantity = f"approach of the point {depth / HALF_WIDTH:.1f} b below the surface of the {name} [mm]"

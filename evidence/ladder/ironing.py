@@ -171,7 +171,7 @@ def _stress(axes: Axes, case: Ironed) -> None:
     last, place = case.solutions[-1], np.array([case.x[-1], 0.0])
     corners, values = [], []
     for index, shift in ((0, place), (1, 0.0 * place)):
-        body = last.prepared[index].assembled.body
+        body = last.condensed[index].assembled.body
         u = last.displacement(index)
         corners.append((body.mesh.points[:, :2] + u + shift)[body.mesh.cells[:, :4]])
         values.append(von_mises(cell_stress(body.mesh, body.material, u)))

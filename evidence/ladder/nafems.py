@@ -47,7 +47,7 @@ class Pressed:
 def pressed(first: str, friction: float, cells: int = CELLS) -> Pressed:
     """first: the body that carries pressure and normals."""
     solution = solve(cylinder_on_block(cells, 2, 1.37, first, friction))
-    points = solution.prepared[1].assembled.body.mesh.points
+    points = solution.condensed[1].assembled.body.mesh.points
     under = int(np.argmin(np.hypot(*points[:, :2].T)))
     profile = Profile.of(solution.contacts[0], HALF_WIDTH)
     return Pressed(profile, float(solution.displacement(1)[under, 1]))

@@ -75,7 +75,7 @@ def answers(count: int, order: int, block: int) -> list[Answer]:
 
 
 def _answer(solution: Solution, order: int, value: Floats, slope: Floats) -> Answer:
-    points, nodal = solution.prepared[1].assembled.body.mesh.points, solution.displacement(1)
+    points, nodal = solution.condensed[1].assembled.body.mesh.points, solution.displacement(1)
     sorted_nodes = np.lexsort((np.round(points[:, 1], 9), np.round(points[:, 0], 9)))
     n = value.shape[1]
     u = nodal[sorted_nodes].reshape(n, n, 2)

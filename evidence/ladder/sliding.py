@@ -43,7 +43,7 @@ class Slid:
 
     @cached_property
     def block(self) -> MeshData:
-        return self.solution.prepared[1].assembled.body.mesh
+        return self.solution.condensed[1].assembled.body.mesh
 
     @cached_property
     def displacement(self) -> Floats:

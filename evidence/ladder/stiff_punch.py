@@ -46,7 +46,7 @@ class Pressed:
 
     @staticmethod
     def of(solution: Solution) -> Pressed:
-        contact, mesh = solution.contacts[0], solution.prepared[1].assembled.body.mesh
+        contact, mesh = solution.contacts[0], solution.condensed[1].assembled.body.mesh
         beside = np.argmin(np.hypot(mesh.points[:, 0] - BESIDE * HALF_WIDTH, mesh.points[:, 1]))
         order = np.argsort(contact.points[:, 0])
         behind = float(solution.displacement(1)[beside, 1]) + SUNK

@@ -97,7 +97,7 @@ def _figures(stand: Stand, solution: Solution) -> PairFigures:
 
 def _turn(solution: Solution) -> int:
     """Which of the pinion's rigid motions is its rotation."""
-    rigid = solution.prepared[0].assembled.body.rigid
+    rigid = solution.condensed[0].assembled.body.rigid
     assert rigid is not None
     return [freedom.direction for freedom in rigid.freedoms].index("rz")
 

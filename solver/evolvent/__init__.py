@@ -1,7 +1,7 @@
 """Evolvent's solver: frictional contact of elastic bodies, and of gear pairs, with dolfinx and PETSc.
 
-The names below are the Python API of contact problems, described in docs/own_problem.md; `evolvent.gears` and
-`evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
+The names below are the Python API of contact problems, described in docs/own_problem.md; the packages `evolvent.gears`
+and `evolvent.wear` have those of gear pairs and of wear. Each is imported when it is first used.
 """
 
 from importlib import metadata
@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from evolvent_meshes.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from evolvent import gears as gears
+    from evolvent import wear as wear
     from evolvent.contact import hertz as hertz
     from evolvent.contact.newton.snes import NotConverged as NotConverged
-    from evolvent.contact.problem.condensed_body import PreparedBody as PreparedBody
-    from evolvent.contact.problem.condensed_body import prepare as prepare
+    from evolvent.contact.problem.condensed_body import CondensedBody as CondensedBody
+    from evolvent.contact.problem.condensed_body import condense_bodies as condense_bodies
     from evolvent.contact.problem.definition import Contact as Contact
     from evolvent.contact.problem.definition import Nitsche as Nitsche
     from evolvent.contact.problem.definition import Placement as Placement
@@ -30,11 +32,11 @@ if TYPE_CHECKING:
     from evolvent.contact.solution.solver import sweep as sweep
     from evolvent.contact.step.contact_result import ContactResult as ContactResult
     from evolvent.contact.step.contact_width import CoarseContactWarning as CoarseContactWarning
-    from evolvent.contact.step.displaced_search import Unsettled as Unsettled
+    from evolvent.contact.step.displaced_search import PairingNotSettled as PairingNotSettled
     from evolvent.contact.step.peak_scatter import ScatteredPressureWarning as ScatteredPressureWarning
-    from evolvent.contact.step.small_strain import TooLarge as TooLarge
-    from evolvent.contact.step.step_system import Position as Position
-    from evolvent.contact.step.step_system import Solution as Solution
+    from evolvent.contact.step.small_strain import SmallStrainExceeded as SmallStrainExceeded
+    from evolvent.contact.step.step_solution import Solution as Solution
+    from evolvent.contact.step.step_system import StepSystem as StepSystem
     from evolvent.fem.body import Body as Body
     from evolvent.fem.body import BodyForce as BodyForce
     from evolvent.fem.body import Fixed as Fixed

@@ -92,3 +92,14 @@ def test_kept_solution(tmp_path: Path) -> None:
     found = {d.quantity: d.size for d in differences(tmp_path / "one", tmp_path / "other")}
     kept = ("force", "point_traction", "displacement", "nodal_forces")
     assert found == pytest.approx(dict.fromkeys(kept, 1e-5), rel=1e-3)
+
+
+def test_a_tolerance_is_asked_for(tmp_path: Path) -> None:
+    """Results that differ by 1e-8 agree within the usual tolerance and not within 1e-12."""
+    one, other = (tmp_path / name for name in ("one", "other"))
+    for folder, value in ((one, 1.0), (other, 1.0 + 1e-8)):
+        folder.mkdir()
+        np.savez(folder / "contact.npz", force=np.array([value]))
+    words = ["compare", str(one), str(other)]
+    assert main(words) == 0
+    assert main([*words, "--tolerance", "1e-12"]) == 1

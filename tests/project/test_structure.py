@@ -30,7 +30,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
     "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
-    "contact.problem": ("meshes", "fem", "fem.condensation", "contact.search", "contact.nitsche"),
+    "contact.problem": ("meshes", "fem", "fem.condensation", "contact.nitsche"),
     "contact.step": (
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
     ),

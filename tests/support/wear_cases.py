@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from evolvent import Contact, Problem
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
+from evolvent import Body, Contact, Fixed, Freedom, Material, Placement, Problem, Rigid, Step
+from evolvent.wear import Cycle
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 from evolvent_meshes.shapes.rings import ring_block, ring_sphere
 from evolvent_meshes.shapes.variants import with_part
@@ -51,3 +50,12 @@ def sphere(cells: float = 4.0) -> Problem:
         Body(with_part(slab, "top", "near", 1.5 * fine), RIGID, (*symmetry, Fixed("bottom")), name="slab"),
     )
     return Problem(bodies, (Contact((0, "near"), (1, "near"), reach=0.05),))
+
+
+def to_and_fro(stroke: float) -> Cycle:
+    """The slab moves to one side by `stroke` [mm], to the other, and back."""
+
+    def at(x: float) -> Step:
+        return Step(placements=(Placement.at_rest(2), Placement(np.eye(2), np.array([x, 0.0]))))
+
+    return Cycle((Step(), at(stroke), at(0.0), at(-stroke), at(0.0)))

@@ -1,15 +1,22 @@
-"""Closed forms of contact mechanics: estimates for the scene, and exact answers for the tests.
+"""Closed forms of contact mechanics: estimates for scenes, and exact solutions for tests.
 
-Sources: K. L. Johnson, *Contact Mechanics* (1985), equation numbers as given below; Yang et al. 2022, Eq. 4.
+Sources: K. L. Johnson, *Contact Mechanics* (1985), equation numbers as given below.
 Units: N, mm, MPa (N/mm²). The formulas of the line contact take numbers or arrays that broadcast.
 
-The modulus that all of them share is 1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2, the curvature 1/R = 1/R1 + 1/R2.
+All use the contact modulus 1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2 and the relative curvature 1/R = 1/R1 + 1/R2. A steel
+cylinder of 50 mm radius under 1000 N/mm on a plane:
+
+>>> from evolvent import hertz
+>>> modulus = hertz.contact_modulus(210e3, 0.3, 210e3, 0.3)
+>>> print(f"{hertz.line_half_width(1000.0, 50.0, modulus):.3f} mm")
+0.743 mm
+>>> print(f"{hertz.line_peak_pressure(1000.0, 50.0, modulus):.0f} MPa")
+857 MPa
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import pi, sqrt
 from typing import NamedTuple, TypeVar
 
@@ -22,6 +29,7 @@ from evolvent_meshes.arrays import Floats
 Value = TypeVar("Value", float, Floats)
 
 GOLDEN = (1 + sqrt(5)) / 2
+"""The golden ratio."""
 
 
 def contact_modulus(modulus1: float, poisson1: float, modulus2: float, poisson2: float) -> float:
@@ -55,8 +63,8 @@ def line_pressure(x: Value, half_width: float, peak: float) -> Value:
 def line_approach(line_load: float, half_width: float, depth: float, modulus: float, poisson: float) -> float:
     """Compression [mm] of one body between the contact centre and the depth d ≫ b below it (Johnson 5.58).
 
-    δ = F' (1 − ν²)/(π E) [2 ln(2 d/b) − ν/(1 − ν)], plane strain. Unlike in point contact the approach of two cylinders
-    has no value of its own: it grows with the depth of the point that is held.
+    δ = F' (1 − ν²)/(π E) [2 ln(2 d/b) − ν/(1 − ν)], plane strain. Unlike in point contact, the approach of two
+    cylinders grows without bound with the depth d of the point that is held.
     """
     logarithm = 2 * np.log(2 * depth / half_width) - poisson / (1 - poisson)
     return line_load * (1 - poisson**2) / (pi * modulus) * logarithm
@@ -66,7 +74,12 @@ def line_approach(line_load: float, half_width: float, depth: float, modulus: fl
 
 
 class PointContact(NamedTuple):
-    """Contact radius a [mm], peak pressure p0 [MPa], approach δ [mm]."""
+    """Circular contact.
+
+    radius: a of the contact [mm].
+    peak_pressure: p0 [MPa].
+    approach: δ [mm].
+    """
 
     radius: float
     peak_pressure: float
@@ -80,7 +93,13 @@ def point_contact(load: float, radius: float, modulus: float) -> PointContact:
 
 
 class EllipticalContact(NamedTuple):
-    """Half axes a ≥ b [mm], peak pressure p0 [MPa], approach δ [mm]."""
+    """Elliptical contact.
+
+    major: half axis a [mm].
+    minor: half axis b <= a [mm].
+    peak_pressure: p0 [MPa].
+    approach: δ [mm].
+    """
 
     major: float
     minor: float
@@ -119,7 +138,7 @@ def _ellipse_shape(ratio: float) -> float:
         square = np.exp(-2 * log_axis_ratio)
         return np.log(elliprd(0.0, 1.0, square) / elliprd(0.0, square, 1.0) / ratio)
 
-    # b/a lies between (A/B)^⅔ and 1 (Johnson, fig. 4.4), wide bounds cost two or three more steps
+    # b/a lies between (A/B)^⅔ and 1 (Johnson, fig. 4.4); wide bounds cost two or three more steps
     return 1 - np.exp(-2 * brentq(residual, 0.0, np.log(ratio) + 1, xtol=1e-14, rtol=1e-14))
 
 
@@ -127,14 +146,23 @@ def _ellipse_shape(ratio: float) -> float:
 
 
 class SubsurfaceMaximum(NamedTuple):
-    """Largest value as a multiple of p0, and its depth as a multiple of the half-width (or radius)."""
+    """Maximum of a stress below the surface.
+
+    value: over p0.
+    depth: over the half-width (or radius) of the contact.
+    """
 
     value: float
     depth: float
 
 
 class AxisStress(NamedTuple):
-    """Principal stresses on the axis of the contact, as multiples of p0: along the width, along the line, in depth."""
+    """Principal stresses on the axis of the contact, over p0.
+
+    width: along the width of the contact.
+    line: along its line.
+    depth: normal to the surface.
+    """
 
     width: Floats
     line: Floats
@@ -187,8 +215,8 @@ def _mises(stress: AxisStress) -> Floats:
 
 def _largest(function: Callable[[Floats], Floats]) -> SubsurfaceMaximum:
     options = {"xatol": 1e-10}
-    found = minimize_scalar(lambda depth: -function(depth), bounds=(1e-6, 3.0), method="bounded", options=options)
-    return SubsurfaceMaximum(float(-found.fun), float(found.x))
+    result = minimize_scalar(lambda depth: -function(depth), bounds=(1e-6, 3.0), method="bounded", options=options)
+    return SubsurfaceMaximum(float(-result.fun), float(result.x))
 
 
 # --- friction ------------------------------------------------------------------------------------------------------
@@ -202,7 +230,7 @@ def stick_ratio_line(load_ratio: float) -> float:
 def cattaneo_traction(x: Floats, half_width: float, friction: float, peak: float, load_ratio: float) -> Floats:
     """Shear traction [MPa] q = μp0[√(1−x²/b²) − (c/b)√(1−x²/c²)] in partial slip (Johnson, section 7.2).
 
-    x: places across the contact [mm], any shape; load_ratio is Q/μP, from 0 to 1.
+    x: positions across the contact [mm], any shape; load_ratio: Q/μP, from 0 to 1.
     """
     stick = stick_ratio_line(load_ratio)
     slip = line_pressure(x, half_width, peak)
@@ -225,7 +253,12 @@ def mindlin_displacement(load: float, radius: float, friction: float, load_ratio
 
 
 class Rolling(NamedTuple):
-    """Half width c [mm] of the stick zone, distance [mm] of its centre ahead of the contact centre, |creep| [-]."""
+    """Tractive rolling of cylinders.
+
+    stick_half_width: c of the stick zone [mm].
+    stick_centre: distance of its centre ahead of the contact centre [mm].
+    creep: absolute value [-].
+    """
 
     stick_half_width: float
     stick_centre: float
@@ -233,7 +266,7 @@ class Rolling(NamedTuple):
 
 
 def carter(half_width: float, radius: float, friction: float, load_ratio: float) -> Rolling:
-    """Elastically alike cylinders rolling with traction Q: c = b√(1−Q/μP) at the leading edge (Johnson, section 8.3).
+    """Elastically similar cylinders rolling with traction Q: c = b√(1−Q/μP) at the leading edge (Johnson, section 8.3).
 
     radius: the relative radius R [mm]; the creep is μ(b − c)/R.
     """
@@ -245,53 +278,3 @@ def _partial(load_ratio: float) -> float:
     if not 0 <= load_ratio <= 1:
         raise ValueError(f"partial slip wants Q/(μP) between 0 and 1, found {load_ratio:g}; above 1 the bodies slide")
     return load_ratio
-
-
-# --- the estimate of Yang et al. 2022 ------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class LoadFactors:
-    """The factors K of Yang et al. 2022, Eq. 3, with the values printed there; `LoadFactors.none()` sets them to 1."""
-
-    application: float = 1.25
-    dynamic: float = 1.293
-    transverse: float = 1.1
-    face: float = 1.2257
-
-    @classmethod
-    def none(cls) -> LoadFactors:
-        """All factors 1: the bare Hertz estimate."""
-        return cls(1.0, 1.0, 1.0, 1.0)
-
-    @property
-    def product(self) -> float:
-        """K = K_A K_v K_α K_β."""
-        return self.application * self.dynamic * self.transverse * self.face
-
-
-def yang_estimate(
-    *,
-    torque: float,
-    face_width: float,
-    reference_diameter: float,
-    contact_ratio: float,
-    teeth_ratio: float,
-    base_helix: float,
-    pressure_angle: float,
-    modulus: float,
-    factors: LoadFactors,
-) -> float:
-    """The paper's Hertz estimate σ_H [MPa], Yang et al. 2022, Eq. 4 as printed:
-
-    σ_H = √{ 2KT1/(B d1² ε_α) · (u+1)/u · 2cos β_b/(sin α_t cos α_t) · 1/[π((1−ν1²)/E1 + (1−ν2²)/E2)] }
-
-    torque T1 on the pinion [N·mm], face_width B [mm], reference_diameter d1 of the pinion [mm], contact_ratio ε_α,
-    teeth_ratio u = z2/z1, base_helix β_b and transverse pressure_angle α_t at the reference circle [rad], modulus E*
-    [MPa]. Its length of contact is the mean one, its curvature that at the reference circle. The paper calls α_t the
-    normal pressure angle and d1 a radius; with those readings the numbers make no sense.
-    """
-    load = 2 * factors.product * torque / (face_width * reference_diameter**2 * contact_ratio)
-    sine_cosine = np.sin(pressure_angle) * np.cos(pressure_angle)
-    curvature = (teeth_ratio + 1) / teeth_ratio * 2 * np.cos(base_helix) / sine_cosine
-    return float(np.sqrt(load * curvature * modulus / pi))

@@ -211,7 +211,10 @@ def _attempt(
         worn_off = 0.5 * length * (start + end.rate)
         difference = worn_off - predicted
     if not (np.isfinite(worn_off).all() and worn_off.min(initial=0.0) >= -NEGATIVE_DEPTH * worn_off.max(initial=0.0)):
-        raise NotConverged(f"a block of {length:.6g} cycles would put {-worn_off.min():.2g} mm of material on")
+        raise NotConverged(
+            f"wear: wanted no negative depth from a block of {length:.6g} cycles, found {worn_off.min():.2g} mm; take "
+            "a shorter block"
+        )
     areas, volume = state.evaluation.areas, float(state.evaluation.areas @ worn_off)
     error = float(areas @ np.abs(difference)) / volume if volume > 0.0 else 0.0
     after = WearState(

@@ -15,10 +15,11 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.nitsche.contact_operator import ContactOperator
-from evolvent.contact.problem.condensed_body import PreparedBody
+from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Problem, Side, Step
 from evolvent.contact.step.contact_result import ContactResult
-from evolvent.contact.step.step_system import History, Position, Solution
+from evolvent.contact.step.step_solution import DeformedSurfaces, Solution
+from evolvent.contact.step.step_system import StepSystem
 from evolvent.fem.surface import Surface
 from evolvent.wear.archard import Archard, DepthProjection, StepsTooLong
 from evolvent.wear.sliding_track import Track, Travel
@@ -90,16 +91,16 @@ class WornCycle:
     block: float = 0.0
 
 
-def step_systems(problem: Problem, prepared: tuple[PreparedBody, ...], cycle: Cycle) -> tuple[Position, ...]:
+def step_systems(problem: Problem, prepared: tuple[CondensedBody, ...], cycle: Cycle) -> tuple[StepSystem, ...]:
     """The contact systems of a cycle's steps, which do not depend on worn depths. Raises InputError, SearchError.
 
     Pairs are those of the bodies as placed. Worn bodies overlap there, as the meshes do not include all of the wear;
     searching on bodies moved apart (displaced_search.py) would be wrong.
     """
-    return tuple(Position(problem, prepared, step, as_placed=True) for step in cycle.steps)
+    return tuple(StepSystem(problem, prepared, step, as_placed=True) for step in cycle.steps)
 
 
-def solve_cycle(worn: WornCycle, systems: Sequence[Position]) -> list[list[SlidingContact]]:
+def solve_cycle(worn: WornCycle, systems: Sequence[StepSystem]) -> list[list[SlidingContact]]:
     """Solves a cycle on its step systems: per contact, the states in which it slides.
 
     In an implicit block (`worn.block` > 0, only with travel) the pressure is that of the block's end (backward Euler).
@@ -109,7 +110,7 @@ def solve_cycle(worn: WornCycle, systems: Sequence[Position]) -> list[list[Slidi
     """
     if worn.block and not worn.cycle.travel:
         raise InputError("wear: wanted travel for an implicit block, found a cycle that wears by its steps' slip")
-    before: History | None = None
+    before: DeformedSurfaces | None = None
     states: list[list[SlidingContact]] = [[] for _ in worn.laws]
     travels, count = bool(worn.cycle.travel), len(systems)
     for number, system in enumerate(systems if travels else [*systems, *systems]):
@@ -129,9 +130,9 @@ class _WornStep:
     """A step of a cycle: the step system of the unworn bodies, with gaps and stabilisers that include the wear."""
 
     worn: WornCycle
-    system: Position
+    system: StepSystem
 
-    def solve(self, before: History | None) -> tuple[Solution, History]:
+    def solve(self, before: DeformedSurfaces | None) -> tuple[Solution, DeformedSurfaces]:
         """Equilibrium between the worn surfaces, with the slip since `before`. Raises NotConverged."""
         return self.system.solve(before, [self._operator(i) for i in range(len(self.system.operators))])
 
@@ -141,7 +142,7 @@ class _WornStep:
         return [self._projections(i) for i in range(len(self.system.operators))]
 
     def _projections(self, contact: int) -> tuple[DepthProjection, DepthProjection]:
-        pairing, (carrier, other) = self.system.meetings[contact].pairing, self.system.sides[contact]
+        pairing, (carrier, other) = self.system.paired[contact].pairing, self.system.sides[contact]
         by_side = {
             carrier: self._projection(carrier, pairing.facet1, pairing.xi1),
             other: self._projection(other, pairing.facet2, pairing.xi2),
@@ -156,7 +157,7 @@ class _WornStep:
         return DepthProjection(track.hats(surface.positions(facets, xi[:, None])[:, 0]), track.areas)
 
     def _surface(self, side: Side) -> Surface:
-        return self.system.prepared[side[0]].surfaces[side[1]]
+        return self.system.condensed[side[0]].surfaces[side[1]]
 
     def _sides(self, contact: int) -> tuple[Side, Side]:
         stated = self.worn.problem.contacts[contact]

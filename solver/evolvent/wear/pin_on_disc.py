@@ -79,7 +79,7 @@ class Record:
         run_in: sliding distance [mm] before which lines are left out. Raises TableError.
         """
         if not run_in >= 0.0:
-            wanted, remedy = "a sliding distance from 0 m on", "give how much of the record's beginning is left out"
+            wanted, remedy = "a sliding distance from 0 m on", "give the distance up to which lines are left out"
             raise TableError("running in (--run-in-m)", wanted, f"{1e-3 * run_in:g} m", remedy)
         distance, depth = read_columns(path, (DISTANCE, DEPTH))
         require_ascending(path, "a sliding distance", distance)

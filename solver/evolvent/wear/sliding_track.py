@@ -137,7 +137,7 @@ def track_of(surface: Surface, travel: Travel) -> Track:
         raise InputError(
             f"wear of body {travel.body}, which travels: wanted a surface that stays on its own track, a disc's flat "
             f"face, a cylinder's side or a plane along the path, found one {width:.3g} mm wide that leaves it by "
-            f"{deviation:.3g} mm; mind the axis, and give curved or inclined parts no K/H"
+            f"{deviation:.3g} mm; check the axis, and give curved or inclined parts no K/H"
         )
     grid = _grid(c.at(x), surface)
     radius = grid if c.radial else np.full(len(grid), normal.at(x).mean())

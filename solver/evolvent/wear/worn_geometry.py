@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from evolvent.contact.problem.condensed_body import PreparedBody, prepare
+from evolvent.contact.problem.condensed_body import CondensedBody, condense_bodies
 from evolvent.contact.problem.definition import Placement, Problem, Side
-from evolvent.contact.problem.step_pairing import reach_of
 from evolvent.contact.search.pairing import SearchError
-from evolvent.contact.step.step_system import Position
+from evolvent.contact.step.paired_surfaces import reach_of
+from evolvent.contact.step.step_system import StepSystem
 from evolvent.fem.body import Body, Traction
 from evolvent.fem.surface import Surface
 from evolvent.wear.archard import Archard
@@ -52,7 +52,7 @@ class WornGeometry:
 
     problem: Problem
     cycle: Cycle
-    prepared: tuple[PreparedBody, ...]
+    prepared: tuple[CondensedBody, ...]
     sides: tuple[Side, ...]
     tracks: dict[Side, Track]
     mesh_depth: Floats
@@ -64,12 +64,12 @@ class WornGeometry:
         if not sides:
             raise InputError("wear: wanted a K/H above zero on some surface, found none; nothing would wear")
         _refuse_unknown_bodies(cycle, len(problem.bodies))
-        prepared = prepare(problem)
+        prepared = condense_bodies(problem)
         bare = WornGeometry(problem, cycle, prepared, sides, _tracks(sides, cycle, prepared), np.zeros(0))
         return replace(bare, mesh_depth=np.zeros(len(bare.areas)))
 
     @cached_property
-    def systems(self) -> tuple[Position, ...]:
+    def systems(self) -> tuple[StepSystem, ...]:
         """The contact systems of the cycle's steps, the same for all depths in the gaps. Raises SearchError."""
         return step_systems(self.problem, self.prepared, self.cycle)
 
@@ -128,7 +128,7 @@ class WornGeometry:
         for index, (before, after) in enumerate(zip(self.problem.bodies, problem.bodies)):
             if before is not after:
                 certify_mesh_volume(before.mesh, after.mesh, self._volume(index, self.in_gap(depth)))
-        return replace(self, problem=problem, prepared=prepare(problem), mesh_depth=depth.copy())
+        return replace(self, problem=problem, prepared=condense_bodies(problem), mesh_depth=depth.copy())
 
     def moved_problem(self, depth: Floats, motion: MeshMotion) -> Problem:
         """The problem with meshes that include depths (n,); the contacts' reach grows by the gaps' opening, as the
@@ -180,7 +180,7 @@ def _refuse_unknown_bodies(cycle: Cycle, bodies: int) -> None:
             raise InputError(f"wear: wanted travel of a body below {bodies}, found body {travel.body}")
 
 
-def _tracks(sides: Sequence[Side], cycle: Cycle, prepared: tuple[PreparedBody, ...]) -> dict[Side, Track]:
+def _tracks(sides: Sequence[Side], cycle: Cycle, prepared: tuple[CondensedBody, ...]) -> dict[Side, Track]:
     """Tracks of the sides whose bodies travel, as placed in the last step. Raises InputError."""
     tracks, placements = {}, cycle.steps[-1].placements
     for body, group in sides:

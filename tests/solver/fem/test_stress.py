@@ -54,7 +54,7 @@ def test_largest_von_mises_stress_below_a_line_contact():
     solution = solve(problem)
     exact = line_largest_mises(0.3)
     for index in (0, 1):
-        mesh = solution.prepared[index].assembled.body.mesh
+        mesh = solution.condensed[index].assembled.body.mesh
         mises = von_mises(cell_stress(mesh, STEEL, solution.displacement(index)))
         depth = abs(mesh.points[mesh.cells[mises.argmax()], 1].mean())
         assert mises.max() == pytest.approx(exact.value * slip.peak, rel=0.01)

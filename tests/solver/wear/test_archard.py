@@ -1,4 +1,4 @@
-"""Archard's law at the nodes: volumes to rounding, whatever the points are."""
+"""Archard's law at the nodes: volumes to rounding for any contact points."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from evolvent_meshes.shapes.blocks import box, rectangle
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "hexahedron", "tetrahedron"])
-def test_volume_is_kept(shape: str, order: int) -> None:
-    """Random volumes at random points of a surface: Σ m_k h_k is their sum to rounding and no depth is negative, also
-    where points lie a little outside their facet."""
+def test_depth_projection_keeps_the_volume(shape: str, order: int) -> None:
+    """Problem: random volumes at random points of a surface, some slightly outside their facet. Exact: Σ m_k h_k is
+    their sum to rounding, no depth is negative, and the hat functions sum to one."""
     plane = shape == "quadrilateral"
     mesh = rectangle(2.0, 1.0, 5, 3, order) if plane else box((2.0, 1.0, 1.0), (4, 3, 2), order, shape)
     top, rng = surface_of(mesh, "top"), np.random.default_rng(0)
@@ -28,8 +28,9 @@ def test_volume_is_kept(shape: str, order: int) -> None:
     np.testing.assert_allclose(projection.at_points(np.ones(len(depth))), 1.0, rtol=1e-14)
 
 
-def test_uniform_wear_is_uniform() -> None:
-    """Volumes w of a quadrature on all facets: the depth is 1 everywhere on a plane surface of order 1."""
+def test_depth_projection_of_a_uniform_depth_is_uniform() -> None:
+    """Problem: volumes w of a quadrature on all facets of a plane surface of order 1. Exact: the depth is 1 at every
+    node."""
     from evolvent.fem.lagrange import quadrature
 
     top = surface_of(box((2.0, 1.0, 1.0), (4, 3, 2), 1), "top")
@@ -41,7 +42,7 @@ def test_uniform_wear_is_uniform() -> None:
 
 
 @pytest.mark.parametrize("value", [-1e-10, float("nan"), float("inf")])
-def test_bad_coefficient(value: float) -> None:
-    """K/H below zero, or no number, is refused with its side."""
+def test_bad_wear_coefficient_is_refused(value: float) -> None:
+    """K/H below zero or not finite is refused with its side."""
     with pytest.raises(ValueError, match="wear of the second surface: wanted K/H of zero or more"):
         Archard(1e-10, value)

@@ -1,4 +1,4 @@
-"""Wear of nearly rigid bodies of the public API, against the shape that their removed volume gives."""
+"""Wear of nearly rigid bodies of the public API, against the worn shape of the removed volume."""
 
 from __future__ import annotations
 
@@ -7,15 +7,19 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from evolvent import Contact, Placement, Problem, Step
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
-from evolvent.wear.archard import Archard
-from evolvent.wear.block_stepping import BlockSettings, WearStopped
-from evolvent.wear.body_study import WearStudy
-from evolvent.wear.cycle import Cycle, Travel
+from evolvent import Body, Contact, Fixed, Freedom, Material, Problem, Rigid
+from evolvent.wear import (
+    Archard,
+    Block,
+    BlockSettings,
+    Cycle,
+    CycleState,
+    MeshMotion,
+    Travel,
+    WearStopped,
+    WearStudy,
+)
 from evolvent.wear.mesh_motion import mesh_volume
-from evolvent.wear.worn_geometry import MeshMotion
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.support.wear_cases import (
@@ -28,15 +32,17 @@ from tests.support.wear_cases import (
     K,
     cylinder,
     sphere,
+    to_and_fro,
 )  # fmt: skip
 
 MILLIMETRE = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
 
 
 @pytest.mark.parametrize("follows", [False, True])
-def test_cylinder(follows: bool) -> None:
-    """A nearly rigid cylinder worn flat: a = (3RkF's/2)^⅓ = 0.19574 mm, h = a²/2R = 3.832e-3 mm, within 1 %; also where
-    the mesh follows each 1e-3 mm. Volume kF's within 1e-6 at the nodes, and the mesh's own loss within 0.1 %."""
+def test_rigid_cylinder_wears_flat(follows: bool) -> None:
+    """Problem: a nearly rigid cylinder, worn in the gap only, or with a mesh that follows each 1e-3 mm. Exact: a =
+    (3RkF's/2)^⅓ = 0.19574 mm, h = a²/2R = 3.832e-3 mm, within 1 %; the volume kF's at the nodes within 1e-6; the mesh
+    loses it within 0.1 %."""
     assert pytest.approx(0.19574, abs=5e-6) == CYLINDER_WIDTH
     assert pytest.approx(3.832e-3, abs=5e-7) == CYLINDER_DEPTH
     mesh_motion = MeshMotion(depth=1e-3) if follows else None
@@ -51,29 +57,20 @@ def test_cylinder(follows: bool) -> None:
     assert before - after == pytest.approx(volume, rel=1e-3)
 
 
-def test_sphere() -> None:
-    """A nearly rigid sphere worn flat: πh²(R − h/3) = kFs, h = 7.979e-3 mm, within 1 %."""
+def test_rigid_sphere_wears_flat() -> None:
+    """Problem: a nearly rigid sphere. Exact: πh²(R − h/3) = kFs, h = 7.979e-3 mm, within 1 %."""
     study = WearStudy(sphere(), (Archard(K),), MILLIMETRE)
     *_, block = study.blocks(SLIDING, BlockSettings(first=500.0, tolerance=0.1))
     assert pytest.approx(7.979e-3, rel=5e-4) == SPHERE_DEPTH  # which leaves the h/3 out
     assert block.state.depth.max() == pytest.approx(SPHERE_DEPTH, rel=0.01)
 
 
-def to_and_fro(stroke: float) -> Cycle:
-    """The slab goes to one side, to the other, and back [mm]."""
-
-    def at(x: float) -> Step:
-        return Step(placements=(Placement.at_rest(2), Placement(np.eye(2), np.array([x, 0.0]))))
-
-    return Cycle((Step(), at(stroke), at(0.0), at(-stroke), at(0.0)))
-
-
 @pytest.mark.parametrize("laws", [Archard(K), Archard(0.0, K), Archard(K, 3.0 * K)])
 @pytest.mark.parametrize(("order", "friction"), [(1, 0.0), (1, 0.3), (2, 0.0), (2, 0.3)])
-def test_both_sides(laws: Archard, order: int, friction: float) -> None:
-    """One or both bodies wear as the slab goes to and fro by 0.0005 mm: on every side that wears, and on no other, the
-    volume at the nodes is K/H ∫∫p|v_s| within 1e-6 in every block, and with friction that is what friction takes over
-    μ. The sliding is the stroke less what the bodies give way."""
+def test_volumes_of_one_or_both_worn_sides(laws: Archard, order: int, friction: float) -> None:
+    """Problem: one or both bodies wear as the slab moves to and fro by 0.0005 mm. Exact: every side with a K/H, and no
+    other, loses (K/H)∫∫p|v_s| within 1e-6 in every block; with friction that integral is the friction work over μ. The
+    sliding distance is the stroke less the elastic displacement of the bodies."""
     study, stroke = WearStudy(cylinder(5.0, order, friction), (laws,), to_and_fro(5e-4)), 5e-4
     blocks = list(islice(study.blocks(9e5, BlockSettings(first=3e5, implicit=False)), 3))
     coefficients = {s: k for s, k in zip(((0, "arc"), (1, "near")), laws.coefficients) if k > 0.0}
@@ -91,17 +88,17 @@ def test_both_sides(laws: Archard, order: int, friction: float) -> None:
             assert abs(lost) / friction == pytest.approx(work, rel=1e-5 if order == 1 else 1e-6)
 
 
-def test_nothing_that_wears() -> None:
-    """Without a K/H above zero there is nothing to study; without a law for a contact neither."""
+def test_study_without_wear_or_laws_is_refused() -> None:
+    """No K/H above zero, and no law for a contact, are refused."""
     with pytest.raises(ValueError, match="wanted a K/H above zero on some surface"):
         WearStudy(cylinder(3.0), (Archard(),), MILLIMETRE)
     with pytest.raises(ValueError, match="wanted a law for each of 1 contacts, found 0"):
         WearStudy(cylinder(3.0), (), MILLIMETRE)
 
 
-def test_explicit_and_implicit_agree() -> None:
-    """A soft cylinder, whose contact is three cells wide at first, by explicit and by implicit blocks at 2 %: the two
-    differ by less than 2 % of the volume."""
+def test_explicit_and_implicit_blocks_agree() -> None:
+    """Problem: a soft cylinder, whose contact is three cells wide at first, by explicit and by implicit blocks at 2 %.
+    Exact: the same depths; they differ by less than 2 % of the volume."""
     depths = []
     for implicit in (False, True):
         study = WearStudy(cylinder(material=Material(2.1e4, 0.3)), (Archard(K),), MILLIMETRE)
@@ -113,9 +110,9 @@ def test_explicit_and_implicit_agree() -> None:
     assert study.areas @ np.abs(depths[0] - depths[1]) < 0.02 * study.areas @ depths[1]
 
 
-def test_the_loop_goes_on() -> None:
-    """Steel that goes to and fro by little more than it sticks: each leg slides as in a loop that has gone on for ever,
-    the way out as far as the way back, and pressing wears nothing."""
+def test_slip_cycle_is_periodic() -> None:
+    """Problem: steel that moves to and fro by little more than it sticks. Exact: a periodic cycle, in which both legs
+    slide equally far, and pressing wears nothing."""
     steel = Material(2.1e5, 0.3)
     study = WearStudy(cylinder(4.0, 1, 0.3, steel), (Archard(K),), to_and_fro(2e-4))
     state = study.evaluate(np.zeros(len(study.areas)))
@@ -124,8 +121,8 @@ def test_the_loop_goes_on() -> None:
     assert work[2] == pytest.approx(work[4], rel=1e-3)
 
 
-def test_long_steps_are_refused() -> None:
-    """A step of 0.3 mm over a contact of 0.05 mm: what lies between would not wear."""
+def test_steps_longer_than_the_contact_are_refused() -> None:
+    """A step of 0.3 mm over a contact of 0.05 mm, between whose ends nothing would wear, is refused."""
     steel = Material(2.1e5, 0.3)
     study = WearStudy(cylinder(4.0, 1, 0.0, steel), (Archard(K),), to_and_fro(0.3))
     with pytest.raises(ValueError, match="wanted steps that slide less than the contact is wide"):
@@ -141,9 +138,9 @@ def slabs(E: float = 2.1e5) -> Problem:
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.05),))
 
 
-def test_worn_far_beyond_reach() -> None:
-    """A block worn to a fifth of its height, in one block of cycles if it could be: the contact is looked for within
-    0.05 mm, so that blocks are made shorter, the mesh follows, and the reach with it. The mesh has lost K F s."""
+def test_wear_beyond_the_reach_moves_the_mesh() -> None:
+    """Problem: a block worn to a fifth of its height with a reach of 0.05 mm, the first block of cycles as long as the
+    study. Exact: blocks are shortened, the meshes follow and the reach grows; the mesh has lost K F s within 0.1 %."""
     study = WearStudy(slabs(), (Archard(1e-6),), MILLIMETRE)
     cycles = 0.8 * 2.0 / (1e-6 * 2e-3 * 2.1e5)
     blocks = list(study.blocks(cycles, BlockSettings(first=cycles)))
@@ -153,10 +150,10 @@ def test_worn_far_beyond_reach() -> None:
     assert left == pytest.approx(2.0 - 1.6, rel=1e-3)
 
 
-def test_worn_away() -> None:
-    """Wear of ten times the block's height: it ends with a message before the block is gone, and the last good state
-    can be solved."""
-    study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), []
+def test_body_worn_away_stops_the_study() -> None:
+    """Problem: wear of ten times the block's height. Exact: WearStopped before the block is gone, and the last good
+    state can be solved."""
+    study, blocks = WearStudy(slabs(), (Archard(1.0),), MILLIMETRE), list[Block[CycleState]]()
     cycles = 10.0 * 2.0 / (1.0 * 2e-3 * 2.1e5)
     with pytest.raises(WearStopped, match=r"wanted scaled Jacobians.*last good state is kept"):
         blocks.extend(study.blocks(cycles, BlockSettings(first=cycles)))
@@ -166,8 +163,8 @@ def test_worn_away() -> None:
     assert state.volumes[0, "bottom"] == pytest.approx(1.0 * 2e-3 * 2.1e5, rel=1e-6)
 
 
-def test_travel_of_nothing() -> None:
-    """A body that there is not, and a cycle in which nothing slides."""
+def test_travel_without_body_or_sliding_is_refused() -> None:
+    """Travel of a body that does not exist, and a cycle without sliding, are refused."""
     with pytest.raises(ValueError, match="wanted travel of a body below 2, found body 5"):
         WearStudy(cylinder(3.0), (Archard(K),), Cycle(travel=(Travel(5, translation=(1.0, 0.0, 0.0)),)))
     still = WearStudy(cylinder(3.0), (Archard(K),), Cycle(travel=(Travel(1),)))
@@ -175,8 +172,8 @@ def test_travel_of_nothing() -> None:
         still.evaluate(np.zeros(len(still.areas)))
 
 
-def test_sphere_whose_mesh_follows() -> None:
-    """A quarter of a sphere, whose planes of symmetry come down with it: the mesh loses what the contact took away
+def test_mesh_of_a_worn_sphere_loses_the_worn_volume() -> None:
+    """Problem: a quarter of a sphere, whose planes of symmetry move down with it. Exact: the mesh loses the worn volume
     within 0.1 %."""
     whole = mesh_volume(sphere().bodies[0].mesh)
     study = WearStudy(sphere(), (Archard(K),), MILLIMETRE, MeshMotion(depth=3e-3))

@@ -1,4 +1,4 @@
-"""The mesh follows the worn surface: volumes, faces that stay, cells that turn over."""
+"""Mesh motion: volumes, faces that stay, inverted cells."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def block(shape: str, order: int) -> MeshData:
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["quadrilateral", "triangle", "hexahedron", "tetrahedron"])
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_volume(shape: str, order: int, follow: str) -> None:
-    """The top of a block worn by 0.05 (1 + cos πx) mm, 0 at one side: the mesh loses Σ m_k h_k within 0.1 %, its sides
-    stay plane and its bottom stays."""
+def test_moved_mesh_loses_the_worn_volume(shape: str, order: int, follow: InteriorMotion) -> None:
+    """Problem: the top of a block worn by 0.05 (1 + cos πx) mm, 0 at one side. Exact: the mesh loses Σ m_k h_k within
+    0.1 %, its sides stay plane and its bottom stays at rest."""
     mesh = block(shape, order)
     top = surface_of(mesh, "top")
     depth = 0.05 * (1.0 + np.cos(0.5 * np.pi * (top.points[:, 0] - top.points[:, 0].min())))
@@ -44,8 +44,9 @@ def test_volume(shape: str, order: int, follow: str) -> None:
 
 
 @pytest.mark.parametrize("follow", ["harmonic", "elastic"])
-def test_uniform_wear_of_a_block_is_uniform_squeezing(follow: str) -> None:
-    """A block worn by the same depth everywhere: the top goes down by it, no node moves sideways."""
+def test_uniform_wear_moves_a_block_straight_down(follow: InteriorMotion) -> None:
+    """Problem: a block worn by the same depth everywhere. Exact: the top moves down by it; with the harmonic interior
+    no node moves sideways."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")
     moved = worn_mesh(mesh, [WornSurface(top, np.full(len(top.points), 0.1))], ["bottom"], follow)
@@ -55,9 +56,9 @@ def test_uniform_wear_of_a_block_is_uniform_squeezing(follow: str) -> None:
         np.testing.assert_allclose(shift[:, 0], 0.0, atol=1e-12)
 
 
-def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
-    """A half disc whose arc wears, cut off at an angle by its flat top: at the arc's ends, 45° up, other facets go on
-    smoothly, so that the direction is the normal; at a block's corner it is the side's."""
+def test_worn_edge_stays_in_its_adjacent_face() -> None:
+    """Problem: a half disc whose arc wears, and a sheared block whose top wears. Exact: other facets continue the ends
+    of the arc smoothly, so the direction is the normal; at the block's corner it is that of the side, d·n = 1."""
     disc = cylinder_2d(1.0, 0.1, 0.2)
     arc = surface_of(disc, "arc")
     np.testing.assert_allclose(motion_directions(disc, arc), arc.normals, atol=1e-12)
@@ -73,10 +74,10 @@ def test_a_worn_edge_stays_in_its_neighbouring_face() -> None:
 
 
 @pytest.mark.parametrize("shape", ["quadrilateral", "triangle"])
-def test_which_equation_keeps_better_cells(shape: str) -> None:
-    """A block 2 wide and 1 high loses a pit a·exp(−(x/w)²) in one go. The elastic equation keeps better cells, by more
-    than 0.03 of the scaled Jacobian at a = 0.2, w = 0.25 and 0.5, and can follow deeper: a = 0.3, w = 0.25 turns cells
-    over that follow the harmonic one."""
+def test_elastic_interior_keeps_better_cells(shape: str) -> None:
+    """Problem: a block 2 wide and 1 high loses a pit a·exp(−(x/w)²) at once. The elastic interior keeps better cells,
+    by more than 0.03 of the scaled Jacobian at a = 0.2, w = 0.25 and 0.5, and follows deeper: a = 0.3, w = 0.25 inverts
+    cells with the harmonic one."""
     mesh = rectangle(2.0, 1.0, 16, 12, 2, shape)
     top = surface_of(mesh, "top")
 
@@ -92,25 +93,25 @@ def test_which_equation_keeps_better_cells(shape: str) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_squeezed_cells_do_not_bulge(order: int) -> None:
-    """Half of a block worn off evenly, elastically: what is squeezed would bulge past its sides, which stay; kept from
-    that only afterwards, the nodes beside them turned the cells over."""
+def test_compressed_cells_stay_within_the_side_faces(order: int) -> None:
+    """Problem: half of a block worn off evenly with an elastic interior, which would bulge beyond the sides. Exact:
+    nodes of the sides stay on them without inverting the cells beside them."""
     mesh = block("quadrilateral", order)
     top = surface_of(mesh, "top")
     moved = worn_mesh(mesh, [WornSurface(top, np.full(len(top.points), 0.5))], ["bottom"], "elastic")
     assert scaled_jacobians(moved).min() > 0.9
 
 
-def test_turned_over_is_refused() -> None:
-    """Deeper than the body is high: MeshInverted with the place and what to do."""
+def test_inverted_cells_are_refused() -> None:
+    """A depth above the body's height raises MeshInverted with the place and the remedy."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")
     with pytest.raises(MeshInverted, match=r"wanted scaled Jacobians of at least 0\.05, found .* in cell .* at"):
         worn_mesh(mesh, [WornSurface(top, np.full(len(top.points), 1.2))], ["bottom"])
 
 
-def test_nothing_held_is_refused() -> None:
-    """Without a group at rest the whole body would follow its surface."""
+def test_mesh_motion_without_a_held_group_is_refused() -> None:
+    """Without a group at rest the whole body would move with its surface: InputError."""
     mesh = block("quadrilateral", 2)
     top = surface_of(mesh, "top")
     with pytest.raises(ValueError, match="wanted a facet group that stays at rest"):

@@ -1,4 +1,4 @@
-"""K/H from pin-on-disc records: exact lines, scattered ones, and records that cannot be used."""
+"""K/H from pin-on-disc records: exact lines, scattered ones, and unusable records."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit, main
-from evolvent.wear.pin_on_disc import PinOnDisc, Record, coefficient
+from evolvent.wear import PinOnDisc, Record, coefficient
 from evolvent_meshes.csv_tables import TableError
 
 K = 1.3832e-10  # mm²/N, He 2022
@@ -21,8 +21,9 @@ def written(path: Path, distance: np.ndarray, depth: np.ndarray, header: str = "
     return path
 
 
-def test_the_papers_rate(tmp_path: Path) -> None:
-    """500 N on a pin of 6 mm: 17.684 MPa; 2.446 µm a km are K/H = 1.3832e-10 mm²/N, without spread."""
+def test_coefficient_of_the_printed_wear_rate(tmp_path: Path) -> None:
+    """Problem: 500 N on a pin of 6 mm, 17.684 MPa, wearing by 2.446 µm per km. Exact: K/H = 1.3832e-10 mm²/N, without
+    spread."""
     s = np.linspace(0.0, 10.0, 21)
     found = coefficient([Record.read(written(tmp_path / "a.csv", s, 3.0 + 2.446 * s))], HE)
     assert HE.pressure == pytest.approx(17.684, abs=5e-4)
@@ -30,8 +31,9 @@ def test_the_papers_rate(tmp_path: Path) -> None:
     assert found.high - found.low < 1e-6 * K
 
 
-def test_units_and_running_in(tmp_path: Path) -> None:
-    """The same record in m and mm, with a steep beginning that is left out."""
+def test_record_units_and_running_in(tmp_path: Path) -> None:
+    """Problem: the same record in m and mm, with a steep running-in part. Exact: the same K/H without that part, more
+    with it."""
     s = np.linspace(0.0, 10e3, 101)
     h = 2.446e-6 * s + 2e-3 * np.minimum(s / 500.0, 1.0)
     path = written(tmp_path / "a.csv", s, h, "sliding_distance_m, depth_mm")
@@ -39,8 +41,9 @@ def test_units_and_running_in(tmp_path: Path) -> None:
     assert coefficient([Record.read(path)], HE).value > 1.01 * K
 
 
-def test_spread(tmp_path: Path) -> None:
-    """Normal scatter: 95 % intervals of a record, and of the mean of four, hold the true value about 19 times in 20."""
+def test_confidence_intervals_hold_the_true_coefficient(tmp_path: Path) -> None:
+    """Problem: records with normal scatter. Exact: the 95 % intervals of one record, and of the mean of four, hold the
+    true value about 19 times in 20."""
     rng, s, single, mean = np.random.default_rng(3), np.linspace(0.0, 10.0, 30), 0, 0
     for _ in range(200):
         rates = 2.446 * (1.0 + 0.1 * rng.normal(size=4))
@@ -71,8 +74,8 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_bad_records(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """One message that says where and what to do, status 2, no traceback."""
+def test_bad_record_is_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One message with place and remedy, status 2, no traceback."""
     text, message = BAD[name]
     (tmp_path / "r.csv").write_text(text)
     with pytest.raises(TableError, match=message):
@@ -82,7 +85,7 @@ def test_bad_records(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "Traceback" not in capsys.readouterr().err
 
 
-def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wear_coefficient_command_prints_the_interval(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """`evolvent wear-coefficient` prints every record's value, the mean, its interval and the rate."""
     s = np.linspace(0.0, 10.0, 21)
     paths = [str(written(tmp_path / f"{i}.csv", s, (2.4 + 0.1 * i) * s)) for i in range(2)]
@@ -92,30 +95,31 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "17.684 MPa 2.45 µm per km" in out
 
 
-def test_a_test_given_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The same record again would make any interval as narrow as one likes: refused."""
+def test_record_given_twice_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same record again, which would narrow any interval, is refused."""
     s = np.linspace(0.0, 10.0, 21)
     paths = [str(written(tmp_path / f"{i}.csv", s, 2.4 * s)) for i in range(2)]
     assert main(["wear-coefficient", *paths, "--force-N", "500", "--pin-diameter-mm", "6"]) == Exit.BAD_INPUT
     assert "1.csv: found the same lines as in 0.csv" in capsys.readouterr().err
 
 
-def test_interval_below_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Two records, one wearing four times as fast: the interval of their mean reaches below 0, which is said."""
+def test_interval_below_zero_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Problem: two records, one wearing four times as fast. Exact: the interval of their mean reaches below 0, with a
+    warning."""
     s = np.linspace(0.0, 10.0, 21)
     paths = [str(written(tmp_path / f"{i}.csv", s, slope * s)) for i, slope in enumerate((1.0, 4.0))]
     assert main(["wear-coefficient", *paths, "--force-N", "500", "--pin-diameter-mm", "6"]) == Exit.DONE
     assert "give more records" in capsys.readouterr().err
 
 
-def test_no_file(tmp_path: Path) -> None:
-    """A record that is not there is named."""
+def test_missing_record_is_named(tmp_path: Path) -> None:
+    """A record that does not exist is named."""
     with pytest.raises(TableError, match=r"none\.csv: found No such file or directory; allowed: a readable CSV file"):
         Record.read(tmp_path / "none.csv")
 
 
 @pytest.mark.parametrize("wrong", [(0.0, 6.0), (500.0, float("nan")), (500.0, 1e200), (float("inf"), 6.0)])
-def test_bad_test(wrong: tuple[float, float]) -> None:
-    """Force and diameter of a size that a test can have."""
+def test_force_and_diameter_out_of_range_are_refused(wrong: tuple[float, float]) -> None:
+    """A force and a diameter beyond the range of any test are refused."""
     with pytest.raises(TableError, match=r"found .*; allowed: a number from 1e-06 to 1e\+09 N|from 0\.001 to 10000 mm"):
         PinOnDisc(*wrong)

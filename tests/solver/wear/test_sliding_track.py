@@ -1,4 +1,4 @@
-"""Bodies that travel wear on their whole track: wheels, discs and belts, against what Archard's law asks for."""
+"""Bodies that travel wear on their whole track: wheels, discs and belts, against Archard's law."""
 
 from __future__ import annotations
 
@@ -7,14 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent import Contact, Placement, Problem, Step
-from evolvent.fem.body import Body, Fixed, Freedom, Rigid
-from evolvent.fem.material import Material
+from evolvent import Body, Contact, Fixed, Freedom, Material, Placement, Problem, Rigid, Step
 from evolvent.fem.surface import surface_of
-from evolvent.wear.archard import Archard
-from evolvent.wear.block_stepping import BlockSettings
-from evolvent.wear.body_study import CycleState, WearStudy
-from evolvent.wear.cycle import Cycle, Travel
+from evolvent.wear import Archard, BlockSettings, Cycle, CycleState, Travel, WearStudy
 from evolvent.wear.mesh_motion import mesh_volume
 from evolvent.wear.sliding_track import track_of
 from evolvent_meshes.arrays import Floats
@@ -52,10 +47,10 @@ def certified(study: WearStudy, state: CycleState) -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("order", [1, 2])
-def test_wheel(order: int, friction: float) -> None:
-    """A wheel turns on a block, 2D, K/H different. Exact: all around, the wheel loses (K₁/H) F' in a revolution, 2πR
-    times that as volume; the block loses (K₂/H) F' 2πR in place. The contact is 0.015 R wide to each side, so that the
-    pressure is inclined by up to 1e-4."""
+def test_wheel_wears_all_around_its_rim(order: int, friction: float) -> None:
+    """Problem: a wheel turns on a block, 2D, different K/H. Exact: all around, the wheel loses (K₁/H) F' in a
+    revolution, as volume 2πR times that; the block loses (K₂/H) F' 2πR in place. The contact is 0.015 R wide to each
+    side, so that the pressure is inclined by up to 1e-4."""
     law = Archard(K, 3.0 * K)
     study = WearStudy(cylinder(8.0, order, friction, SOFT), (law,), WHEEL)
     state = fresh(study)
@@ -67,9 +62,9 @@ def test_wheel(order: int, friction: float) -> None:
     assert study.areas[0] == pytest.approx(TURN * RADIUS, rel=1e-9)
 
 
-def test_belt_in_the_plane() -> None:
-    """A belt of length l = |translation| slides past a cylinder, 2D, aslant to the axes as made. Exact: all along, it
-    loses (K₂/H) F' in a cycle; the cylinder (K₁/H) F' l in place."""
+def test_plane_belt_wears_along_its_whole_length() -> None:
+    """Problem: a belt of length l = |translation| slides past a cylinder, 2D, at an angle to the axes as made. Exact:
+    all along, it loses (K₂/H) F' in a cycle; the cylinder (K₁/H) F' l in place."""
     R, length = np.array([[0.6, -0.8], [0.8, 0.6]]), 250.0
     pin, slab = cylinder(8.0, material=SOFT).bodies
     slab = replace(slab, mesh=replace(slab.mesh, points=slab.mesh.points @ np.pad(R, (0, 1))))
@@ -97,10 +92,11 @@ def in_strips(study: WearStudy, state: CycleState, strips: Floats) -> tuple[Floa
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("travel", [DISC, BELT, replace(BELT, translation=(30.0, 40.0, 0.0))])
-def test_disc_and_belt(travel: Travel, friction: float, order: int) -> None:
-    """A square punch on a disc that turns, on a belt that slides along its side and aslant. Exact: at c the track loses
-    (K/H) ∫p along the path, so that what passes between two c is lost there, whatever p is; found in strips a third of
-    the punch wide within 3 %, as the hats smooth over one cell. In all the volume is K/H ∫∫p|v_s|."""
+def test_track_loses_what_passes_over_it(travel: Travel, friction: float, order: int) -> None:
+    """Problem: a square punch on a rotating disc, and on a belt that slides along its side and at an angle. Exact: at c
+    the track loses (K/H)∫p along the path, so a strip between two c loses the wear of the points that pass over it, for
+    any p; within 3 % in strips a third of the punch wide, as hat functions smooth over one cell. In all the volume is
+    (K/H)∫∫p|v_s|."""
     study = WearStudy(punch(order, friction), (Archard(K, 2.0 * K),), Cycle(travel=(travel,)))
     state = fresh(study)
     certified(study, state)
@@ -111,9 +107,9 @@ def test_disc_and_belt(travel: Travel, friction: float, order: int) -> None:
     assert state.volumes[RING] == pytest.approx(2.0 * state.volumes[PIN], rel=1e-9)
 
 
-def test_depth_of_a_belt() -> None:
-    """A belt of length l = |translation| slides under a square punch: the integral of its depth across the path is
-    (K/H) F, whatever the pressure, and further off the punch than a cell there is none."""
+def test_depth_across_a_belt_integrates_to_the_load() -> None:
+    """Problem: a belt of length l = |translation| slides under a square punch. Exact: its depth integrated across the
+    path is (K/H) F for any pressure, and more than a cell beside the punch it is zero."""
     study = WearStudy(punch(), (Archard(0.0, K),), Cycle(travel=(BELT,)))
     rate, track = study.by_side(fresh(study).rate)[RING], study.tracks[RING]
     assert track.areas.sum() == pytest.approx(60.0 * 4.0, rel=1e-12)
@@ -122,8 +118,8 @@ def test_depth_of_a_belt() -> None:
     assert beside.any() and not rate[beside].any()
 
 
-def test_pin_does_not_feel_the_discs_coefficient() -> None:
-    """In the first cycle nothing is worn yet: the pin's rate is the same whatever the disc's K/H is."""
+def test_rate_of_the_unworn_pin_is_independent_of_the_disc() -> None:
+    """Problem: the first cycle, with no wear yet. Exact: the pin's rate is the same for any K/H of the disc."""
     cycle = Cycle(travel=(DISC,))
     rates = []
     for second in (0.0, 5.0 * K):
@@ -132,9 +128,9 @@ def test_pin_does_not_feel_the_discs_coefficient() -> None:
     np.testing.assert_allclose(rates[1], rates[0], rtol=1e-12)
 
 
-def test_the_body_may_stand_elsewhere() -> None:
-    """The disc and its axis are made 3 mm aside and turned by 90°, and the step puts them under the pin: the same depth
-    over the radius."""
+def test_track_of_a_placed_body_is_that_of_the_body_as_made() -> None:
+    """Problem: disc and axis are made 3 mm aside and turned by 90°, and the step places them under the pin. Exact: the
+    same depth over the radius."""
     plain = WearStudy(punch(), (Archard(0.0, K),), Cycle(travel=(DISC,)))
     R, shift = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([3.0, 0.0, 0.0])
     pin, disc = punch().bodies
@@ -145,9 +141,9 @@ def test_the_body_may_stand_elsewhere() -> None:
     np.testing.assert_allclose(fresh(moved).rate, fresh(plain).rate, rtol=1e-6, atol=1e-6 * fresh(plain).rate.max())
 
 
-def test_side_of_a_cylinder() -> None:
-    """A plane that all lies at the radius R of a far axis, spread along it: c is the place on the axis, the ring is 2πR
-    long everywhere."""
+def test_track_on_the_side_of_a_cylinder() -> None:
+    """Problem: a plane at the radius R of a far axis, extended along it. Exact: c is the place along the axis, and the
+    ring is 2πR long everywhere."""
     strip = surface_of(box((1e-3, 2.0, 1.0), (1, 8, 2), 1, origin=(-5e-4, 0.0, -1.0)), "top")
     track = track_of(strip, Travel(0, rotation=(0.0, 1.0, 0.0), centre=(0.0, 0.0, -RADIUS)))
     assert (track.grid[0], track.grid[-1]) == (0.0, 2.0)
@@ -163,14 +159,15 @@ def test_side_of_a_cylinder() -> None:
         (Travel(1, translation=(0.0, 0.0, 1.0)), "4 mm wide that leaves it by 4"),
     ],
 )
-def test_no_track(travel: Travel, found: str) -> None:
-    """Turning and going straight on at once, neither, an axis in the surface, a path straight out of it."""
+def test_travel_without_a_track_is_refused(travel: Travel, found: str) -> None:
+    """Rotation and translation at once, neither, an axis in the surface, and a path out of it are refused."""
     with pytest.raises(ValueError, match=found):
         WearStudy(punch(), (Archard(K, K),), Cycle(travel=(travel,)))
 
 
-def test_surfaces_that_are_no_track() -> None:
-    """A sphere that turns; a wheel that turns about another axis than its own; two travels of one body."""
+def test_surface_off_its_track_is_refused() -> None:
+    """A rotating sphere, a wheel that turns about another axis than its own, and two travels of one body are
+    refused."""
     ball = surface_of(ring_sphere(RADIUS, 3.0, 3.0, 1.0, 0.5, 1.5), "arc")
     with pytest.raises(ValueError, match="wanted a surface that stays on its own track"):
         track_of(ball, Travel(0, rotation=(0.0, 0.0, TURN)))
@@ -182,10 +179,11 @@ def test_surfaces_that_are_no_track() -> None:
 
 
 @pytest.mark.parametrize(("travel", "off"), [(BELT, 0.01), (DISC, 0.1)])
-def test_mesh_follows(travel: Travel, off: float) -> None:
-    """The mesh goes down to the depth of its track: it loses ∫ of its nodal depth within 0.1 %. The contact is what it
-    was with the depth in the gap, as far as the mesh can show the track: whole rows of nodes lie at the belt's grid,
-    none at the disc's, whose depth ends within a cell beside the punch; the pressure has changed by a third."""
+def test_mesh_follows_the_depth_of_its_track(travel: Travel, off: float) -> None:
+    """Problem: the mesh moves down by the depth of its track. Exact: it loses the integral of its nodal depth within
+    0.1 %. The contact is the same as with the depth in the gap, as far as the mesh resolves the track: whole rows of
+    nodes lie on the belt's grid, none on the disc's, whose depth ends within a cell beside the punch; the pressure has
+    changed by a third."""
     study = WearStudy(punch(), (Archard(K, 40.0 * K),), Cycle(travel=(travel,)))
     new = fresh(study)
     depth = 60.0 * new.rate
@@ -200,10 +198,10 @@ def test_mesh_follows(travel: Travel, off: float) -> None:
     assert study.areas @ np.abs(followed.rate - gap.rate) < off * volume
 
 
-def test_blocks() -> None:
-    """Pin and disc wear in blocks, explicit ones at 0.5 %, implicit ones at 1 % and at 0.25 %: every block's volumes
-    are certified, and with the tolerance the implicit ones' depths in the end come to those of the explicit ones, from
-    within 5 % to within 1.5 % of the volume."""
+def test_implicit_and_explicit_blocks_of_pin_and_disc_agree() -> None:
+    """Problem: pin and disc wear in explicit blocks at 0.5 %, and in implicit ones at 1 % and at 0.25 %. Every block's
+    volumes are certified, and with the tolerance the final depths of the implicit blocks converge to those of the
+    explicit ones, from within 5 % to within 1.5 % of the volume."""
     depths = []
     for implicit, tolerance in ((False, 0.005), (True, 0.01), (True, 0.0025)):
         study = WearStudy(punch(), (Archard(K, 6.0 * K),), Cycle(travel=(DISC,)))
@@ -216,9 +214,9 @@ def test_blocks() -> None:
     assert off[1] < 0.05 and off[2] < min(0.015, 0.5 * off[1])
 
 
-def test_belt_evens_out() -> None:
-    """Only the belt wears, until it gives way evenly under the punch. Exact then: (K/H) F/b all over the width b, where
-    an unworn belt loses a fifth less or more. Within 3 % but for the cells that the edges are in."""
+def test_worn_belt_tends_to_a_uniform_rate() -> None:
+    """Problem: only the belt wears, until its rate is uniform under the punch. Exact: (K/H) F/b over the width b, where
+    the rate of an unworn belt varies by a fifth; within 3 % except for the cells at the edges."""
     study = WearStudy(punch(), (Archard(0.0, 10.0 * K),), Cycle(travel=(BELT,)))
     *_, block = study.blocks(1e4, BlockSettings(20.0, 0.01))
     inside = np.abs(study.tracks[RING].grid) < 0.5 * PUNCH - 1e-9

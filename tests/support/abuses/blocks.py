@@ -1,4 +1,4 @@
-"""The blocks that abuses of the public API are made with, `UPPER` stands on `LOWER`, and what a row of a table says."""
+"""Two blocks, `UPPER` on `LOWER`, with which calls of the public API are made, and the rows of the tables of calls."""
 
 from __future__ import annotations
 
@@ -43,8 +43,14 @@ TET = box((1.0, 1.0, 1.0), (1, 1, 1), 1, "tetrahedron")
 
 
 @dataclass(frozen=True)
-class Abuse:
-    """name: what is wrong. call: given a folder, does it. error, words: what it has to raise, with these words."""
+class Refused:
+    """A call that has to be refused.
+
+    name: what is wrong with it.
+    call: makes it, given an empty folder.
+    words: regular expressions that the message has to match.
+    error: the class that it has to raise.
+    """
 
     name: str
     call: Callable[[Path], Any]
@@ -53,8 +59,14 @@ class Abuse:
 
 
 @dataclass(frozen=True)
-class Fine:
-    """Odd but right: `call` gives a number or array that has to be `wanted`, to this relative accuracy."""
+class Exact:
+    """A call that is unusual but correct.
+
+    name: what is unusual about it.
+    call: makes it, given an empty folder, and returns a number or an array.
+    wanted: its exact value.
+    accuracy: relative to the largest of `wanted`.
+    """
 
     name: str
     call: Callable[[Path], Any]
@@ -63,55 +75,63 @@ class Fine:
 
 
 def steel(**changes: Any) -> Material:
+    """Steel, with other constants where given."""
     return Material(**{"youngs_modulus": 210e3, "poissons_ratio": 0.3, **changes})
 
 
 def upper(mesh: Any = UPPER, **changes: Any) -> Body:
-    """Pressed from above, led at its left side."""
-    stated = {"supports": (Fixed("left", "x"),), "loads": (Traction("top", (0.0, -PRESSURE)),), "name": "upper"}
-    return Body(mesh, **{**stated, **changes})
+    """The upper block, pressed from above, on rollers at its left side."""
+    usual = {"supports": (Fixed("left", "x"),), "loads": (Traction("top", (0.0, -PRESSURE)),), "name": "upper"}
+    return Body(mesh, **{**usual, **changes})
 
 
 def lower(mesh: Any = LOWER, **changes: Any) -> Body:
-    """Stands on its bottom."""
+    """The lower block, on rollers at its bottom and its left side."""
     return Body(mesh, **{"supports": (Fixed("left", "x"), Fixed("bottom", "y")), "name": "lower", **changes})
 
 
 def problem(bodies: Any = None, contacts: Any = None, **changes: Any) -> Problem:
+    """The upper block on the lower one, with other bodies or contacts where given."""
     bodies = (upper(), lower()) if bodies is None else bodies
     return Problem(bodies, (contact(),) if contacts is None else contacts, **changes)
 
 
 def contact(first: Any = (0, "bottom"), second: Any = (1, "top"), **changes: Any) -> Contact:
+    """The contact between the blocks."""
     return Contact(first, second, **{"reach": 0.1, **changes})
 
 
-def pressures(stated: Problem, step: Step | None = None) -> Any:
-    return solve(stated, step).contacts[0].pressure
+def pressures(given: Problem, step: Step | None = None) -> Any:
+    """Pressures (q,) at the points of the only contact [MPa]."""
+    return solve(given, step).contacts[0].pressure
 
 
-def force(stated: Problem, step: Step | None = None) -> Any:
-    return solve(stated, step).contacts[0].force
+def force(given: Problem, step: Step | None = None) -> Any:
+    """Force (d,) of the only contact [N/mm; N in 3D]."""
+    return solve(given, step).contacts[0].force
 
 
 def mesh(base: MeshData = UPPER, **changes: Any) -> Callable[[Path], Body]:
-    """A body on a mesh of which something has been replaced."""
+    """Makes a body on a mesh with some fields replaced."""
     return lambda _: Body(replace(base, **changes), name="upper")
 
 
-def moved(base: MeshData, node: int, place: tuple[float, ...]) -> MeshData:
+def moved(base: MeshData, node: int, position: tuple[float, ...]) -> MeshData:
+    """The mesh with one node at another position."""
     points = base.points.copy()
-    points[node, : len(place)] = place
+    points[node, : len(position)] = position
     return replace(base, points=points)
 
 
 def numbered(base: MeshData, row: int, *nodes: int) -> MeshData:
+    """The mesh with other nodes in one cell."""
     cells = base.cells.copy()
     cells[row] = nodes
     return replace(base, cells=cells)
 
 
 def group(base: MeshData, name: str, facets: Any) -> MeshData:
+    """The mesh with one more facet group."""
     return replace(base, facets={**base.facets, name: np.asarray(facets, dtype=np.int64)})
 
 
@@ -126,7 +146,7 @@ def file(content: bytes, name: str = "mesh.msh") -> Callable[[Path], MeshData]:
 
 
 def cut_file(share: float) -> Callable[[Path], MeshData]:
-    """Reads a mesh of which only the beginning has been written."""
+    """Reads a mesh file of which only the first part has been written."""
 
     def read(folder: Path) -> MeshData:
         write_msh(UPPER, folder / "whole.msh")
@@ -137,7 +157,7 @@ def cut_file(share: float) -> Callable[[Path], MeshData]:
 
 
 def gmsh_file(order: int = 1, names: tuple[str, str] = ("body", "top"), **options: float) -> Callable[[Path], MeshData]:
-    """Reads a square that gmsh has meshed in some way; "recombine": the second half in quadrilaterals."""
+    """Reads two squares meshed by gmsh with some options; recombine: how many of them in quadrilaterals."""
 
     def read(folder: Path) -> MeshData:
         with gmsh_model("square"):
@@ -159,15 +179,17 @@ def gmsh_file(order: int = 1, names: tuple[str, str] = ("body", "top"), **option
 
 
 def apart(distance: float) -> Problem:
+    """The blocks with a gap [mm] between them."""
     return problem((upper(moved_all(UPPER, distance)), lower()))
 
 
 def moved_all(base: MeshData, up: float) -> MeshData:
+    """The mesh, higher by `up` [mm]."""
     return replace(base, points=base.points + np.array([0.0, up, 0.0]))
 
 
 def doubled(base: MeshData) -> MeshData:
-    """The same cells twice side by side, with nothing that joins them."""
+    """The same cells twice, side by side and not connected."""
     n = len(base.points)
     facets = {name: np.concatenate([rows, rows + n]) for name, rows in base.facets.items()}
     points = np.concatenate([base.points, base.points + np.array([3.0, 0.0, 0.0])])
@@ -175,6 +197,6 @@ def doubled(base: MeshData) -> MeshData:
 
 
 def hard(between: Contact) -> Problem:
-    """The upper block held at each of its nodes, the lower one pushed against it from below."""
+    """The upper block held at all of its nodes, the lower one pushed against it from below."""
     supports = (ROLLS, Fixed("bottom", "y", PUSH))
     return problem((upper(supports=(Fixed("top"), Fixed("bottom")), loads=()), lower(supports=supports)), (between,))

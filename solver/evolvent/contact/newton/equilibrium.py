@@ -1,12 +1,12 @@
-"""Equilibrium at one position: SNES on the nodal contact forces and the free rigid motions.
+"""Equilibrium of a condensed contact system: SNES on the nodal contact forces and the free rigid motions.
 
 Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 without friction, else d:
 
-    f − F(J) = 0,   J = J_0 + H δ − A f          (contact)
+    f − F(J) = 0,   J = J_0 + H δ − A f              (contact)
     Hᵀ f = F                                         (balance of the free rigid motions)
 
-The bodies are eliminated exactly (A is their compliance), so this is the finite element system and not a model of it.
-The tangent is in tangent.py, its inverse in newton_steps.py.
+The bodies are eliminated exactly (A is their compliance), so that this is the finite element system itself. The
+tangent is in tangent.py, its inverse in newton_steps.py.
 """
 
 from __future__ import annotations
@@ -21,25 +21,28 @@ from evolvent.contact.newton import snes
 from evolvent.contact.newton.newton_steps import NewtonSteps
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
-from evolvent.contact.nitsche.contact_operator import ContactOperator, LawOf
-from evolvent.contact.nitsche.coulomb import Law, coulomb, starting_guess
+from evolvent.contact.nitsche.contact_operator import ContactLaw, ContactOperator
+from evolvent.contact.nitsche.coulomb import LawValues, coulomb, starting_guess
 from evolvent_meshes.arrays import Floats
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 60
-BEND = 30.0  # residual after an exact Newton step over the square of the one before (200 to 1000 were seen), with room
-ROUGH, FINEST = 1e-2, 1e-7  # accuracies of a step at most and at least asked for
-SPARE = 1e-2  # of the tolerance may be left of the last step's own residual
-PATIENCE = 10  # iterations that a start from a neighbouring solution is given
+QUADRATIC = 30.0  # lower bound of a relative residual over the square of the one before (200 to 1000 were observed)
+ROUGHEST, FINEST = 1e-2, 1e-7  # limits of the accuracy to which a Newton step is solved
+LAST_STEP = 1e-2  # of the tolerance: residual that the linear solve of the last step may leave
+GUESS_ITERATIONS = 10  # after which a start from a given guess is abandoned
 
 
 @dataclass(frozen=True)
 class CondensedSystem:
-    """What a position's equilibrium needs of the bodies.
+    """The bodies of a contact problem in the local jumps of its contacts, k components a node.
 
-    operator: contact at q points, jumps at n nodes. compliance: A (n·k, n·k) [mm/N]. motion: H (n·k, r), free rigid
-    motions. jump: J_0 (n·k,) jumps of the external loads and prescribed motions [mm]. load: F (r,) [N, N·mm].
-    lever: (r,) what one unit of each motion moves the contact [mm per unit], to compare forces with moments.
+    operator: contact at q points, jumps at n nodes.
+    compliance: A (n·k, n·k) [mm/N].
+    motion: H (n·k, r), jumps by unit amplitudes of the r free rigid motions.
+    jump: J_0 (n·k,), jumps by external loads and prescribed motions [mm].
+    load: F (r,), loads on the free rigid motions [N, N·mm].
+    lever: (r,) largest jump by a unit amplitude of each motion [mm per unit], to compare forces with moments.
     """
 
     operator: ContactOperator
@@ -51,16 +54,16 @@ class CondensedSystem:
 
     @cached_property
     def steps(self) -> NewtonSteps:
-        """Newton steps of all friction coefficients, which share much."""
+        """Solver of the Newton steps; all friction coefficients share it."""
         return NewtonSteps(self.compliance, self.motion / self.lever)
 
     @property
     def k(self) -> int:
-        """Local components a node: 1 (normal) or d."""
+        """Number of local components a node: 1 (normal) or d."""
         return len(self.jump) // len(self.operator.nodes)
 
     def jumps(self, force: Floats, motion: Floats) -> Floats:
-        """J (n, k) from forces (n, k) and motions (r,)."""
+        """J (n, k) [mm] from nodal forces (n, k) [N] and amplitudes of the motions (r,)."""
         return (self.jump + self.motion @ motion - self.compliance @ force.ravel()).reshape(-1, self.k)
 
     @property
@@ -71,9 +74,15 @@ class CondensedSystem:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A converged state: nodal forces f (n, k) [N] and tractions at the points (q, k) [MPa] in local frames, motions δ
-    (r,), jumps (n, k)
-    [mm]; Newton iterations and the residual [N] that was left."""
+    """A converged state, in local frames with k components.
+
+    force: nodal forces f (n, k) [N].
+    traction: tractions at the points (q, k) [MPa].
+    motion: amplitudes δ of the free rigid motions (r,) [mm, rad].
+    jump: J (n, k) [mm].
+    iterations: number of Newton iterations.
+    residual: norm of the residual forces [N].
+    """
 
     force: Floats
     traction: Floats
@@ -84,37 +93,44 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
-class Start:
-    """Where Newton's method starts: forces (n, k) [N] and motions (r,)."""
+class InitialGuess:
+    """A guess of an equilibrium from which Newton's method starts.
+
+    force: nodal forces (n, k) [N].
+    motion: amplitudes of the free rigid motions (r,) [mm, rad].
+    """
 
     force: Floats
     motion: Floats
 
 
 def normal_part(system: CondensedSystem) -> CondensedSystem:
-    """The frictionless system: normal components only; the system itself where it has no others."""
+    """The frictionless system: normal components only. A system that has no others is returned as it is."""
     k = system.k
     if k == 1:
         return system
-    A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS takes no product with every third column
+    A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS needs contiguous columns
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
 def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (q,) bool, the points assumed in contact for the first, linear, solve; by default all. Raises NotConverged.
+    start: (q,) bool, points assumed in contact in the first, linear, solve; by default all. Raises NotConverged.
     """
-    chosen = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
-    problem = _Contact(system, lambda t: coulomb(t, 0.0))
-    return _converged(problem, _assumed_contact(system, chosen), "contact without friction")
+    touching = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
+    problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
+    return _converged(problem, _assumed_contact(system, touching), "contact without friction")
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
-    """The state in which whatever touches sticks, however large the traction: a start for `frictional`, and the only
-    one where friction alone carries a load. slip: as there. It is only nearly in equilibrium: at the edge, where stuck
-    traction is singular, a point may open and close for ever. Raises NotConverged where it is singular."""
-    law = _Contact(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
+    """The state in which all points in contact stick, however large the traction; a start for `frictional`.
+
+    It is the only start if friction alone carries a load. slip: as in `frictional`. The state is only approximately in
+    equilibrium: at the edge, where sticking traction is singular, a point may open and close without end. Raises
+    NotConverged where the tangent is singular.
+    """
+    law = ContactEquations(system, lambda t: starting_guess(t, 0.0, np.zeros((len(t), system.k - 1))), slip)
     every = np.ones(len(system.operator.weights), dtype=bool)
     start = _assumed_contact(system, every, slip)
     return _equilibrium(law, snes.solve(law, start, "contact without slip", ITERATIONS // 2, TOLERANCE))
@@ -122,19 +138,22 @@ def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
 
 def frictional(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium,
-    near: Start | None = None,
+    near: InitialGuess | None = None,
 ) -> Equilibrium:  # fmt: skip
     """Equilibrium with Coulomb friction.
 
-    friction: a number or (q,). slip: (n, d−1) what slipped since the last state apart from the present displacement
-    [mm]; heading: (q, d−1) the known direction of slip, or zero; start: the equilibrium without friction, or `stuck`.
-    near: a guess of the solution, tried first. Raises NotConverged.
+    friction: coefficient μ, a number or (q,).
+    slip: (n, d−1) slip since the last state, without that of the current displacement [mm].
+    heading: (q, d−1) unit direction of slip where it is known, else zero.
+    start: the equilibrium without friction, or `stuck`.
+    near: a guess of the solution, tried first.
+    Raises NotConverged.
     """
-    law = _Contact(system, lambda t: coulomb(t, friction), slip)
+    law = ContactEquations(system, lambda t: coulomb(t, friction), slip)
     if near is not None:
         try:
-            root = snes.solve(law, law.join(near.force, near.motion), "Coulomb friction", PATIENCE, TOLERANCE)
-        except NotConverged:  # the guess led out of contact altogether
+            root = snes.solve(law, law.join(near.force, near.motion), "Coulomb friction", GUESS_ITERATIONS, TOLERANCE)
+        except NotConverged:  # the guess lost contact altogether
             root = None
         if root is not None and root.converged:
             return _equilibrium(law, root)
@@ -150,39 +169,44 @@ def frictional(
 def _starts(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium
 ) -> Iterator[Floats]:
-    """Where to start from, the best x first. The state without friction is the last: where all is taken for stuck that
-    has slipped a hundred times what the flanks can follow (near the pitch point of a coarse sweep), tractions of a
-    hundred times the load tear them apart in the first iteration."""
+    """Initial x, the best one first: slip in the known direction, then sticking, then the state without friction.
+
+    Near the pitch point of a coarse sweep points may have slipped a hundred times the elastic displacement. If they are
+    assumed to stick, tractions of a hundred times the load separate the surfaces in the first iteration; the state
+    without friction then still leads to the solution.
+    """
     force = np.zeros((len(system.operator.nodes), system.k))
     force[:, : start.force.shape[1]] = start.force
     headings = [heading, np.zeros_like(heading)] if heading.any() else [heading]
     for known in headings:
-        guess = _Contact(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
+        guess = ContactEquations(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
         x = guess.join(force, start.motion)
         yield snes.solve(guess, x, "first guess of slip", 1, TOLERANCE).x
-    yield _Contact(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
+    yield ContactEquations(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
 
 
-class _Contact:
-    """Residual and tangent of the contact system."""
+class ContactEquations:
+    """Residual and tangent of the contact system (a `NonlinearProblem`), over x = (f, δ·lever)."""
 
-    def __init__(self, system: CondensedSystem, law: LawOf, slip: Floats | None = None) -> None:
+    def __init__(self, system: CondensedSystem, law: ContactLaw, slip: Floats | None = None) -> None:
         self.system, self.law, self.slip = system, law, slip
         self.n, self.k, self.r = len(system.operator.nodes), system.k, len(system.load)
-        self._last: tuple[Floats, tuple[Floats, Floats, Law]] | None = None
+        self._last: tuple[Floats, tuple[Floats, Floats, LawValues]] | None = None
 
     def split(self, x: Floats) -> tuple[Floats, Floats]:
-        """(f, δ) of x; δ is scaled by the lever so that all residuals are forces."""
+        """f (n, k) [N] and δ (r,) of x; x has δ times the lever, so that all residuals are forces."""
         return x[: self.n * self.k].reshape(self.n, self.k), x[self.n * self.k :] / self.system.lever
 
     def join(self, force: Floats, motion: Floats) -> Floats:
+        """x of f (n, k) and δ (r,)."""
         return np.concatenate([force.ravel(), motion * self.system.lever])
 
     def scale(self, x: Floats) -> float:
+        """Force with which the residual is compared: load or normal contact force, whichever is larger [N]."""
         return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
 
-    def state(self, x: Floats) -> tuple[Floats, Floats, Law]:
-        """Forces, jumps and the law there; kept, as a step asks for the residual and the tangent at the same x."""
+    def state(self, x: Floats) -> tuple[Floats, Floats, LawValues]:
+        """Forces, jumps and the law's values at x; stored, since residual and tangent are needed at the same x."""
         if self._last is None or not np.array_equal(self._last[0], x):
             force, motion = self.split(x)
             jump = self.system.jumps(force, motion)
@@ -190,64 +214,67 @@ class _Contact:
         return self._last[1]
 
     def residual(self, x: Floats) -> Floats:
+        """f − F(J), then Hᵀ f − F over the lever, (n·k + r,) [N]."""
         force, _, law = self.state(x)
         contact = force - self.system.operator.forces(law.traction)
         balance = (self.system.motion.T @ force.ravel() - self.system.load) / self.system.lever
         return np.concatenate([contact.ravel(), balance])
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `newton.Nonlinear.work`. With the bodies under nodal forces f, whatever these are, the energy
-        ½fᵀAf + ∫(contact) − Fᵀδ has the slopes A(f − F(J)) and Hᵀ F(J) − load."""
+        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) − Fᵀδ of bodies under any nodal forces f has the
+        derivatives A(f − F(J)) and Hᵀ F(J) − F."""
         system, (df, dδ) = self.system, self.split(step)
         f, jump, _ = self.state(x)
-        change = jump - self.state(x - step)[1]  # kept: it is the next state where the step is taken whole
-        given = (system.motion @ dδ).reshape(change.shape) - change  # A df
+        change = jump - self.state(x - step)[1]  # stored: the next state if the full step is taken
+        elastic = (system.motion @ dδ).reshape(change.shape) - change  # A df
 
         def along(α: float) -> float:
             contact = system.operator.forces(self.law(system.operator.trial(jump - α * change, self.slip)).traction)
-            moved = system.motion.T @ contact.ravel() - system.load
-            return -float(np.sum(given * (f - α * df - contact)) + dδ @ moved)
+            balance = system.motion.T @ contact.ravel() - system.load
+            return -float(np.sum(elastic * (f - α * df - contact)) + dδ @ balance)
 
         return along
 
     def solve(self, x: Floats, right: Floats) -> Floats:
+        """T(x)⁻¹ right, as accurate as this Newton step needs."""
         accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))
         return self.system.steps.solve(self.tangent(x), right, accuracy)
 
     def tangent(self, x: Floats) -> Tangent:
+        """T(x)."""
         steps = self.system.steps
         return Tangent.of(self.system.operator, self.state(x)[2], steps.A, steps.H)
 
 
 def _accuracy(residual: float, scale: float) -> float:
-    """To which share of the residual a Newton step's equations are solved: well below what the bend of the contact law
-    leaves anyway, and not further below the tolerance than results show."""
-    share = residual / scale if scale > 0.0 else 1.0
-    return max(min(BEND * share, ROUGH), SPARE * TOLERANCE / max(share, TOLERANCE), FINEST)
+    """Fraction of the residual to which a Newton step's equations are solved: well below the residual that the
+    nonlinearity of the contact law leaves anyway, and no further below the tolerance than results show."""
+    relative = residual / scale if scale > 0.0 else 1.0
+    return max(min(QUADRATIC * relative, ROUGHEST), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)
 
 
-def _assumed_contact(system: CondensedSystem, chosen: np.ndarray, slip: Floats | None = None) -> Floats:
-    """x of the linear problem in which the chosen points touch (and may pull)."""
+def _assumed_contact(system: CondensedSystem, touching: np.ndarray, slip: Floats | None = None) -> Floats:
+    """x of the linear problem in which the points `touching` (q,) bool are bonded: they may also pull."""
 
-    def law(trial: Floats) -> Law:
-        return Law(np.where(chosen[:, None], trial, 0.0), chosen[:, None, None] * np.eye(system.k))
+    def law(trial: Floats) -> LawValues:
+        return LawValues(np.where(touching[:, None], trial, 0.0), touching[:, None, None] * np.eye(system.k))
 
-    problem = _Contact(system, law, slip)
+    problem = ContactEquations(system, law, slip)
     zero = np.zeros(problem.n * problem.k + problem.r)
     return -problem.solve(zero, problem.residual(zero))
 
 
-def _converged(problem: _Contact, start: Floats, stage: str) -> Equilibrium:
+def _converged(problem: ContactEquations, start: Floats, stage: str) -> Equilibrium:
     root = snes.solve(problem, start, stage, ITERATIONS, TOLERANCE)
     if not root.converged:
-        left = root.residual / problem.scale(root.x)
+        relative = root.residual / problem.scale(root.x)
         raise NotConverged(
-            f"{stage}: residual {left:.1e} of the load after {root.iterations} iterations; a smaller step may help"
+            f"{stage}: residual {relative:.1e} of the load after {root.iterations} iterations; a smaller step may help"
         )
     return _equilibrium(problem, root)
 
 
-def _equilibrium(problem: _Contact, root: snes.Root) -> Equilibrium:
+def _equilibrium(problem: ContactEquations, root: snes.Root) -> Equilibrium:
     force, motion = problem.split(root.x)
     _, jump, law = problem.state(root.x)
     return Equilibrium(force, law.traction, motion, jump, root.iterations, root.residual)

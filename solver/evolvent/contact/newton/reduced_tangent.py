@@ -1,4 +1,4 @@
-"""The inverse of a tangent T = [I + M A, −M H; Hᵀ, 0] of which only some columns S of M are kept.
+"""Inverse of the tangent T = [I + M A, −M H; Hᵀ, 0] with only some columns S of M.
 
 With z = A_S f − H_S δ the solution of T (f, δ) = (b, c) is f = b − M_S z, and
 
@@ -21,12 +21,19 @@ from scipy.linalg import get_lapack_funcs, lu_solve
 from evolvent.contact.newton.snes import NotConverged
 from evolvent_meshes.arrays import Ints
 
-Reals = NDArray[Any]  # in single or in double precision
+Reals = NDArray[Any]
+"""Of single or double precision."""
 
 
 @dataclass(frozen=True)
-class KeptColumns:
-    """S (s,), M_S (m, s), A_S (s, m) and H (m, r), all in the same precision."""
+class ReducedTangent:
+    """The parts of a tangent that its inverse needs, all of the same precision.
+
+    columns: S (s,).
+    M: M_S (m, s).
+    A: A_S (s, m).
+    H: (m, r).
+    """
 
     columns: Ints
     M: sp.csr_matrix
@@ -34,13 +41,13 @@ class KeptColumns:
     H: Reals
 
     @staticmethod
-    def of(M: sp.csr_matrix, A: Reals, H: Reals, columns: Ints) -> KeptColumns:
-        """From the whole M and A, (m, m), and the columns to keep."""
-        return KeptColumns(columns, M[:, columns], A[columns], H)
+    def of(M: sp.csr_matrix, A: Reals, H: Reals, columns: Ints) -> ReducedTangent:
+        """From M and A, (m, m), H (m, r) and the columns to keep."""
+        return ReducedTangent(columns, M[:, columns], A[columns], H)
 
     def solve(self, right: Reals) -> Reals:
-        """(f, δ) from right, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular to double
-        precision."""
+        """(f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular
+        to double precision."""
         b, load = np.split(right, [len(self.H)])
         if not len(self.columns) + len(load):  # nothing touches and nothing is free
             return b
@@ -50,7 +57,7 @@ class KeptColumns:
 
     @cached_property
     def _balance(self) -> float:
-        """What the rows of moments are divided by, to be as large as the others."""
+        """Divisor of the rows of Hᵀ, so that they are as large as the others."""
         return float(np.abs(self.M.data).max(initial=0.0)) or 1.0
 
     @cached_property
@@ -66,7 +73,7 @@ class KeptColumns:
         getrf, gecon = get_lapack_funcs(("getrf", "gecon"), (B,))
         size = np.abs(B).sum(axis=0).max(initial=0.0)
         lu, pivots, _ = getrf(B, overwrite_a=True)
-        # a rounded factor need not be good: its iterations find out
+        # a factor in single precision need not be good: the iterations it preconditions show that
         if B.dtype == float and s + r and np.isfinite(size) and gecon(lu, size)[0] < np.finfo(float).eps:
             raise NotConverged(
                 "contact: wanted supports, or friction that sticks, against every free rigid motion, found one that "

@@ -1,4 +1,4 @@
-"""Newton's method by PETSc's SNES for problems that bring their own reduced tangent."""
+"""Newton's method by PETSc's SNES for problems that provide their own inverse of the tangent."""
 
 from __future__ import annotations
 
@@ -14,40 +14,49 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 
 NOT_A_NUMBER = (PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN, PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN)
-TURNED = 0.9
-"""A step is cut where the work at its end is against it by more than this share of what was with it at its start."""
-CLOSE = {"xtol": 1e-6, "rtol": 1e-2}
-"""How well the length of a cut step is found: more gains nothing, the next step has another direction."""
+REVERSED = 0.9
+"""A step is shortened if the work along it changes sign by more than this fraction of its initial value."""
+LENGTH_TOLERANCE = {"xtol": 1e-6, "rtol": 1e-2}
+"""Accuracy of the length of a shortened step: more gains nothing, as the next step has another direction."""
 
 
 class NotConverged(ResultError):
-    """No solution was found; the message says at which stage and how far it was."""
+    """No equilibrium was found; the message says at which stage, and the residual that was left."""
 
 
-class Nonlinear(Protocol):
-    """Residual, and the inverse of its tangent."""
+class NonlinearProblem(Protocol):
+    """A residual and the inverse of its tangent."""
 
     def residual(self, x: Floats) -> Floats:
         """Residual (n,) at x (n,)."""
         ...
 
     def solve(self, x: Floats, right: Floats) -> Floats:
-        """T(x)⁻¹ right, with T the derivative of the residual."""
+        """T(x)⁻¹ right (n,), with T the derivative of the residual."""
         ...
 
     def scale(self, x: Floats) -> float:
-        """What the norm of the residual is small against."""
+        """The value that the norm of a converged residual is small against."""
         ...
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """Of the length α: what the forces out of balance at x − α step do on the step [N·mm], which is the slope of
-        the energy along it where there is one. Negative while going on brings equilibrium nearer."""
+        """Function of the step length α: the work of the residual forces at x − α step along the step [N·mm].
+
+        It is the derivative of the energy along the step, if there is an energy; negative while a longer step comes
+        closer to equilibrium.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class Root:
-    """x (n,), the iterations it took and the norm of the residual that is left."""
+    """Result of SNES.
+
+    x: (n,).
+    iterations: number of Newton iterations.
+    residual: norm of the residual at x.
+    converged: whether it is small enough.
+    """
 
     x: Floats
     iterations: int
@@ -55,14 +64,15 @@ class Root:
     converged: bool
 
 
-class _Tangent:
-    """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse, times the length of the step.
+class _SnesTangent:
+    """Matrix and preconditioner in one for petsc4py: `apply` is the exact inverse, times the step length.
 
-    error: what a callback raised. It is kept and raised again outside: an exception that unwinds through PETSc leaves
-    SNES half-way, and the process ends in a segmentation fault.
+    at: x of the tangent.
+    error: exception of a callback, raised again after SNES has returned: one that unwinds through PETSc leaves SNES in
+        an undefined state, and the process ends in a segmentation fault.
     """
 
-    def __init__(self, problem: Nonlinear) -> None:
+    def __init__(self, problem: NonlinearProblem) -> None:
         self.problem = problem
         self.at: Floats = np.zeros(0)
         self.error: Exception | None = None
@@ -76,29 +86,31 @@ class _Tangent:
             result.array[:] = 0.0
 
     def _shortened(self, step: Floats) -> Floats:
-        """The step (n,); where it goes too far, cut to the length at which no work is left along it."""
+        """The step (n,); if it goes too far, shortened to the length at which the work along it vanishes."""
         work = self.problem.work(self.at, step)
         begin, end = work(0.0), work(1.0)
-        if begin >= 0.0 or not end > TURNED * -begin:
+        if begin >= 0.0 or not end > REVERSED * -begin:
             return step
-        return float(brentq(work, 0.0, 1.0, **CLOSE)) * step
+        return float(brentq(work, 0.0, 1.0, **LENGTH_TOLERANCE)) * step
 
 
-def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: float) -> Root:
-    """SNES until |residual| <= tolerance·scale(x), with full steps, and shorter ones where these go too far.
+def solve(problem: NonlinearProblem, start: Floats, stage: str, limit: int, tolerance: float) -> Root:
+    """Newton's method until |residual| <= tolerance·scale(x), with full steps, and shorter ones if these go too far.
 
-    The residual need not fall on the way, as the set of points in contact is still moving, and says little about how
-    good a length is: where one body is 200 times as stiff as the other, γ makes it a thousand times the load in states
-    near the solution, and choosing the length by it cycled at μ = 0.73. The work along the step does say it: without
-    friction it is the slope of a convex energy, of which Newton's step is a direction of descent, so that cutting a
-    step where the slope vanishes leads to the solution from everywhere; with friction it has no potential, but works as
-    well. Most steps are whole. The length is chosen where the step is made, as petsc4py of Debian has no call for a
-    line search of one's own.
+    stage: name of the solve in messages. limit: largest number of iterations.
 
-    Raises NotConverged on NaN or a singular tangent; whether too many iterations are an error is left to the caller
-    (Root.converged).
+    The residual is no measure of a good step length. It need not decrease while the set of points in contact still
+    changes, and if one body is 200 times as stiff as the other, γ makes it a thousand times the load in states near the
+    solution: choosing the length by it cycled at μ = 0.73. The work along the step is such a measure. Without friction
+    it is the derivative of a convex energy, and Newton's step is a direction of descent, so that shortening the step to
+    where the derivative vanishes leads to the solution from everywhere. With friction there is no energy, but it works
+    as well. Most steps are full. The length is chosen inside the preconditioner because Debian's petsc4py has no call
+    for a user's own line search.
+
+    Raises NotConverged on NaN or a singular tangent. Whether too many iterations are an error is left to the caller
+    (`Root.converged`).
     """
-    tangent = _Tangent(problem)
+    tangent = _SnesTangent(problem)
     x = PETSc.Vec().createWithArray(start.copy(), comm=PETSc.COMM_SELF)
     snes = _snes(tangent, x)
 
@@ -134,7 +146,7 @@ def solve(problem: Nonlinear, start: Floats, stage: str, limit: int, tolerance: 
     return result
 
 
-def _snes(tangent: _Tangent, x: PETSc.Vec) -> PETSc.SNES:
+def _snes(tangent: _SnesTangent, x: PETSc.Vec) -> PETSc.SNES:
     snes = PETSc.SNES().create(comm=PETSc.COMM_SELF)
     options = PETSc.Options("evolvent_")  # petsc4py of Debian has no call for the line search
     options["snes_type"] = "newtonls"

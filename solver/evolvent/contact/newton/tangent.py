@@ -4,9 +4,10 @@ With M = ∂F/∂J (sparse), A the compliance and H the free rigid motions, a Ne
 
     T y = b ,   T = [I + M A, −M H; Hᵀ, 0]
 
-Only the columns in which M is not zero couple anything. Where a point slides, its traction hardly depends on the
-tangential jump: ∂τ/∂q is μλ/|q| (I − t⊗t), 1e-3 where slip is large beside the elastic displacement. Leaving such
-columns out makes the system a third as large, 27 times cheaper to factor, and the inverse of a nearby tangent.
+Only the columns in which M is not zero couple the unknowns. The traction of a sliding point hardly depends on the
+tangential jump: ∂τ/∂q is μλ/|q| (I − t⊗t), about 1e-3 if the slip is large against the elastic displacement. Without
+these columns the system is a third as large and 27 times cheaper to factor; its inverse is that of an approximate
+tangent.
 """
 
 from __future__ import annotations
@@ -16,18 +17,24 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent.contact.newton.reduced_tangent import KeptColumns
+from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.nitsche.contact_operator import ContactOperator, Law
+from evolvent.contact.nitsche.contact_operator import ContactOperator, LawValues
 from evolvent_meshes.arrays import Floats, Ints
 
-LOOSE = 0.05  # a point whose traction follows the tangential jump with less than this share of γ_t slides freely
+SLIDING = 0.05  # a point slides if its traction changes with the tangential jump by less than this fraction of γ_t
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """T at one state. M, A: (m, m), H: (m, r). kept: the columns of M that a nearby tangent has; whole: whether these
-    are all."""
+    """T at one state.
+
+    M: ∂F/∂J (m, m) [N/mm].
+    A: compliance (m, m) [mm/N].
+    H: jumps by the free rigid motions (m, r).
+    kept: columns of M that the approximate tangent keeps.
+    whole: whether these are all that are not zero.
+    """
 
     M: sp.csr_matrix
     A: Floats
@@ -36,12 +43,12 @@ class Tangent:
     whole: bool
 
     @staticmethod
-    def of(operator: ContactOperator, law: Law, A: Floats, H: Floats) -> Tangent:
-        """At the state in which `law` holds at the quadrature points. Raises NotConverged where nothing touches."""
+    def of(operator: ContactOperator, law: LawValues, A: Floats, H: Floats) -> Tangent:
+        """At the state with the law's values at the quadrature points. Raises NotConverged where nothing touches."""
         M = operator.tangent(law)
         k = law.traction.shape[1]
         normal, used = np.arange(M.shape[0]) % k == 0, _columns(M)
-        kept = used & (normal | np.repeat(_held_nodes(operator, law), k))
+        kept = used & (normal | np.repeat(_sticking_nodes(operator, law), k))
         if not kept.any() and H.shape[1]:
             raise NotConverged(
                 "contact: wanted one that holds every free rigid motion, found no node in contact; bring the bodies "
@@ -56,23 +63,23 @@ class Tangent:
         return np.concatenate([force - self.M @ jump, self.H.T @ force])
 
     def solve(self, right: Floats) -> Floats:
-        """T⁻¹ right, (m + r,), by a factor of all columns. Raises NotConverged where T is singular."""
-        inverse = KeptColumns.of(self.M, self.A, self.H, np.flatnonzero(_columns(self.M)))
+        """T⁻¹ right, (m + r,), with all columns. Raises NotConverged where T is singular."""
+        inverse = ReducedTangent.of(self.M, self.A, self.H, np.flatnonzero(_columns(self.M)))
         first: Floats = inverse.solve(right)
-        second: Floats = inverse.solve(right - self.times(first))  # f = b − M z cancels digits: refined once
+        second: Floats = inverse.solve(right - self.times(first))  # f = b − M z loses digits: one refinement
         return first + second
 
 
 def _columns(M: sp.csr_matrix) -> np.ndarray:
-    """Which columns of M hold anything, (m,) bool."""
+    """Columns of M that are not zero, (m,) bool."""
     used = np.zeros(M.shape[1], dtype=bool)
     used[M.indices[M.data != 0.0]] = True
     return used
 
 
-def _held_nodes(operator: ContactOperator, law: Law) -> np.ndarray:
-    """(n,) bool: nodes with a point near by whose traction follows the tangential jump."""
-    held = np.abs(law.derivative[:, 1:, 1:]).max(axis=(1, 2), initial=0.0) > LOOSE
+def _sticking_nodes(operator: ContactOperator, law: LawValues) -> np.ndarray:
+    """(n,) bool: nodes of facets with a point whose traction changes with the tangential jump."""
+    sticking = np.abs(law.derivative[:, 1:, 1:]).max(axis=(1, 2), initial=0.0) > SLIDING
     near = np.zeros(len(operator.nodes), dtype=bool)
-    near[operator.shape[np.flatnonzero(held)].indices] = True
+    near[operator.shape[np.flatnonzero(sticking)].indices] = True
     return near

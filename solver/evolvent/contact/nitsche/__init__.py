@@ -1,1 +1,1 @@
-"""Nitsche's contact operator: recovered flux, Coulomb's law, contact forces."""
+"""Nitsche's contact operator: recovered flux, Coulomb's law, nodal forces."""

@@ -1,14 +1,14 @@
-"""The contact operator of one pair of surfaces at one position.
+"""The contact operator of two paired surfaces: from jumps at nodes to tractions at points to nodal forces.
 
-The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes, e_1 = u_1 − F the extended
-trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar: integrated over
-segments, so that non-matching meshes pass the patch test). Contact is decided at the quadrature points x_q:
+The jump between the bodies lives in the space of surface 1: J = e_1 − Πu_2 at its nodes. e_1 = u_1 − F is the extended
+trace of body 1 and Π the L2 projection of body 2's trace along the normals of surface 1 (a mortar method: integrated
+over segments, so that non-matching meshes pass the patch test). The contact law holds at the quadrature points x_q:
 
     p(x) = γ(x) [Σ_k N_k(x) n_k·J_k − g(x)] ,   q(x) = γ_t(x) Σ_k N_k(x) (J_k + s_k)_t
     λ = [p]_+ ,  τ = P_B(μλ)(q)                                   (local components, frames at the nodes)
     f_k = ∫ N_k (λ, τ) dΓ
 
-f presses −f on body 1 and Πᵀf on body 2. This is the one-sided Nitsche method (Chouly, Fabre, Hild, Mlika, Pousin,
+The force −f acts on body 1, Πᵀf on body 2. This is the one-sided Nitsche method (Chouly, Fabre, Hild, Mlika, Pousin,
 Renard 2017) with its flux recovered at the nodes (flux_recovery.py).
 """
 
@@ -23,25 +23,34 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
-from evolvent.contact.nitsche.coulomb import Law
+from evolvent.contact.nitsche.coulomb import LawValues
 from evolvent.contact.search.pairing import Pairing
 from evolvent.fem.lagrange import quadrature, tabulate
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.fem.surface import Surface, hats
 from evolvent_meshes.arrays import Floats, Ints
 
-LawOf = Callable[[Floats], Law]
-ROUNDING = 1e-15  # entries of the projection below this share of its largest are rounding
+ContactLaw = Callable[[Floats], LawValues]
+"""From trial tractions (q, k) to the law's values at the points."""
+ROUNDING = 1e-15
+"""Of the projection's largest entry: smaller ones are rounding errors."""
 
 
 @dataclass(frozen=True)
 class ContactOperator:
-    """Jump at n nodes of surface 1 and contact at q points on it; in the common frame.
+    """Jump at n nodes of surface 1 and contact at q points on it, in the common frame.
 
-    nodes: (n,) indices into surface 1. frames: (n, d, d) rows n, t1[, t2]. jump1: (n, n1), jump2: (n, n2) the weights
-    of J = jump1·e_1 − jump2·u_2. mass: (n, n) ∫N_k N_l. shape: (q, n) shape functions at the points;
-    hat: (q, n) piecewise linear ones.
-    points: (q, d) positions. weights: (q,) [mm²; mm in 2D]. gap: (q,) [mm]. stabiliser: (q, 2) γ, γ_t [MPa/mm].
+    nodes: (n,) indices of the nodes in surface 1.
+    frames: (n, d, d) nodal frames, rows normal, t1[, t2].
+    jump1: (n, n1) and
+    jump2: (n, n2) weights of the jump J = jump1·e_1 − jump2·u_2.
+    mass: (n, n) ∫N_k N_l [mm²; mm in 2D].
+    shape: (q, n) shape functions at the points.
+    hat: (q, n) piecewise linear hat functions at the points.
+    points: (q, d) positions [mm].
+    weights: (q,) quadrature weights [mm²; mm in 2D].
+    gap: (q,) gaps without displacement [mm].
+    stabiliser: (q, 2) γ and γ_t [MPa/mm].
     """
 
     nodes: Ints
@@ -62,25 +71,32 @@ class ContactOperator:
         return self.frames.shape[1]
 
     def pressing_along(self, normals: Floats) -> ContactOperator:
-        """With the pressure along other unit normals (n, d), a few degrees from those of surface 1. The distance along
-        them from a surface 2 that they are normal to is g n·n_1; γ stays, which is off by the square of the angle."""
+        """The operator with the pressure along other unit normals (n, d), a few degrees from those of surface 1.
+
+        The distance along them to a surface 2 that they are normal to is g n·n_1. γ is not changed, an error of the
+        order of the square of the angle.
+        """
         shorter = np.einsum("ja,ja->j", normals, self.frames[:, 0])
         return replace(self, frames=tangent_frames(normals), gap=self.gap * (self.shape @ shorter))
 
     def before(self, jump: Floats) -> ContactOperator:
-        """Of surfaces that were searched after displacements with jumps (q, d) at the points: with the gap from before,
-        as a jump counts these displacements too."""
+        """The operator of surfaces that were searched after displacements, with the gaps before these displacements, as
+        the jumps of the solution include them; jump: (q, d) of these displacements at the points [mm]."""
         normals = self.shape @ self.frames[:, 0]
         return replace(self, gap=self.gap + np.einsum("qa,qa->q", normals, jump))
 
     def worn(self, depth: Floats, softness: Floats) -> ContactOperator:
-        """Between surfaces that have lost `depth` (q,) [mm] together, and lose `softness` (q,) [mm/MPa] times the
-        pressure more while it acts: in series with γ, as λ = γ(J − g − h − cλ)."""
+        """The operator of worn surfaces: λ = γ(J − g − h − cλ), with c in series with γ.
+
+        depth: h (q,), depth that both surfaces have lost together [mm].
+        softness: c (q,), depth that they lose per pressure while it acts [mm/MPa].
+        """
         γ, γ_t = self.stabiliser.T
         return replace(self, gap=self.gap + depth, stabiliser=np.column_stack([γ / (1.0 + γ * softness), γ_t]))
 
     def trial(self, jump: Floats, slip: Floats | None = None) -> Floats:
-        """Trial tractions (q, k) from local jumps (n, k), k = 1 (normal only) or d; slip (n, d−1) is added to J_t."""
+        """Trial tractions (q, k) [MPa] from local jumps (n, k) [mm], k = 1 (normal only) or d; slip: (n, d−1), added to
+        the tangential jump."""
         k = jump.shape[1]
         if slip is not None and k > 1:
             jump = jump + np.hstack([np.zeros((len(jump), 1)), slip])
@@ -89,44 +105,42 @@ class ContactOperator:
         return at_points * self.slope(k)
 
     def slope(self, k: int) -> Floats:
-        """∂trial/∂J of each local component at the points, (q, k)."""
+        """Derivative of each trial traction by its jump at the points, (q, k) [MPa/mm]."""
         return np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (k - 1))
 
     def forces(self, traction: Floats) -> Floats:
-        """Nodal forces f (n, k) [N] from tractions at the points (q, k)."""
+        """Nodal forces f (n, k) [N] from tractions at the points (q, k) [MPa]."""
         return np.asarray(self.shape.T @ (self.weights[:, None] * traction))
 
-    def tangent(self, law: Law) -> sp.csr_matrix:
-        """∂f/∂J (n·k, n·k), sparse, in whole blocks of two nodes."""
+    def tangent(self, law: LawValues) -> sp.csr_matrix:
+        """∂f/∂J (n·k, n·k) [N/mm], sparse, in full blocks of node pairs."""
         active = np.flatnonzero(law.derivative.any(axis=(1, 2)))
         slope = self.weights[active, None] * self.slope(law.traction.shape[1])[active]
         return sandwiched(self.shape[active], law.derivative[active] * slope[:, None])
 
     def averaged(self, traction: Floats) -> tuple[Floats, Floats]:
-        """Weights m_j (n,) and tractions (n, k) averaged with the hat functions: Σ m_j t_j is the whole force."""
+        """Weights m_j (n,) and tractions t_j (n, k) averaged with the hat functions: Σ m_j t_j is the total force."""
         m = self.hat.T @ self.weights
         mean = self.hat.T @ (self.weights[:, None] * traction)
         return m, mean / np.where(m > 0.0, m, 1.0)[:, None]
 
     def flux(self, traction: Floats) -> Floats:
-        """F = Γ⁻¹S (n, d) [mm] at the nodes in the common frame at a converged state, where the recovered traction S is
-        −(λn + τ); from tractions at the points (q, d). The true trace is u_1 = e_1 + F.
+        """F = Γ⁻¹S (n, d) [mm] at the nodes in the common frame, from tractions at the points (q, d) [MPa].
 
-        It is projected, not averaged: doing so again in the next step then changes nothing, and no traction is smeared.
+        At a converged state the recovered traction S is −(λn + τ), and the trace of body 1 is u_1 = e_1 + F. F is
+        projected, not averaged: repeating it in the next step changes nothing, and no traction is smoothed.
         """
         local = spla.splu(self.mass.tocsc()).solve(self.forces(traction / self.slope(self.d)))
         return -np.einsum("jia,ji->ja", self.frames, local)
 
     def common(self, traction: Floats) -> Floats:
-        """Tractions (q, d) in the common frame from local ones (q, k)."""
+        """Vectors (q, d) in the common frame from local components (q, k)."""
         axes = [self.shape @ self.frames[:, i] for i in range(traction.shape[1])]
         return np.asarray(sum(traction[:, i : i + 1] * axis for i, axis in enumerate(axes)))
 
     def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
-        """(n·d, n_s·d): displacements of surface `side` (1 or 2), in its body's frame, to local jumps.
-
-        rotation (d, d) turns the body's frame into the common one; the sign of the jump is included.
-        """
+        """(n·d, n_s·d): from displacements of surface `side` (1 or 2), in its body's frame, to local jumps, with the
+        sign of the jump; rotation: (d, d), from the body's frame to the common one."""
         jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2, -1.0)
         return frames_times(self.frames @ rotation * sign, jump)
 
@@ -142,8 +156,8 @@ def frames_times(frames: Floats, weights: sp.csr_matrix) -> sp.csr_matrix:
 def sandwiched(N: sp.csr_matrix, D: Floats) -> sp.csr_matrix:
     """Σ_q N_qi D_q N_qj for N (q, n) and D (q, k, k), as (n·k, n·k) of blocks (i, j).
 
-    Points of one facet follow one another and have the same nodes, so that a facet's sum is a dense product: five times
-    faster than k² sparse ones.
+    The points of a facet are contiguous and have the same nodes, so that a facet's sum is a dense product: five times
+    faster than k² sparse products.
     """
     n, k, width = N.shape[1], D.shape[1], np.diff(N.indptr)
     facets = [_facet_blocks(N[width == w], D[width == w], w) for w in np.unique(width)]
@@ -170,10 +184,12 @@ def _facet_blocks(N: sp.csr_matrix, D: Floats, width: int) -> tuple[Ints, Ints, 
 def contact_operator(
     pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats, facets: Ints | None = None
 ) -> ContactOperator:
-    """The operator from the quadrature points of a search; surfaces in the common frame.
+    """The operator on the quadrature points of a pairing.
 
-    stabiliser: (n1, 2) γ, γ_t and frames: (n1, d, d) at the nodes of surface 1. facets: of surface 1, whose space holds
-    the jump; by default those that have a point.
+    first, second: the surfaces in the common frame.
+    stabiliser: (n1, 2) γ and γ_t at the nodes of surface 1 [MPa/mm].
+    frames: (n1, d, d) at the nodes of surface 1.
+    facets: those of surface 1 in whose space the jump lies; by default those that have a point.
     """
     facets = np.unique(pairing.facet1) if facets is None else facets
     nodes = np.unique(first.facets[facets])
@@ -182,21 +198,21 @@ def contact_operator(
     N1 = tabulate(first.shape, first.order, pairing.xi1)[0]
     N2 = tabulate(second.shape, second.order, pairing.xi2)[0]
     ψ = hats(first.shape, first.order, pairing.xi1)
-    own, other = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
-    shape, hat = _rows(own, N1, len(nodes)), _rows(own, ψ, len(nodes))
+    columns1, columns2 = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
+    shape, hat = _rows(columns1, N1, len(nodes)), _rows(columns1, ψ, len(nodes))
     mass = mass_matrix(first, facets, nodes)
     return ContactOperator(
         nodes,
         frames[nodes],
         sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points))),
-        _projection(pairing, first, second, nodes, mass, shape, _rows(other, N2, len(second.points))),
+        _projection(pairing, first, second, nodes, mass, shape, _rows(columns2, N2, len(second.points))),
         mass,
         shape,
         hat,
         np.einsum("qk,qka->qa", N1, first.points[first.facets[pairing.facet1]]),
         pairing.weight,
         pairing.gap,
-        1.0 / (hat @ (1.0 / stabiliser[nodes])),  # as the flux that is divided by it at the nodes
+        1.0 / (hat @ (1.0 / stabiliser[nodes])),  # 1/γ is interpolated, as in the flux F = S/γ
     )
 
 
@@ -209,8 +225,8 @@ def _projection(
     N1: sp.csr_matrix,
     N2: sp.csr_matrix,
 ) -> sp.csr_matrix:
-    """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is continued from its nearest nodes, so
-    that Π is defined there too and keeps constants."""
+    """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is extended from its nearest nodes, so
+    that Π is defined there too and preserves constants."""
     w = sp.diags(pairing.weight)
     covered = N1.T @ w @ N1
     nearest = cKDTree(second.points).query(first.points[nodes])[1]
@@ -224,7 +240,7 @@ def _projection(
 
 
 def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
-    """∫N_k N_l over some facets, (n, n) for their nodes, which are sorted."""
+    """∫N_k N_l over some facets, (n, n) [mm²; mm in 2D], for the sorted nodes of these facets."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets[facets]], dN)
@@ -236,13 +252,13 @@ def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
 
 
 def _rows(columns: Ints, values: Floats, count: int) -> sp.csr_matrix:
-    """One row a point: values (q, k) in columns (q, k)."""
+    """Sparse matrix (q, count) with values (q, k) in columns (q, k)."""
     q, k = columns.shape
     return sp.csr_matrix((values.ravel(), columns.ravel(), k * np.arange(q + 1)), (q, count))
 
 
 def stacked(operators: list[ContactOperator]) -> ContactOperator:
-    """Several contacts as one list of nodes and points (their jumps stay block-diagonal)."""
+    """Several contacts as one operator with the nodes and points of all; the jumps are block-diagonal."""
     if len(operators) == 1:
         return operators[0]
 

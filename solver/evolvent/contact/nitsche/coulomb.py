@@ -1,7 +1,11 @@
-"""The contact law at one node: positive part, ball projection, and their derivatives.
+"""The contact law at quadrature points: positive part, projection onto the friction disc, and their derivatives.
 
-Everything is in the node's frame (n, t1[, t2]) and vectorised over nodes. Trial values are what the law projects:
-p = γ(J_n − G) for the pressure and q = γ_t(J_t + s) for the traction, with J the weighted jump of the extended trace.
+All components are local (normal, first tangential[, second tangential]). The law projects trial tractions: the
+pressure p = γ(J_n − g) and the tangential traction q = γ_t(J_t + s), with J the jump of the extended trace, g the gap
+and s the slip of earlier steps.
+
+Source: Chouly, Fabre, Hild, Mlika, Pousin, Renard 2017, An overview of recent results on Nitsche's method for contact
+problems; the form with Coulomb friction.
 """
 
 from __future__ import annotations
@@ -14,17 +18,22 @@ from evolvent_meshes.arrays import Floats
 
 
 @dataclass(frozen=True)
-class Law:
-    """Tractions at n nodes: values (n, d) and derivatives by the trial values (n, d, d), zero where out of contact."""
+class LawValues:
+    """Values of a contact law at q points with k local components; zero where there is no contact.
+
+    traction: (q, k) [MPa].
+    derivative: (q, k, k), by the trial tractions.
+    """
 
     traction: Floats
     derivative: Floats
 
 
-def coulomb(trial: Floats, friction: Floats | float) -> Law:
-    """λ = [p]_+ and τ = P_B(μλ)(q) from trial values (n, d) = (p, q); friction μ ≥ 0, a number or (n,).
+def coulomb(trial: Floats, friction: Floats | float) -> LawValues:
+    """Coulomb's law: λ = [p]_+ and τ = q, or its projection onto the disc |τ| <= μλ.
 
-    With d = 1 there is no tangential part. Chouly, Fabre, Hild, Mlika, Pousin, Renard 2017, the frictional form.
+    trial: (p, q) as (n, k), k = 1 (no tangential part) or d [MPa].
+    friction: μ ≥ 0, a number or (n,).
     """
     law = _pressure(trial)
     if trial.shape[1] > 1:
@@ -32,10 +41,11 @@ def coulomb(trial: Floats, friction: Floats | float) -> Law:
     return law
 
 
-def starting_guess(trial: Floats, friction: Floats | float, heading: Floats) -> Law:
-    """A law without kinks in the tangential part, for the first iteration of Newton's method.
+def starting_guess(trial: Floats, friction: Floats | float, heading: Floats) -> LawValues:
+    """A law that is smooth in the tangential part, for the first iteration of Newton's method.
 
-    heading (n, d−1): the direction of slip where it is known (τ = μλ·heading), zero where it is not (stuck, τ = q).
+    trial, friction: as in `coulomb`. heading: (n, k−1) direction of slip where it is known (τ = μλ·heading), zero where
+    it is not (sticking, τ = q).
     """
     law = _pressure(trial)
     touching = trial[:, 0] > 0.0
@@ -48,16 +58,17 @@ def starting_guess(trial: Floats, friction: Floats | float, heading: Floats) -> 
     return law
 
 
-def _pressure(trial: Floats) -> Law:
+def _pressure(trial: Floats) -> LawValues:
+    """λ = [p]_+, without tangential traction."""
     n, d = trial.shape
-    law = Law(np.zeros((n, d)), np.zeros((n, d, d)))
+    law = LawValues(np.zeros((n, d)), np.zeros((n, d, d)))
     law.traction[:, 0] = np.maximum(trial[:, 0], 0.0)
     law.derivative[:, 0, 0] = trial[:, 0] > 0.0
     return law
 
 
-def _project(trial: Floats, μ: Floats, law: Law) -> None:
-    """Adds P_B(μλ)(q) and its derivatives to a law that has the pressure."""
+def _project(trial: Floats, μ: Floats, law: LawValues) -> None:
+    """Adds the tangential traction and its derivatives to values that have the pressure."""
     q, λ = trial[:, 1:], law.traction[:, 0]
     size = np.linalg.norm(q, axis=1)
     sticks = (λ > 0.0) & (size <= μ * λ)

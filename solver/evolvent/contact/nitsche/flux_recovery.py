@@ -1,14 +1,14 @@
-"""The traction that Nitsche's method takes from the body: recovered at the nodes of the contact surface.
+"""Recovery of the boundary traction of Nitsche's method at the nodes of a contact surface, and its stabiliser.
 
-At node j of the surface S_j(u) is the mean of σ(u|_K)n_j over the contact cells K that meet there. It is exact for a
-uniform stress, so consistency and the patch test stay, and it makes of Nitsche's flux one vector a node instead of a
-polynomial a facet: the surface is then seen through three functionals a node, the extended trace e = u − F,
-F_j = Γ_j⁻¹ S_j, Γ = γ n⊗n + γ_t (I − n⊗n). The penalty compliance 1/γ is a few per cent of the contact's own, so an
-error of some per cent in S changes the pressure by a thousandth of it.
+The recovered traction S_j(u) at node j is the mean of σ(u|_K)n_j over the contact cells K that share the node. It is
+exact for a uniform stress, which keeps consistency and the patch test. Nitsche's flux becomes one vector a node instead
+of a polynomial a facet, so that d functionals a node couple body and contact: the extended trace e = u − F with
+F_j = Γ_j⁻¹ S_j, Γ = γ n⊗n + γ_t (I − n⊗n). The compliance 1/γ is a few per cent of that of the contact, so that an
+error of a few per cent in S changes the pressure by about a thousandth.
 
-γ = 2 C_n and γ_t = 2 C_t, with C the constants of the inverse trace inequality, per contact cell K with facet F:
-C_n = max_v ∫_F σ_n(v)² / a_K(v, v), and C_t with σ_t (the two are far apart, and depend on ν and the cell's shape, so
-they are computed, not tabulated).
+γ = 2 C_n and γ_t = 2 C_t, with C the constants of the inverse trace inequality. For a contact cell K with facet F,
+C_n = max_v ∫_F σ_n(v)² / a_K(v, v), and C_t likewise with σ_t. They differ a lot and depend on ν and the shape of the
+cell, and are therefore computed, not tabulated.
 """
 
 from __future__ import annotations
@@ -26,17 +26,19 @@ from evolvent.fem.surface import Surface, adjacent_cells, hats
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-SAFETY = (
-    2.0  # γ over the limit of single cells; averaged between cells it needs up to 1.18, and is insensitive up to 50
-)
+SAFETY = 2.0
+"""γ over the limit C of single cells. With γ averaged between cells up to 1.18 is needed; results hardly change up to
+50."""
 
 
 @dataclass(frozen=True)
 class NitscheTraction:
-    """What Nitsche's method needs of one contact surface of a body with N mesh nodes.
+    """Recovered traction and stabiliser on one contact surface of a body with N mesh nodes.
 
-    frames: (n, d, d) at the surface's n nodes, in the body's frame. traction: (n·d, N·d) σ(u)n recovered at the nodes
-    [MPa/mm]. stabiliser: (n, 2) γ and γ_t at the nodes [MPa/mm].
+    surface: with n nodes.
+    frames: (n, d, d) nodal frames, in the body's frame.
+    traction: S (n·d, N·d), from displacements to σ(u)n recovered at the nodes [MPa/mm].
+    stabiliser: (n, 2) γ and γ_t at the nodes [MPa/mm].
     """
 
     surface: Surface
@@ -45,27 +47,27 @@ class NitscheTraction:
     stabiliser: Floats
 
     def flux(self) -> sp.csr_matrix:
-        """F = Γ⁻¹S, (n·d, N·d)."""
+        """F = Γ⁻¹S, (n·d, N·d), in the body's frame."""
         return (_block_diagonal(np.swapaxes(self.frames, 1, 2)) @ self._local_flux()).tocsr()
 
     def _local_flux(self) -> sp.csr_matrix:
-        """F in the nodes' frames."""
+        """F in the nodal frames."""
         d = self.frames.shape[1]
         scale = np.hstack([self.stabiliser[:, :1]] + [self.stabiliser[:, 1:]] * (d - 1))
         return (_block_diagonal(self.frames / scale[:, :, None]) @ self.traction).tocsr()
 
     def constant_term(self) -> sp.csr_matrix:
-        """∫ (γ F_n² + γ_t |F_t|²), (N·d, N·d): what −θ times goes into the body's stiffness."""
+        """Matrix (N·d, N·d) of ∫ (γ F_n² + γ_t |F_t|²) [N/mm]; −θ times it is added to the body's stiffness."""
         F, d = self._local_flux(), self.frames.shape[1]
         normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.eye(d), format="csr") @ F
                               for γ in self.stabiliser.T)  # fmt: skip
-        own = np.arange(F.shape[0]) % d == 0
-        weighted = sp.diags(own.astype(float)) @ normal + sp.diags((~own).astype(float)) @ tangential
+        is_normal = np.arange(F.shape[0]) % d == 0
+        weighted = sp.diags(is_normal.astype(float)) @ normal + sp.diags((~is_normal).astype(float)) @ tangential
         return (F.T.tocsr() @ weighted).tocsr()
 
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:
-    """Recovered traction and γ, γ_t of a contact surface of the body."""
+    """Recovered traction and stabiliser of a contact surface; safety: γ over the limit of single cells."""
     cells = _ContactCells.of(mesh, surface)
     constants = safety * inverse_trace_constants(cells, material)
     stabiliser = np.zeros((len(surface.points), 2))
@@ -76,11 +78,11 @@ def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safet
 
 
 def _harmonic(surface: Surface, stabiliser: Floats) -> Floats:
-    """(n, 2) the stabilisers with 1/γ linear over each facet, from its corners.
+    """The stabilisers (n, 2) with 1/γ linear over each facet, from those of its corners.
 
-    The flux F = S/γ lives at the nodes. Only if 1/γ between them is what F's shape functions make of it is γF the
-    uniform traction again, and the patch test passed where the size of the cells jumps; and only where it is linear
-    is it sure to be positive.
+    The flux F = S/γ is a nodal field. For a uniform traction S, γF = S between the nodes, and thus the patch test where
+    the size of the cells jumps, needs 1/γ to be interpolated with the shape functions of F; and only linear
+    interpolation keeps it positive.
     """
     linear = tabulate(surface.shape, 1, node_points(surface.shape, surface.order))[0]
     corners = surface.facets[:, np.argmax(linear, axis=0)]
@@ -90,7 +92,7 @@ def _harmonic(surface: Surface, stabiliser: Floats) -> Floats:
 
 
 def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
-    """The displacements of the surface's nodes, (n·d, columns) with columns = N·d."""
+    """Selection (n·d, columns) of the displacements of the surface's nodes; columns = N·d."""
     d = surface.points.shape[1]
     dofs = (d * surface.nodes[:, None] + np.arange(d)).ravel()
     return sp.csr_matrix((np.ones(len(dofs)), (np.arange(len(dofs)), dofs)), (len(dofs), columns))
@@ -98,9 +100,13 @@ def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
 
 @dataclass(frozen=True)
 class _ContactCells:
-    """The cells behind the facets of a surface: facet f belongs to cell f here.
+    """The cells behind the facets of a surface, cell f behind facet f.
 
-    nodes: (f, k) mesh nodes of the cells; coordinates: (f, k, d); slots: (f, kf) places of a facet's nodes there.
+    mesh: of the body.
+    surface: its facets.
+    nodes: (f, k) mesh nodes of the cells.
+    coordinates: (f, k, d) of these nodes [mm].
+    slots: (f, kf) indices of the facet's nodes among those of its cell.
     """
 
     mesh: MeshData
@@ -118,13 +124,14 @@ class _ContactCells:
         return _ContactCells(mesh, surface, nodes, mesh.points[nodes][..., : mesh.dimension], slots)
 
     def gradients(self, xi: Floats) -> tuple[Floats, Floats]:
-        """∇N (f, q, k, d) and det J (f, q) at the reference points xi (q, d)."""
+        """∇N (f, q, k, d) [1/mm] and det J (f, q) at the reference points xi (q, d)."""
         dN = tabulate(self.mesh.shape, self.mesh.order, xi)[1]
         J = np.einsum("fka,qtk->fqat", self.coordinates, dN)
         return np.einsum("qtk,fqta->fqka", dN, np.linalg.inv(J)), np.linalg.det(J)
 
     def facet_tractions(self, material: Material, normals: Floats) -> Floats:
-        """σ(u)n at the facets' nodes as maps of the cells' displacements: (f, kf, d, k, d); normals (f, kf, d)."""
+        """From displacements of the cells to σ(u)n at the nodes of the facets, (f, kf, d, k, d) [MPa/mm]; normals:
+        (f, kf, d)."""
         everywhere = self.gradients(node_points(self.mesh.shape, self.mesh.order))[0]
         at_facet = np.take_along_axis(everywhere, self.slots[:, :, None, None], axis=1)
         f, kf, k, d = at_facet.shape
@@ -133,7 +140,7 @@ class _ContactCells:
 
 
 def _recovered(cells: _ContactCells, material: Material) -> sp.csr_matrix:
-    """S: the mean over the facets at a node of σ(u|_K)n_j, (n·d, N·d)."""
+    """S (n·d, N·d): the mean of σ(u|_K)n_j over the facets at node j [MPa/mm]."""
     surface = cells.surface
     d = surface.normals.shape[1]
     rows = cells.facet_tractions(material, surface.normals[surface.facets])
@@ -146,7 +153,7 @@ def _recovered(cells: _ContactCells, material: Material) -> sp.csr_matrix:
 
 
 def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
-    """C_n and C_t of each contact cell, (f, 2) [MPa/mm]."""
+    """Constants C_n and C_t of the inverse trace inequality of each contact cell, (f, 2) [MPa/mm]."""
     surface = cells.surface
     n = surface.normals[surface.facets]
     K = _element_stiffness(cells, material)
@@ -161,14 +168,14 @@ def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
 
 
 def _largest_ratio(K: Floats, T: Floats, M: Floats) -> Floats:
-    """max_v (Tv)ᵀM(Tv) / vᵀKv for each cell; K is regular off the rigid motions, on which T vanishes."""
+    """max_v (Tv)ᵀM(Tv) / vᵀKv of each cell, (f,), where T vanishes for rigid motions."""
     L = np.linalg.cholesky(M)
     W = np.einsum("fji,fjs->fis", L, T)
     return np.linalg.eigvalsh(np.einsum("fis,fsj->fij", W, np.linalg.solve(K, np.swapaxes(W, 1, 2))))[:, -1]
 
 
 def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
-    """a_K (f, k·d, k·d), with the rigid motions made stiff so that it can be inverted."""
+    """Element stiffness a_K (f, k·d, k·d), with stiffness added for the rigid motions so that it is regular."""
     shape, order = cells.mesh.shape, cells.mesh.order
     xi, w = quadrature(shape, 2 * order)
     G, det = cells.gradients(xi)
@@ -185,7 +192,7 @@ def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
 
 
 def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:
-    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ (n,) at the nodes, 1/γ linear between, 1 by default."""
+    """∫_F γ N_i N_j of each facet, (f, kf, kf); γ: (n,) at the nodes, 1/γ linear between, by default 1."""
     xi, w = quadrature(surface.shape, 2 * surface.order + 2)
     N, dN = tabulate(surface.shape, surface.order, xi)
     tangents = np.einsum("fka,qtk->fqta", surface.points[surface.facets], dN)

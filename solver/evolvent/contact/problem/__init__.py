@@ -1,1 +1,1 @@
-"""What a contact problem states, and its bodies condensed."""
+"""Definition of a contact problem, and its condensed bodies."""

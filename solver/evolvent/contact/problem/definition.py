@@ -1,4 +1,4 @@
-"""What a contact problem states: bodies, the surfaces that may touch, the steps of a sweep."""
+"""The definition of a contact problem: bodies, pairs of surfaces that may touch, steps."""
 
 from __future__ import annotations
 
@@ -15,20 +15,25 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.input_checks import Words, array, is_index, members, number, refuse
 
 Side = tuple[int, str]
-RIGID = 1e-9  # how far a rotation's columns may be from orthonormal
+"""One side of a contact: index of the body in the problem, name of a facet group."""
+ORTHONORMAL = 1e-9  # largest entry of |RᵀR − I| of a rotation
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Two facet groups that may touch: (body index, group name) each.
+    """Two surfaces that may touch: (body index, facet group) each.
 
-    first: carries the pressure, unless its body is more than ten times as stiff as the other (pressure_carrier.py); the
-        coarser surface.
-    second: the other one, also of the same body.
-    friction: Coulomb's μ.
-    reach: the gap [mm] up to which a node can come into contact within a step; by default a tenth of the first
+    first: the surface that carries the pressure, unless its body is more than ten times as stiff as the other one
+        (pressure_carrier.py); take the coarser one.
+    second: the other surface; it may belong to the same body.
+    friction: Coulomb's coefficient of friction μ.
+    reach: the largest gap [mm] at which a point can come into contact within a step; by default a tenth of the first
         surface's extent.
     Raises InputError.
+
+    >>> contact = Contact((0, "arc"), (1, "top"), friction=0.15)
+    >>> contact.second
+    (1, 'top')
     """
 
     first: Side
@@ -53,11 +58,14 @@ class Contact:
 
 @dataclass(frozen=True)
 class Nitsche:
-    """How contact is imposed; the defaults suit nearly all problems.
+    """Settings of Nitsche's method; the defaults suit nearly all problems.
 
-    safety: γ over its coercivity limit, > 0; θ = 1 needs about 1.2.
-    theta: θ in [−1, 1]: 1 symmetric, 0 incomplete, −1 skew variant.
+    safety: stabiliser γ over its coercivity limit, > 0; θ = 1 needs about 1.2.
+    theta: variant θ in [−1, 1]: 1 symmetric, 0 incomplete, −1 skew-symmetric.
     Raises InputError.
+
+    Source: Chouly, Fabre, Hild, Mlika, Pousin, Renard 2017, An overview of recent results on Nitsche's method for
+    contact problems.
     """
 
     safety: float = SAFETY
@@ -70,11 +78,18 @@ class Nitsche:
 
 @dataclass(frozen=True)
 class Problem:
-    """Bodies and the contacts between them.
+    """Bodies and the contacts between them; `solve` and `sweep` find its equilibria.
 
-    bodies: all 2D or all 3D, each in at least one contact: one that is in none feels nothing of the others.
+    bodies: all 2D or all 3D, each in at least one contact; a body in none has nothing to do with the others.
     contacts: every pair of surfaces once.
-    Raises InputError; MeshError for a group that cannot be in contact.
+    nitsche: settings of the method.
+    Raises InputError; MeshError for a facet group that cannot be in contact.
+
+    >>> from evolvent import Body, Fixed, Freedom, Rigid
+    >>> from evolvent_meshes.shapes.blocks import rectangle
+    >>> base = Body(rectangle(2.0, 1.0, 4, 2), supports=(Fixed("bottom"),), name="base")
+    >>> punch = Body(rectangle(1.0, 1.0, 3, 3, origin=(0.5, 1.0)), rigid=Rigid("top", (Freedom("y", load=-100.0),)))
+    >>> problem = Problem((base, punch), (Contact((0, "top"), (1, "bottom")),))
     """
 
     bodies: tuple[Body, ...]
@@ -92,8 +107,7 @@ class Problem:
                 self._check_side(side)
         self._check_all_touched()
         self._check_distinct()
-        found = sorted({body.mesh.dimension for body in self.bodies})
-        if len(found) > 1:
+        if len({body.mesh.dimension for body in self.bodies}) > 1:
             refuse("problem", "all bodies in 2D or all in 3D", Words("both"), "model all of them in the same dimension")
 
     def _check_side(self, side: Side) -> None:
@@ -114,7 +128,7 @@ class Problem:
             )
 
     def _check_distinct(self) -> None:
-        """The same facets in contact with the same twice would press twice."""
+        """Refuses facets that are in contact with the same facets twice: their pressure would count twice."""
         for contact in self.contacts:
             if contact.first[0] == contact.second[0] and self._shared(contact.first, contact.second):
                 refuse("contact", "two surfaces without common facets", (contact.first, contact.second), "part them")
@@ -135,9 +149,9 @@ class Problem:
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a body stands: x = rotation·X + translation.
+    """Rigid placement of a body before it deforms: x = rotation·X + translation.
 
-    rotation: (d, d), orthonormal columns, determinant 1.
+    rotation: (d, d), with orthonormal columns and determinant 1.
     translation: (d,) [mm].
     Raises InputError.
     """
@@ -148,7 +162,7 @@ class Placement:
     def __post_init__(self) -> None:
         R = array("placement, rotation", self.rotation, ((2, 2), (3, 3)), "np.eye(3) turns nothing")
         d = len(R)
-        if not (np.abs(R.T @ R - np.eye(d)).max() <= RIGID and np.linalg.det(R) > 0.0):
+        if not (np.abs(R.T @ R - np.eye(d)).max() <= ORTHONORMAL and np.linalg.det(R) > 0.0):
             remedy = "make it of cosines and sines in full precision; a body cannot be scaled or mirrored"
             refuse("placement, rotation", "a rotation: RᵀR = I, det R = 1", R.tolist(), remedy)
         object.__setattr__(self, "rotation", R)
@@ -157,19 +171,24 @@ class Placement:
 
     @staticmethod
     def at_rest(d: int) -> Placement:
-        """Where a body of dimension d stands by itself."""
+        """The placement that leaves a body of dimension d where its mesh is."""
         return Placement(np.eye(d), np.zeros(d))
 
 
 @dataclass(frozen=True)
 class Step:
-    """One position of a sweep.
+    """One load step of a sweep.
 
-    load: a factor on all loads, prescribed displacements and motions.
-    placements: where the bodies stand, one each (None: at rest).
-    freedoms: (body index, Freedom) pairs that replace, in this step, the body's freedom of the same direction; their
-        values are not multiplied by `load`. So a normal load can come first and a tangential one after it.
+    load: factor on all loads, prescribed displacements and motions.
+    placements: rigid placements of the bodies, one each; None: all as meshed.
+    freedoms: (body index, Freedom) pairs that replace, in this step, the body's freedom of the same direction. Their
+        values are not multiplied by `load`, so that a tangential load can follow a normal one.
     Raises InputError.
+
+    >>> from evolvent import Freedom
+    >>> press, drag = Step(), Step(freedoms=((0, Freedom("x", displacement=0.01)),))
+    >>> drag.load
+    1.0
     """
 
     load: float = 1.0
@@ -194,14 +213,14 @@ class Step:
 
 
 def check_step(problem: Problem, step: Step) -> None:
-    """Raises InputError for a step that is none of this problem."""
+    """Raises InputError for a step that does not fit the problem."""
     if not isinstance(step, Step):
         refuse("step", "a Step", step, "write Step(0.5), or a list of steps for a sweep")
     count, d = len(problem.bodies), problem.bodies[0].mesh.dimension
     if step.placements is not None and len(step.placements) != count:
-        found = Words(f"{len(step.placements)}")
+        given = Words(f"{len(step.placements)}")
         remedy = f"Placement.at_rest({d}) moves nothing"
-        refuse("step, placements", f"one for each of the {count} bodies", found, remedy)
+        refuse("step, placements", f"one for each of the {count} bodies", given, remedy)
     if any(len(placement.translation) != d for placement in step.placements or ()):
         refuse("step, placements", f"rotations ({d}, {d})", step.placements, f"the bodies are {d}D")
     for index, freedom in step.freedoms:

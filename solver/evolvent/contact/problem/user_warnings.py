@@ -9,17 +9,17 @@ from pathlib import Path
 import evolvent
 import evolvent_meshes
 
-OURS = tuple(str(Path(str(package.__file__)).parent) + "/" for package in (evolvent, evolvent_meshes))
+PACKAGE_FOLDERS = tuple(str(Path(str(package.__file__)).parent) + "/" for package in (evolvent, evolvent_meshes))
 
 
 def warn_user(message: str, category: type[Warning]) -> None:
-    """A warning at the line that called into the packages, however deep it is raised.
+    """Warns at the line that called into the packages, however deep below it the warning is raised.
 
-    Python shows a warning of the same words once a line; in a loop over meshes each is meant. Filters that an
-    application sets hold as ever.
+    Python shows a warning with the same text once a line; here each one is shown, as in a loop over meshes each is
+    meant. Filters that an application has set still hold.
     """
     frame = sys._getframe()
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(OURS):
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(PACKAGE_FOLDERS):
         frame = frame.f_back
     name = frame.f_globals.get("__name__", "__main__")
     warnings.warn_explicit(message, category, frame.f_code.co_filename, frame.f_lineno, module=name)

@@ -1,1 +1,1 @@
-"""Where two surfaces face each other."""
+"""Pairing of two surfaces: candidates, segments, points and their partners."""

@@ -1,4 +1,4 @@
-"""Convex clipping and triangulation of many small polygons at once."""
+"""Clipping of many small polygons by convex windows, and their triangulation, all at once."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ import numpy as np
 
 from evolvent_meshes.arrays import Floats, Ints
 
-EMPTY = 1e-14  # reference measure below which a piece holds nothing
-ROUND_OFF = 1e-12  # of areas that are compared, so that round-off does not decide between equals
+EMPTY = 1e-14  # reference measure below which a piece is dropped
+ROUND_OFF = 1e-12  # difference of areas that count as equal
 
 
 def clip(polygons: Floats, count: Ints, windows: Floats) -> tuple[Floats, Ints]:
-    """Cut polygons with convex windows (Sutherland & Hodgman 1974), all at once.
+    """Clips polygons by convex windows (Sutherland & Hodgman 1974).
 
-    polygons: (p, v, c) vertices, of which the first count (p,) are used; columns 0, 1 are the plane's coordinates, the
-        others are carried along linearly. windows: (p, w, 2), counter-clockwise.
-    Returns the cut polygons (p, v', c) and their number of vertices (p,), 0 if nothing is left.
+    polygons: (p, v, c) vertices; columns 0, 1 are coordinates in the plane, the others are interpolated linearly.
+    count: (p,) number of vertices in use.
+    windows: (p, w, 2) counter-clockwise.
+    Returns the clipped polygons (p, v', c) and their numbers of vertices (p,), 0 if nothing is left.
     """
     for side in range(windows.shape[1]):
         start, end = windows[:, side, None], windows[:, (side + 1) % windows.shape[1], None]
@@ -48,11 +49,11 @@ def _cut(polygons: Floats, count: Ints, distance: Floats) -> tuple[Floats, Ints]
 
 
 def fan(polygons: Floats, count: Ints) -> tuple[Ints, Floats]:
-    """Cut polygons (p, v, c) with count (p,) vertices into triangles: their polygon (t,), their corners (t, 3, c).
+    """Triangulates polygons (p, v, c) with count (p,) vertices: index of the polygon (t,) and corners (t, 3, c).
 
-    Every vertex is tried as the apex; taken is the one that overlaps least (not at all if the polygon is convex) and,
-    among these, leaves the fewest triangles; of equals the one furthest down and left. The signed areas always sum to
-    the polygon's.
+    The triangles of a polygon share one vertex, the apex. It is chosen for the least overlap of triangles (none if the
+    polygon is convex), then for the fewest triangles, then for its position, lowest and leftmost first. The signed
+    areas always sum to that of the polygon.
     """
     keep = count >= 3
     owner, polygons, count = np.flatnonzero(keep), polygons[keep], count[keep]
@@ -67,7 +68,7 @@ def fan(polygons: Floats, count: Ints) -> tuple[Ints, Floats]:
     spent = np.where(apex, np.abs(area).sum(axis=2), np.inf)
     least = spent <= spent.min(axis=1, initial=np.inf)[:, None] + ROUND_OFF
     filled = np.where(least, (np.abs(area) > ROUND_OFF).sum(axis=2), len(index))
-    # among equals the place decides, not the order of the corners, which is a matter of round-off
+    # among equals the position decides, since the order of the corners depends on round-off
     place = np.round(polygons[..., 0] + np.pi * polygons[..., 1], 9)
     rank = np.where(filled == filled.min(axis=1, initial=len(index))[:, None], place, np.inf)
     best = np.argmin(rank, axis=1) if len(polygons) else np.empty(0, dtype=np.int64)

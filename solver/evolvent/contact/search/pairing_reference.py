@@ -1,7 +1,8 @@
-"""The search of pairing.py in plain loops: slow, readable, with SciPy's root finder; the tests compare the two.
+"""Reference implementation of pairing.py in plain loops, slow and readable, with SciPy's root finder.
 
-Every facet of surface 1 is tried against every facet of surface 2, one point at a time. Only the definitions are
-shared with pairing.py (what a facet is beyond its edge, chords in place of curved edges); no code but Surface's.
+Tests compare the two. Every facet of surface 1 is tried against every facet of surface 2, one point at a time. They
+share definitions (continuation of facets beyond their edges, chords in place of curved edges), but no code except
+`Surface`.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
 
 EXTENSION = 1.1  # as in projection.py: facets are continued linearly beyond 1.1 times their size
-OPPOSED = -0.2  # as in pairing.py: n1·n2 of facets that can meet
+OPPOSED = -0.2  # as in facet_candidates.py: n1·n2 of facets that can meet
 
 
 def pair_surfaces_slowly(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: float,
                          degree: int = 4) -> Pairing:
-    """As search.pair_surfaces, for a few facets. Raises RuntimeError where a root is not found."""
+    """As `pairing.pair_surfaces`, for a few facets. Raises RuntimeError where a root is not found."""
     rows = []
     for f1 in range(len(surface1.facets)):
         for f2 in range(len(surface2.facets)):
@@ -66,7 +67,7 @@ def _at(surface: Surface, f: int, xi: Floats, limit: float = np.inf) -> tuple[Fl
 
 
 def _pulled_in(surface: Surface, xi: Floats, limit: float) -> Floats:
-    """xi, or the last point before the limit on the way to it from the centre."""
+    """xi, or the point at the limit on the line from the centre to it."""
     cell = reference_cell(surface.shape, surface.order)
     size = 1.0
     for a, b in zip(cell.corners, np.roll(cell.corners, -1, axis=0), strict=True):
@@ -76,10 +77,11 @@ def _pulled_in(surface: Surface, xi: Floats, limit: float) -> Floats:
 
 
 def _root(function: Callable[[Floats], Floats], start: Floats) -> Floats:
-    found = root(function, start, tol=1e-14)
-    if np.abs(function(found.x)).max() > 1e-9:
-        raise RuntimeError(f"wanted the root of a projection, found a residual of {function(found.x)}: {found.message}")
-    return found.x
+    result = root(function, start, tol=1e-14)
+    residual = function(result.x)
+    if np.abs(residual).max() > 1e-9:
+        raise RuntimeError(f"wanted the root of a projection, found a residual of {residual}: {result.message}")
+    return result.x
 
 
 def _project(surface: Surface, f: int, target: Floats) -> Floats:
@@ -95,8 +97,8 @@ def _project(surface: Surface, f: int, target: Floats) -> Floats:
 def _follow(surface: Surface, f: int, x1: Floats, n1: Floats) -> tuple[Floats, float]:
     """xi and gap with x(xi) = x1 + gap n1."""
     centre = reference_cell(surface.shape, surface.order).centre
-    found = _root(lambda y: _at(surface, f, y[:-1])[0] - x1 - y[-1] * n1, np.append(centre, 0.0))
-    return found[:-1], float(found[-1])
+    solution = _root(lambda y: _at(surface, f, y[:-1])[0] - x1 - y[-1] * n1, np.append(centre, 0.0))
+    return solution[:-1], float(solution[-1])
 
 
 def _pair(surface1: Surface, f1: int, surface2: Surface, f2: int, degree: int) -> list[tuple]:
@@ -110,7 +112,7 @@ def _pair(surface1: Surface, f1: int, surface2: Surface, f2: int, degree: int) -
 
 
 def _outline(surface: Surface, other_order: int) -> list[Floats]:
-    """Corners, and middles of the sides if either surface is curved, clockwise."""
+    """Corners, and midpoints of the sides if either surface is curved, clockwise."""
     corners = reference_cell(surface.shape, surface.order).corners[::-1]
     if surface.shape == "interval":
         return list(corners)
@@ -147,6 +149,7 @@ def _cut(polygon: list[Floats], a: Floats, b: Floats) -> list[Floats]:
 
 
 def _rows(surface1: Surface, f1: int, surface2: Surface, f2: int, simplex: Floats, degree: int) -> list[tuple]:
+    """Rows of one simplex (dt+1, dt)."""
     edges = simplex[1:] - simplex[0]
     size = float(np.linalg.det(edges))
     if abs(size) < 1e-15:

@@ -1,4 +1,4 @@
-"""Newton's method on curved facets, for many points at once: the image of a point in a facet, a ray against a facet."""
+"""Newton's method on curved facets, for many points at once: projection of points, and intersection with rays."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from evolvent.fem.reference_facets import cross, reference_cell
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
-EXTENSION = 1.1  # what is projected sees facets continued linearly beyond 1.1 times their size: polynomials soon fold
-RANGE = 2.0  # partners are looked for on the polynomial itself, up to twice the size of the facet
+EXTENSION = 1.1  # of a facet's size: for projection it is continued linearly beyond, as polynomials soon fold
+RANGE = 2.0  # of a facet's size: rays are intersected with its polynomial up to there
 TOLERANCE = 1e-12  # of Newton steps (reference units)
 SMALL_STEP = 1e-7  # a Newton step below this, squared by the next one, is below TOLERANCE
 MAX_ITERATIONS = 100  # far outside a warped facet convergence is linear only
@@ -17,9 +17,11 @@ MAX_ITERATIONS = 100  # far outside a warped facet convergence is linear only
 
 def _continued(surface: Surface, field: Floats, facets: Ints, xi: Floats,
                limit: float) -> tuple[Floats, list[Floats]]:
-    """A field (n, d or 2d) whose first d columns are the points, at xi that may lie far outside the facets.
+    """Values and derivatives of a field (n, d or 2d), whose first d columns are the points, at xi that may lie far
+    outside the facets.
 
-    Beyond `limit` times the facet the points go on linearly and the rest stays, so that a far point has one image.
+    Beyond `limit` times the facet the points are continued linearly and the other columns constantly, so that a far
+    point has one image.
     """
     cell = reference_cell(surface.shape, surface.order)
     far = gauge(cell.corners, xi)
@@ -36,7 +38,7 @@ def _continued(surface: Surface, field: Floats, facets: Ints, xi: Floats,
 
 
 def gauge(corners: Floats, xi: Floats) -> Floats:
-    """How far out xi (..., dt) lies: 0 at the centre of the cell, 1 on its boundary, growing linearly."""
+    """Relative distance of xi (..., dt) from the centre of the cell: linear along rays, 1 on the boundary."""
     centred = xi - corners.mean(axis=0)
     if len(corners) == 3:
         x, y = centred[..., 0], centred[..., 1]
@@ -45,7 +47,7 @@ def gauge(corners: Floats, xi: Floats) -> Floats:
 
 
 def largest(v: Floats) -> Floats:
-    """Largest absolute entry along a short last axis (NumPy's own reduction is slow on these, as in dot)."""
+    """Largest absolute entry along a short last axis, on which NumPy's own reduction is slow."""
     size = np.abs(v[..., 0])
     for i in range(1, v.shape[-1]):
         size = np.maximum(size, np.abs(v[..., i]))
@@ -53,7 +55,7 @@ def largest(v: Floats) -> Floats:
 
 
 def dot(a: Floats, b: Floats) -> Floats:
-    """a·b along a short last axis."""
+    """a·b along a short last axis, on which NumPy's own reduction is slow."""
     total = a[..., 0] * b[..., 0]
     for i in range(1, a.shape[-1]):
         total = total + a[..., i] * b[..., i]
@@ -80,9 +82,10 @@ def _over(v: Floats, divisor: Floats) -> Floats:
 
 
 def project(surface: Surface, facets: Ints, targets: Floats) -> tuple[Floats, Floats, Bools]:
-    """(xi, gap, found) with x(xi) + gap n(xi) = target on the continued facets (t,), for targets (t, p, d).
+    """Projection of targets (t, p, d) along the normals of facets (t,), continued linearly: (xi, gap, converged) with
+    x(xi) + gap n(xi) = target.
 
-    A function of facet and target alone, whatever else is in the batch: neighbours agree on their common points.
+    The result depends on facet and target alone, not on the rest of the batch: neighbours agree on common points.
     """
     cell, d = reference_cell(surface.shape, surface.order), targets.shape[-1]
     xi = np.broadcast_to(cell.centre, (*targets.shape[:2], d - 1)).copy()
@@ -117,9 +120,10 @@ def _tangential(v: Floats, n: Floats) -> Floats:
 
 def locate(surface: Surface, facets: Ints, start: Floats, direction: Floats,
             guess: Floats) -> tuple[Floats, Floats, Bools]:
-    """(xi, gap, found) with x(xi) = start + gap direction on the facets (t,), for rays (t, p, d).
+    """Intersection of rays with facets (t,): (xi, gap, converged) with x(xi) = start + gap direction.
 
-    Found are partners on the facet's polynomial up to RANGE times its size.
+    start, direction: (t, p, d) of the rays. guess: (t, p, d−1) of xi. Intersections lie on the facet's polynomial up to
+    RANGE times its size.
     """
     xi, gap = guess.copy(), np.zeros(guess.shape[:2])
     active = np.ones(gap.shape, dtype=bool)

@@ -1,1 +1,1 @@
-"""Contact problems solved: steps, sweeps, reactions, fields."""
+"""Solution of contact problems: steps, sweeps, reactions, fields for ParaView."""

@@ -1,14 +1,14 @@
-"""ParaView output of own problems: bodies with their displacements and stresses, surfaces with their pressures.
+"""ParaView output of contact problems: bodies with displacements and stresses, contact surfaces with pressures.
 
-    FOLDER/series.pvd           open this one in ParaView, or with pyvista.get_reader; time is the number of the step
-    FOLDER/body_0_0001.vtu      a body's cells where the step places them: displacement_mm at the nodes; stress_MPa
-                                (xx, yy, zz, xy, yz, xz) and von_mises_MPa in the middle of the cells
+    FOLDER/series.pvd           the file to open in ParaView, or with pyvista.get_reader; time is the number of the step
+    FOLDER/body_0_0001.vtu      a body's cells as the step places them: displacement_mm at the nodes; stress_MPa
+                                (xx, yy, zz, xy, yz, xz) and von_mises_MPa at the centres of the cells
     FOLDER/contact_0_0001.vtu   the surface of a contact that carries the pressure: displacement_mm, pressure_MPa,
-                                traction_MPa (what the first body presses on the second with) and slip_mm since the
-                                step before, at the nodes
+                                traction_MPa of the first body on the second and slip_mm since the step before, at the
+                                nodes
 
-Vectors and stresses are in the common frame. Warp By Vector by displacement_mm shows the deformed bodies. What a
-contact has at its quadrature points is averaged about the nodes, which keeps the force; the peaks are in
+Vectors and stresses are in the common frame. Warp By Vector by displacement_mm shows the deformed bodies. Values at
+the quadrature points of a contact are averaged about the nodes, which keeps the force; the peaks are in
 `ContactResult.pressure`.
 """
 
@@ -25,7 +25,7 @@ import numpy as np
 
 from evolvent.contact.problem.definition import Placement
 from evolvent.contact.step.contact_result import ContactResult
-from evolvent.contact.step.step_system import Solution
+from evolvent.contact.step.step_solution import Solution
 from evolvent.fem.lagrange import gmsh_permutation
 from evolvent.fem.stress import cell_stress, von_mises
 from evolvent_meshes.arrays import Floats, Ints
@@ -43,14 +43,17 @@ VTK_CELLS = {
     ("tetrahedron", 1): 10, ("tetrahedron", 2): 24,
     ("hexahedron", 1): 12, ("hexahedron", 2): 29,
 }  # fmt: skip
-"""VTK's numbers of its Lagrange cells."""
+"""(shape, order) -> VTK's number of the Lagrange cell."""
 
 Arrays = dict[str, Floats]
 
 
 def write_paraview(solutions: Solution | Iterable[Solution], folder: Path | str) -> Path:
-    """Writes solutions as a series, also while a sweep is going on; gives the .pvd file, which is up to date after each
-    step. Raises InputError where the folder cannot be made, WriteError where a file cannot be written."""
+    """Writes solutions as a time series and returns the path of its .pvd file.
+
+    solutions: one, several, or the iterator of a sweep; the .pvd file is up to date after each step.
+    Raises InputError where the folder cannot be made, WriteError where a file cannot be written.
+    """
     if isinstance(solutions, str) or not isinstance(solutions, Solution | Iterable):
         refuse("paraview", "a Solution, or several of them", solutions, "write write_paraview(solve(problem), folder)")
     target = _folder(folder)
@@ -90,61 +93,64 @@ Data = tuple[Floats, Ints, tuple[str, int], Arrays, Arrays]
 
 def _data_sets(solution: Solution) -> Iterable[tuple[str, str, Data]]:
     """Name, beginning of the file's name and content of each body and each contact."""
-    for index, prepared in enumerate(solution.prepared):
-        yield prepared.assembled.body.name, f"body_{index}", _body(solution, index)
+    for index, condensed in enumerate(solution.condensed):
+        yield condensed.assembled.body.name, f"body_{index}", _body(solution, index)
     for index, contact in enumerate(solution.contacts):
         yield f"contact {index}", f"contact_{index}", _contact(solution, contact)
 
 
 def _placement(solution: Solution, body: int) -> Placement:
-    d = solution.prepared[body].assembled.d
+    d = solution.condensed[body].assembled.d
     return solution.step.placements[body] if solution.step.placements else Placement.at_rest(d)
 
 
 def _body(solution: Solution, index: int) -> Data:
-    body, where = solution.prepared[index].assembled.body, _placement(solution, index)
+    body, placement = solution.condensed[index].assembled.body, _placement(solution, index)
     mesh, u = body.mesh, solution.displacement(index)
     R = np.eye(3)
-    R[: mesh.dimension, : mesh.dimension] = where.rotation
+    R[: mesh.dimension, : mesh.dimension] = placement.rotation
     stress = R @ cell_stress(mesh, body.material, u) @ R.T
-    x = mesh.points[:, : mesh.dimension] @ where.rotation.T + where.translation
+    x = mesh.points[:, : mesh.dimension] @ placement.rotation.T + placement.translation
     cells = {
         "stress_MPa": np.stack([stress[:, a, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))], axis=1),
         "von_mises_MPa": von_mises(stress),
     }
-    return x, mesh.cells, (mesh.shape, mesh.order), {"displacement_mm": _space(u @ where.rotation.T)}, cells
+    return x, mesh.cells, (mesh.shape, mesh.order), {"displacement_mm": _space(u @ placement.rotation.T)}, cells
 
 
 def _contact(solution: Solution, contact: ContactResult) -> Data:
     index, group = contact.carrier
-    surface, where = solution.prepared[index].surfaces[group], _placement(solution, index)
-    hats = surface.hat_matrix(contact.meeting.pairing.facet1, contact.meeting.pairing.xi1)
+    surface, placement = solution.condensed[index].surfaces[group], _placement(solution, index)
+    hats = surface.hat_matrix(contact.facets, contact.local)
 
     def about_nodes(values: Floats) -> Floats:
         total = hats.T @ (contact.weights[:, None] * values.reshape(len(values), -1))
         return np.asarray(total / surface.weights()[:, None])
 
-    shape = FACET_SHAPE[solution.prepared[index].assembled.body.mesh.shape]
+    shape = FACET_SHAPE[solution.condensed[index].assembled.body.mesh.shape]
     arrays = {
-        "displacement_mm": _space(solution.displacement(index)[surface.nodes] @ where.rotation.T),
+        "displacement_mm": _space(solution.displacement(index)[surface.nodes] @ placement.rotation.T),
         "pressure_MPa": about_nodes(contact.pressure)[:, 0],
         "traction_MPa": _space(about_nodes(contact.traction)),
         "slip_mm": _space(about_nodes(contact.slip)),
     }
     facets = np.empty_like(surface.facets)
     facets[:, gmsh_permutation(shape, surface.order)] = surface.facets
-    placed = surface.points @ where.rotation.T + where.translation
+    placed = surface.points @ placement.rotation.T + placement.translation
     return placed, facets, (shape, surface.order), arrays, {}
 
 
 def _space(vectors: Floats) -> Floats:
-    """Vectors (n, d) in 3D."""
+    """Vectors (n, d) with zeros up to three components, (n, 3)."""
     return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 
 def vtu_bytes(points: Floats, cells: Ints, kind: tuple[str, int], at_nodes: Arrays, in_cells: Arrays) -> bytes:
-    """A VTK file of points (n, d) and cells in gmsh's node order, in double precision; VTK, slow to load, is only
-    loaded for it."""
+    """A .vtu file in double precision; VTK is imported here because it is slow to load.
+
+    points: (n, d) [mm]. cells: (m, k) in gmsh's node order. kind: shape and order. at_nodes: (n, ...) and in_cells:
+    (m, ...) fields by name.
+    """
     import pyvista
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
@@ -161,11 +167,13 @@ def vtu_bytes(points: Floats, cells: Ints, kind: tuple[str, int], at_nodes: Arra
 
 @cache
 def _vtk_order(kind: tuple[str, int], number: int) -> Ints:
-    """perm (k,) such that cells[:, perm] has VTK's node order where cells has gmsh's: the nodes' places tell."""
+    """Permutation (k,) with which cells[:, permutation] is in VTK's node order if cells is in gmsh's; from the
+    positions of the nodes in both reference cells."""
     from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
     cell = vtkGenericCell()
     cell.SetCellType(number)
-    places = np.array(cell.GetParametricCoords()).reshape(cell.GetNumberOfPoints(), 3)
+    positions = np.array(cell.GetParametricCoords()).reshape(cell.GetNumberOfPoints(), 3)
     nodes = _space(node_positions(*kind) / 2.0)
-    return np.array([int(np.argmin(np.linalg.norm(nodes - place, axis=1))) for place in places], dtype=np.int64)
+    nearest = [int(np.argmin(np.linalg.norm(nodes - position, axis=1))) for position in positions]
+    return np.array(nearest, dtype=np.int64)

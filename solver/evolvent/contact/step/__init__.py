@@ -1,1 +1,1 @@
-"""One step of a contact problem: its contact system, its result, and the checks on it."""
+"""One step of a contact problem: its contact system, its solution, and the checks on it."""

@@ -1,38 +1,39 @@
-"""How far the largest pressure of a contact lies from a smooth course: what a count of cells cannot see.
+"""Scatter of the largest pressure of a contact: its distance from a smooth fit of the pressures around it.
 
-A mesh can have cells enough and still show a pressure that jumps from facet to facet: where cells of order 1 meet a
-curved surface as a polygon, where the sag of a coarse cell is not small against an interference, where the cells are
-nearly incompressible, or where the pressure is singular and has no peak.
+A mesh can have enough cells and still give a pressure that jumps from facet to facet: with cells of order 1, which
+replace a curved surface by a polygon; where the sag of a coarse cell is not small against an interference; in nearly
+incompressible bodies; or where the pressure is singular and has no peak.
 
-Through the squares of the pressure at the points of a facet and its neighbours a parabola is laid, by least squares.
-Squares, because the pressure between smooth bodies rises like a square root from the edge of contact, as Hertz', whose
-square is a parabola all over. A wave as short as the cells does not fit a parabola over three of them.
+A parabola is fitted by least squares to the square of the pressure at the points of a facet and its neighbours. The
+square is used because the pressure between smooth bodies rises like a square root from the edge of contact; the square
+of Hertz' pressure is a parabola everywhere. A wave as short as the cells does not fit a parabola over three of them.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.problem.step_pairing import Meeting
 from evolvent.contact.problem.user_warnings import warn_user
+from evolvent.contact.step.paired_surfaces import PairedSurfaces
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 
-LARGE = 0.05  # share of the peak: beyond it peaks were found off by 3 to 75 %, below it, from two cells on, by 3 %
+SCATTER_LIMIT = 0.05
+"""Of the peak: above it peaks were found off by 3 to 75 %, below it, from two cells across on, by at most 3 %."""
 
 
 class ScatteredPressureWarning(UserWarning):
     """The largest pressure of a contact lies far from the pressures around it: it is off by about as much, or more."""
 
 
-def peak_scatter(meeting: Meeting, pressure: Floats) -> float:
-    """Of the pressure (q,) at a meeting's points: the largest distance of its peak from the parabolas around it, over
-    the peak; 0 where nothing presses."""
+def peak_scatter(paired: PairedSurfaces, pressure: Floats) -> float:
+    """Largest distance of the peak of the pressure (q,) from the parabolas fitted around it, over the peak; 0 where
+    nothing presses."""
     pressed = np.flatnonzero(pressure > 0.0)
     if not len(pressed):
         return 0.0
-    surface, facet = meeting.placed[0], meeting.pairing.facet1[pressed]
-    points, weights, p = meeting.operator.points[pressed], meeting.operator.weights[pressed], pressure[pressed]
+    surface, facet = paired.placed[0], paired.pairing.facet1[pressed]
+    points, weights, p = paired.operator.points[pressed], paired.operator.weights[pressed], pressure[pressed]
     peak = int(np.argmax(p))
     distances = []
     for middle in _touching(surface, facet[peak : peak + 1]):
@@ -50,8 +51,8 @@ def _touching(surface: Surface, facets: Ints) -> Ints:
 
 
 def parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
-    """(m,) of a quadratic function along the surface, fitted to values (m,) at points (m, d) with quadrature
-    weights (m,), of which those below 0 count as 0."""
+    """Values (m,) of a quadratic function along the surface that is fitted to values (m,) at points (m, d), with
+    quadrature weights (m,); negative weights count as 0."""
     away = points - points.mean(axis=0)
     along = away @ np.linalg.svd(away, full_matrices=False)[2][: points.shape[1] - 1].T
     along = along / max(float(np.abs(along).max()), 1e-300)
@@ -62,11 +63,11 @@ def parabola(points: Floats, weights: Floats, values: Floats) -> Floats:
 
 
 def warn_if_scattered(name: str, scatter: float) -> None:
-    """ScatteredPressureWarning for a peak that lies further than LARGE from its surroundings; name: which contact."""
-    if scatter > LARGE:
+    """Warns of a peak beyond SCATTER_LIMIT by a ScatteredPressureWarning; name: which contact."""
+    if scatter > SCATTER_LIMIT:
         warn_user(
-            f"{name}: wanted a largest pressure within {LARGE:.0%} of a smooth course of the pressures around it, "
-            f"found it {scatter:.0%} off, and it may be off the true one by more. Refine both surfaces there, with "
+            f"{name}: wanted a largest pressure within {SCATTER_LIMIT:.0%} of a smooth course of the pressures around "
+            f"it, found it {scatter:.0%} off, and it may be off the true one by more. Refine both surfaces there, with "
             "cells of order 2, and see whether it stays; at the edge of a flat face it is infinite, and grows with "
             "each mesh",
             ScatteredPressureWarning,

@@ -1,9 +1,9 @@
-"""The contact system of one step of a sweep, and what it finds."""
+"""The contact system of one step: pairs of points, jumps, compliance and loads of all bodies, and its equilibrium."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,141 +18,112 @@ from evolvent.contact.newton.equilibrium import (
 )
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
-from evolvent.contact.problem.condensed_body import PreparedBody
+from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
-from evolvent.contact.problem.pressure_carrier import carrying
-from evolvent.contact.problem.step_pairing import Meeting, Places, Supports, met, reach_of
+from evolvent.contact.problem.pressure_carrier import pressure_sides
 from evolvent.contact.step.contact_result import ContactResult
+from evolvent.contact.step.paired_surfaces import (
+    PairedSurfaces,
+    SurfacePair,
+    SurfacePositions,
+    SurfaceSupports,
+    pair_contact,
+    reach_of,
+)
+from evolvent.contact.step.step_solution import DeformedSurfaces, Solution
 from evolvent.fem.body import Assembled, RigidMotions
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.input_checks import is_index, refuse
+
+SearchPositions = tuple[SurfacePositions | None, ...] | None
+"""Per contact, where the nodes of its surfaces lie for the search; None: where `StepSystem` puts them by default."""
+FAR = 0.5
+"""Fraction of a facet: pairs are searched after prescribed motions if these are longer."""
 
 
-@dataclass(frozen=True)
-class Solution:
-    """Equilibrium of a problem at one step.
-
-    motions: per body (r,) rigid motions in the order of its freedoms [mm, rad]. iterations: Newton's, of the start and
-    of the friction law, in all searches. imbalance: largest residual force over the largest force. nodal_forces: per
-    body, on what is seen of it. searches: how often pairs were searched: once, or again on the displaced surfaces.
-    """
-
-    contacts: tuple[ContactResult, ...]
-    motions: tuple[Floats, ...]
-    iterations: int
-    imbalance: float
-    nodal_forces: tuple[Floats, ...]
-    prepared: tuple[PreparedBody, ...]
-    step: Step
-    searches: int = 1
-
-    def body(self, index: int) -> PreparedBody:
-        """A body as it was prepared. Raises InputError for one that is not there."""
-        if not (is_index(index) and 0 <= index < len(self.prepared)):
-            refuse("solution", f"a body index below {len(self.prepared)}", index, "bodies are counted from 0")
-        return self.prepared[index]
-
-    def displacement(self, body: int) -> Floats:
-        """Displacement (N, d) of a body's mesh nodes in its frame [mm], rigid motion included. Raises InputError."""
-        return self.body(body).displacement(self.nodal_forces[body], self.step.load, self.motions[body])
-
-
-@dataclass(frozen=True)
-class History:
-    """Deformed positions of the surfaces of each contact at the last step, the one that carries the pressure first."""
-
-    points: tuple[Places, ...]
-
-
-Where = tuple[Places | None, ...] | None
-"""Of each contact, where its surfaces are searched; by default where `Position` says."""
-MOVED = 0.5  # of a facet: prescribed motions beyond this are gone along with before pairs are searched
-
-
-class Position:
+class StepSystem:
     """The condensed contact system of one step.
 
-    where: where the surfaces of each contact are searched; by default as the bodies are placed, moved by what is
-    prescribed if that is far.
-    as_placed: search as the bodies are placed even if the prescribed motions are far.
+    problem, condensed, step: the problem, its bodies condensed, and one of its steps.
+    search_at: where the surfaces are searched for pairs; by default as the bodies are placed, moved by the prescribed
+        motions if these are long.
+    as_placed: search as the bodies are placed even if the prescribed motions are long.
 
-    No solution is stored: one system can be solved any number of times.
-
-    Raises InputError for a step of another problem, SearchError.
+    No solution is stored: one system can be solved any number of times. Raises InputError for a step that does not fit
+    the problem, SearchError.
     """
 
     def __init__(
-        self, problem: Problem, prepared: tuple[PreparedBody, ...], step: Step, where: Where = None,
+        self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step, search_at: SearchPositions = None,
         as_placed: bool = False,
     ) -> None:  # fmt: skip
-        self.problem, self.prepared, self.step = problem, prepared, step
-        self.d = prepared[0].assembled.d
+        self.problem, self.condensed, self.step = problem, condensed, step
+        self.d = condensed[0].assembled.d
         check_step(problem, step)
         self.as_placed = as_placed
-        self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in prepared)
-        self.sides = [carrying(problem.bodies, contact) for contact in problem.contacts]
+        self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in condensed)
+        self.sides = [pressure_sides(problem.bodies, contact) for contact in problem.contacts]
         self.reaches = [reach_of(contact, self._surface(contact.first)) for contact in problem.contacts]
-        self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(prepared)]
-        self.meetings = [self._meeting(i, where[i] if where else None) for i in range(len(problem.contacts))]
-        self.operators = [meeting.operator for meeting in self.meetings]
-        self.maps = [self._map(b) for b in range(len(prepared))]
+        self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(condensed)]
+        self.paired = [self._pair(i, search_at[i] if search_at else None) for i in range(len(problem.contacts))]
+        self.operators = [paired.operator for paired in self.paired]
+        self.maps = [self._map(b) for b in range(len(condensed))]
 
     def _surface(self, side: Side) -> Surface:
-        where = self.placements[side[0]]
-        return self.prepared[side[0]].surfaces[side[1]].moved(where.rotation, where.translation)
+        placement = self.placements[side[0]]
+        return self.condensed[side[0]].surfaces[side[1]].moved(placement.rotation, placement.translation)
 
-    def _meeting(self, index: int, where: Places | None) -> Meeting:
+    def _pair(self, index: int, positions: SurfacePositions | None) -> PairedSurfaces:
         contact, (carrier, other) = self.problem.contacts[index], self.sides[index]
-        traction = self.prepared[carrier[0]].tractions[carrier[1]]
+        traction = self.condensed[carrier[0]].tractions[carrier[1]]
         frames = traction.frames @ self.placements[carrier[0]].rotation.T
         placed = self._surface(carrier), self._surface(other)
-        where = where or self._prescribed((carrier, other), placed)
+        positions = positions or self._after_prescribed_motions((carrier, other), placed)
         supports = self._supports(carrier), self._supports(other)
-        return met(contact, self.reaches[index], placed, traction.stabiliser, frames, supports, where)
+        return pair_contact(contact, self.reaches[index], placed, traction.stabiliser, frames, supports, positions)
 
-    def _supports(self, side: Side) -> Supports:
-        body = self.prepared[side[0]]
-        return Supports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
+    def _supports(self, side: Side) -> SurfaceSupports:
+        body = self.condensed[side[0]]
+        return SurfaceSupports.of(body.assembled.body, body.surfaces[side[1]], self.placements[side[0]].rotation)
 
-    def _prescribed(self, sides: tuple[Side, Side], placed: tuple[Surface, Surface]) -> Places | None:
-        """Where the prescribed motions take the surfaces, if that is further than MOVED."""
-        first, second = (self._held(side) for side in sides)
-        far = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
-        moved = max(far) > MOVED and not self.as_placed
-        return (placed[0].points + first, placed[1].points + second) if moved else None
+    def _after_prescribed_motions(self, sides: tuple[Side, Side], placed: SurfacePair) -> SurfacePositions | None:
+        """Where the prescribed motions alone take the surfaces, if that is further than FAR."""
+        first, second = (self._prescribed_displacement(side) for side in sides)
+        lengths = [np.linalg.norm(u, axis=1).max() / surface.size for u, surface in zip((first, second), placed)]
+        far = max(lengths) > FAR and not self.as_placed
+        return (placed[0].points + first, placed[1].points + second) if far else None
 
-    def _held(self, side: Side) -> Floats:
-        """Displacements (n, d) of a surface by the prescribed motions alone."""
-        body, motions = self.prepared[side[0]], self.motions[side[0]]
+    def _prescribed_displacement(self, side: Side) -> Floats:
+        """Displacements of a surface's nodes by the prescribed motions alone, (n, d) [mm]."""
+        body, motions = self.condensed[side[0]], self.motions[side[0]]
         nodes, held = body.surfaces[side[1]].nodes, np.flatnonzero(~np.isnan(motions.value))
         u: Floats = motions.shapes[nodes][:, :, held] @ motions.value[held]
         return u @ self.placements[side[0]].rotation.T
 
     def _map(self, body: int) -> sp.csr_matrix:
-        """E_b (Σn·d, m_b): functionals of a body to the local jumps of all contacts."""
-        d, prepared = self.d, self.prepared[body]
+        """E_b (Σn·d, m_b): from a body's functionals to the local jumps of all contacts."""
+        d, condensed = self.d, self.condensed[body]
         rows = []
         for sides, op in zip(self.sides, self.operators):
-            block = sp.csr_matrix((len(op.nodes) * d, prepared.functionals.shape[0]))
+            block = sp.csr_matrix((len(op.nodes) * d, condensed.functionals.shape[0]))
             for number, side in zip((1, 2), sides):
                 if side[0] == body:
                     local = op.local_map(number, self.placements[body].rotation)
-                    columns = local.indices + prepared.offsets[side[1]]
+                    columns = local.indices + condensed.offsets[side[1]]
                     block = block + sp.csr_matrix((local.data, columns, local.indptr), block.shape)
             rows.append(block)
         return sp.vstack(rows).tocsr()
 
     @property
     def friction(self) -> Floats:
-        """μ of each point, (Σq,)."""
+        """Coefficient of friction μ at each point, (Σq,)."""
         return np.concatenate(
             [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
         )
 
     def load_jump(self) -> Floats:
-        """Local jumps (Σn·d,) that the external loads alone would make."""
-        return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.prepared))
+        """Local jumps under the external loads alone, (Σn·d,) [mm]."""
+        return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.condensed))
 
     def system(self, operators: Sequence[ContactOperator] | None = None) -> CondensedSystem:
         """Compliance, motions and loads of all bodies in local jumps.
@@ -162,7 +133,7 @@ class Position:
         operator = stacked(self.operators if operators is None else list(operators))
         n = len(operator.nodes) * self.d
         A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
-        for E, body, motions in zip(self.maps, self.prepared, self.motions):
+        for E, body, motions in zip(self.maps, self.condensed, self.motions):
             A += E @ (E @ body.compliance.T).T
             held = np.flatnonzero(~np.isnan(motions.value))
             moved = E @ body.motion_shapes
@@ -174,27 +145,42 @@ class Position:
         return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
 
     def solve(
-        self, before: History | None, operators: Sequence[ContactOperator] | None = None
-    ) -> tuple[Solution, History]:
-        """Equilibrium, with the slip since `before`. operators: see `system`."""
-        system = self.system(operators)
-        μ, slip = self.friction, self.slip(before)
-        found = self._with_friction(system, μ, slip) if μ.any() else frictionless(normal_part(system))
-        return self._solution(system, found, slip), self._history(found)
+        self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None
+    ) -> tuple[Solution, DeformedSurfaces]:
+        """The equilibrium of the step, and the deformed surfaces for the next one.
 
-    def _with_friction(self, system: CondensedSystem, μ: Floats, slip: Floats) -> Equilibrium:
-        """From the frictionless state; where there is none (only friction carries the load) or Newton's method fails
-        from there, from the state in which all contact sticks."""
+        previous: the deformed surfaces from which the slip is measured; None: as placed. operators: see `system`.
+        Raises NotConverged.
+        """
+        system = self.system(operators)
+        μ, slip = self.friction, self.slip(previous)
+        state = self._frictional(system, μ, slip) if μ.any() else frictionless(normal_part(system))
+        return self._solution(system, state, slip), self._deformed_surfaces(state)
+
+    def slip(self, previous: DeformedSurfaces | None) -> Floats:
+        """Tangential change of the jump of positions at the current pairs since the previous step, without the
+        current displacement, (Σn, d−1) [mm]."""
+        result = []
+        for i, (op, surfaces) in enumerate((paired.operator, paired.placed) for paired in self.paired):
+            now = then = op.jump1 @ surfaces[0].points - op.jump2 @ surfaces[1].points
+            if previous is not None:
+                then = op.jump1 @ previous.positions[i][0] - op.jump2 @ previous.positions[i][1]
+            result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
+        return np.concatenate(result)
+
+    def _frictional(self, system: CondensedSystem, μ: Floats, slip: Floats) -> Equilibrium:
+        """Starts from the frictionless equilibrium. If there is none (only friction carries the load), or Newton's
+        method fails from there, starts from the state in which all contact sticks."""
         unknown = np.zeros((len(μ), self.d - 1))
         try:
             start = frictionless(normal_part(system))
-            found = frictional(system, μ, slip, unknown, start)
+            state = frictional(system, μ, slip, unknown, start)
         except NotConverged:
             start = stuck(system, slip)
-            found = self._held_by_friction(system, μ, slip, start)
-        return replace(found, iterations=start.iterations + found.iterations)
+            state = self._from_stuck(system, μ, slip, start)
+        return replace(state, iterations=start.iterations + state.iterations)
 
-    def _held_by_friction(self, system: CondensedSystem, μ: Floats, slip: Floats, start: Equilibrium) -> Equilibrium:
+    def _from_stuck(self, system: CondensedSystem, μ: Floats, slip: Floats, start: Equilibrium) -> Equilibrium:
         try:
             return frictional(system, μ, slip, np.zeros((len(μ), self.d - 1)), start)
         except NotConverged as failure:
@@ -205,89 +191,87 @@ class Position:
                 "more than μ times the force between them; prescribe that motion instead (Freedom with a displacement)"
             ) from failure
 
-    def _forces(self, found: Equilibrium) -> Floats:
-        force = np.zeros((len(found.force), self.d))
-        force[:, : found.force.shape[1]] = found.force
-        return force
+    def _nodal_forces(self, state: Equilibrium) -> Floats:
+        """(Σn, d) [N] in local frames, with zeros where there is no friction."""
+        return _padded(state.force, self.d)
 
-    def _tractions(self, found: Equilibrium) -> list[Floats]:
-        """Local tractions (q, d) at the points of each contact."""
-        traction = np.zeros((len(found.traction), self.d))
-        traction[:, : found.traction.shape[1]] = found.traction
-        return self._split(traction)
+    def _tractions(self, state: Equilibrium) -> list[Floats]:
+        """Local tractions (q, d) [MPa] at the points of each contact."""
+        return self._split(_padded(state.traction, self.d))
 
     def _split(self, values: Floats) -> list[Floats]:
-        """Values (Σq, ...) at the points of each contact."""
+        """Values (Σq, ...) at all points, contact by contact."""
         return np.split(values, np.cumsum([len(op.weights) for op in self.operators])[:-1])
 
-    def _slid(self, system: CondensedSystem, found: Equilibrium, slip: Floats) -> Floats:
-        """(Σq, d−1) slip of the first body over the second in this step: (q − τ)/γ_t of the trial traction q."""
-        jump = system.jumps(self._forces(found), found.motion)[:, 1:] + slip
-        yielding = system.operator.stabiliser[:, 1:]
-        τ = found.traction[:, 1:] if found.traction.shape[1] > 1 else 0.0
-        return np.asarray(system.operator.shape @ jump - τ / yielding)
+    def _point_slip(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> Floats:
+        """Slip at the points in this step, (Σq, d−1) [mm]: (q − τ)/γ_t with the trial traction q."""
+        jump = system.jumps(self._nodal_forces(state), state.motion)[:, 1:] + slip
+        τ = state.traction[:, 1:] if state.traction.shape[1] > 1 else 0.0
+        return np.asarray(system.operator.shape @ jump - τ / system.operator.stabiliser[:, 1:])
 
-    def _body_motions(self, found: Equilibrium) -> list[Floats]:
+    def _body_motions(self, state: Equilibrium) -> list[Floats]:
+        """Per body, amplitudes (r,) of all rigid motions, prescribed ones included."""
         result, at = [], 0
         for motions in self.motions:
             value = motions.value.copy()
-            value[motions.free] = found.motion[at : at + len(motions.free)]
+            value[motions.free] = state.motion[at : at + len(motions.free)]
             at += len(motions.free)
             result.append(value)
         return result
 
-    def _solution(self, system: CondensedSystem, found: Equilibrium, slip: Floats) -> Solution:
-        force = self._forces(found)
-        slid = self._split(self._slid(system, found, slip))
-        on_bodies = tuple(-(E.T @ force.ravel()) for E in self.maps)
+    def _solution(self, system: CondensedSystem, state: Equilibrium, slip: Floats) -> Solution:
+        force = self._nodal_forces(state)
+        point_slip = self._split(self._point_slip(system, state, slip))
         contacts = tuple(
-            ContactResult.of(*own)
-            for own in zip(self.problem.contacts, self.sides, self.meetings, self._tractions(found), slid)
+            ContactResult.of(*each)
+            for each in zip(self.problem.contacts, self.sides, self.paired, self._tractions(state), point_slip)
         )
         largest = max(system.scale, float(np.abs(force).sum()))
-        imbalance = found.residual / largest if largest else 0.0
-        motions = tuple(self._body_motions(found))
-        return Solution(contacts, motions, found.iterations, imbalance, on_bodies, self.prepared, self.step)
+        return Solution(
+            contacts=contacts,
+            motions=tuple(self._body_motions(state)),
+            iterations=state.iterations,
+            imbalance=state.residual / largest if largest else 0.0,
+            nodal_forces=tuple(-(E.T @ force.ravel()) for E in self.maps),
+            condensed=self.condensed,
+            step=self.step,
+        )
 
-    def _history(self, found: Equilibrium) -> History:
-        force = self._forces(found).ravel()
-        motions = self._body_motions(found)
-        seen = [
+    def _deformed_surfaces(self, state: Equilibrium) -> DeformedSurfaces:
+        force = self._nodal_forces(state).ravel()
+        functionals = [
             self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
-            for b, E, δ in zip(self.prepared, self.maps, motions)
+            for b, E, δ in zip(self.condensed, self.maps, self._body_motions(state))
         ]
-        contacts = zip(self.sides, self.meetings, self._tractions(found))
-        return History(tuple(self._deformed(seen, *contact) for contact in contacts))
+        contacts = zip(self.sides, self.paired, self._tractions(state))
+        return DeformedSurfaces(tuple(self._deformed(functionals, *contact) for contact in contacts))
 
-    def _deformed(self, seen: list[Floats], sides: tuple[Side, Side], meeting: Meeting, traction: Floats) -> Places:
-        """Deformed positions of both surfaces of a contact, from what is seen of the bodies."""
+    def _deformed(
+        self, functionals: list[Floats], sides: tuple[Side, Side], paired: PairedSurfaces, traction: Floats
+    ) -> SurfacePositions:
+        """Deformed positions of both surfaces of a contact, from the values P u (m,) of all bodies' functionals."""
         result = []
-        for side, surface in zip(sides, meeting.placed):
-            start = self.prepared[side[0]].offsets[side[1]]
-            u = seen[side[0]][start : start + surface.points.size].reshape(-1, self.d)
+        for side, surface in zip(sides, paired.placed):
+            start = self.condensed[side[0]].offsets[side[1]]
+            u = functionals[side[0]][start : start + surface.points.size].reshape(-1, self.d)
             result.append(surface.points + u @ self.placements[side[0]].rotation.T)
-        result[0][meeting.operator.nodes] += meeting.operator.flux(traction)
+        result[0][paired.operator.nodes] += paired.operator.flux(traction)
         return result[0], result[1]
 
-    def slip(self, before: History | None) -> Floats:
-        """(Σn, d−1): tangential change of [x] at the present pairs of points, but for the present displacement."""
-        result = []
-        for i, (op, pair) in enumerate((meeting.operator, meeting.placed) for meeting in self.meetings):
-            now = then = op.jump1 @ pair[0].points - op.jump2 @ pair[1].points
-            if before is not None:
-                then = op.jump1 @ before.points[i][0] - op.jump2 @ before.points[i][1]
-            result.append(np.einsum("jta,ja->jt", op.frames[:, 1:], now - then))
-        return np.concatenate(result)
+
+def _padded(components: Floats, d: int) -> Floats:
+    """Local components (n, k) as (n, d), with zero tangential ones where k = 1."""
+    return np.pad(components, ((0, 0), (0, d - components.shape[1])))
 
 
 def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
-    """The rigid motions of body `index` with their loads and prescribed values in a step."""
-    own, rigid = assembled.motions, assembled.body.rigid
+    """The rigid motions of body `index` with their loads and prescribed amplitudes in a step."""
+    motions, rigid = assembled.motions, assembled.body.rigid
     names = [f.direction for f in rigid.freedoms] if rigid else []
-    load, value = step.load * own.load, step.load * own.value
+    load, value = step.load * motions.load, step.load * motions.value
     for freedom in (f for i, f in step.freedoms if i == index):
         k = names.index(freedom.direction)
-        carried = step.load * float(own.shapes[:, :, k].ravel() @ assembled.load)
+        carried = step.load * float(motions.shapes[:, :, k].ravel() @ assembled.load)
         load[k] = np.nan if freedom.load is None else freedom.load + carried
         value[k] = np.nan if freedom.displacement is None else freedom.displacement
-    return RigidMotions(own.shapes, load, value)
+    return RigidMotions(motions.shapes, load, value)

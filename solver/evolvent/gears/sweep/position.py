@@ -14,7 +14,7 @@ import numpy as np
 from evolvent.contact.newton.equilibrium import (
     CondensedSystem,
     Equilibrium,
-    Start,
+    InitialGuess,
     frictional,
     frictionless,
     normal_part,
@@ -267,7 +267,7 @@ def solve_position(
 
 def rubbing(
     model: GearModel, contact: GearContact, system: CondensedSystem, friction: float, smooth: Equilibrium,
-    before: Past, span: float, near: Start | None = None,
+    before: Past, span: float, near: InitialGuess | None = None,
 ) -> Equilibrium:  # fmt: skip
     """Equilibrium with friction, from the past; smooth: the one without; near: a guess of it. Raises NotConverged."""
     ξ_before = contact.ξ - model.pair.pinion.base_radius * span
@@ -276,7 +276,7 @@ def rubbing(
     return frictional(system, friction, slip, known_heading(contact, rate), smooth, near)
 
 
-def foretold(friction: float, solved: Sequence[Solved]) -> Start | None:
+def foretold(friction: float, solved: Sequence[Solved]) -> InitialGuess | None:
     """Forces and motions continued in a straight line from the last two coefficients, in which sliding friction is
     nearly linear; None where there is but one, or both are the same."""
     if len(solved) < 2 or solved[-1].friction == solved[-2].friction:
@@ -286,7 +286,7 @@ def foretold(friction: float, solved: Sequence[Solved]) -> Start | None:
     earlier = np.zeros_like(last.state.force)
     earlier[:, : older.state.force.shape[1]] = older.state.force
     force = last.state.force + share * (last.state.force - earlier)
-    return Start(force, last.state.motion + share * (last.state.motion - older.state.motion))
+    return InitialGuess(force, last.state.motion + share * (last.state.motion - older.state.motion))
 
 
 def position_result(

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.contact.hertz import LoadFactors
+from evolvent.contact.yang_estimate import LoadFactors
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.contact_slices import Slices

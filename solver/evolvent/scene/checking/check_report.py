@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from evolvent.contact.hertz import LoadFactors, yang_estimate
+from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width, sector_resolutions
 from evolvent.gears.problem.hertz_estimate import HertzEstimate

@@ -160,7 +160,7 @@ class GearWear:
         other meshes.
         """
         if start.mesh_updates != self.mesh_updates:
-            raise InputError("a block of wear: wanted a pitch solved on the meshes of now, found one on others")
+            raise InputError("wear block: wanted a pitch on the present meshes, found one on others; evaluate it again")
         pairs = zip(start.shared, start.points)
         responses = together(self._comm, lambda: [PositionResponse.of(*each) for each in pairs])
         passage, openings = start.passage, self._openings([r.points for r in responses])
@@ -170,7 +170,10 @@ class GearWear:
         # with friction a point that leaves the contact may have had a lower pressure than without
         positive, negative = np.maximum(gained, 0.0), np.maximum(-gained, 0.0)
         if not float(self.areas @ negative) <= NEGATIVE_VOLUME * float(self.areas @ positive):
-            raise NotConverged(f"a block of {length:.6g} cycles would put {negative.max():.2g} mm of material on")
+            raise NotConverged(
+                f"wear: wanted no negative depth from a block of {length:.6g} cycles, found {gained.min():.2g} mm; "
+                "take a shorter block"
+            )
         work = start.work + sum(self._comm.allgather(float(passage.swept_volumes @ change)))
         self._certify(positive, length * work)
         pressed = dict(zip(self._numbers, block.pressed_at_end(responses, change)))
@@ -235,14 +238,14 @@ class GearWear:
         wavelength = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)
         modulus = contact_modulus(*(body.material for body in self.model.bodies))
         inner = [grid.inner_nodes(self.model.pair, gear) for gear, grid in zip(Member, self.grids)]
-        fastest = sum(float(own[nodes].max(initial=0.0)) for own, nodes in zip(self.by_gear(rate), inner))
+        fastest = sum(float(depth[nodes].max(initial=0.0)) for depth, nodes in zip(self.by_gear(rate), inner))
         return mean * wavelength / (np.pi * modulus * fastest) if fastest > 0.0 else np.inf
 
     def _certify(self, depth: Floats, work: float) -> None:
         """Raises VolumeLost unless depths (n,) are what this work wears off both gears."""
         pairs = zip(Member, self.by_gear(self.areas), self.by_gear(depth), self.law.coefficients, self._passages)
-        for gear, areas, own, K, passages in pairs:
-            certify_volume(gear.label, float(areas @ own), K * passages * work)
+        for gear, areas, nodal, K, passages in pairs:
+            certify_volume(gear.label, float(areas @ nodal), K * passages * work)
 
     def _passage(self, positions: Sequence[ContactPoints]) -> MeshPassage:
         return mesh_passage(self.model.pair, positions, self.grids, self._step)

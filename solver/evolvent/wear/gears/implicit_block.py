@@ -17,7 +17,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, normal_part
 from evolvent.contact.newton.newton_steps import RELATIVE
-from evolvent.contact.newton.pressure_sensitivity import PressureResponse
+from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
@@ -63,8 +63,8 @@ class PositionResponse:
         return self
 
     @cached_property
-    def _at_all_points(self) -> PressureResponse:
-        return PressureResponse(self._normal, self._state, self.at_all_points(self.separating))
+    def _at_all_points(self) -> PressureSensitivity:
+        return PressureSensitivity(self._normal, self._state, self.at_all_points(self.separating))
 
     @cached_property
     def matrix(self) -> Floats:
@@ -89,11 +89,15 @@ class PositionResponse:
         assert self._full is not None
         R, separating = self._full.matrix, self.separating
         if separating.all():
-            raise NotConverged("a block of wear: all points of a position would pull; take a shorter one")
+            raise NotConverged(
+                "wear block: wanted pressures above zero at each position of its end, found none; take a shorter one"
+            )
         try:
             return np.asarray(R[:, separating] @ np.linalg.solve(R[np.ix_(separating, separating)], change))
         except np.linalg.LinAlgError as error:
-            raise NotConverged(f"a block of wear: points cannot leave ({error}); take a shorter one") from error
+            raise NotConverged(
+                f"wear block: wanted the response to points that leave the contact, found {error}; take a shorter one"
+            ) from error
 
     def without(self, pulling: Bools) -> PositionResponse:
         """The response when more of the p points leave the contact. Raises NotConverged."""
@@ -166,7 +170,9 @@ class LinearBlock:
         tolerance = {RELATIVE: GMRES_TOLERANCE}
         depth, failed = gmres(LinearOperator(size, equations), right, x0=start, atol=0.0, **tolerance)
         if failed:
-            raise NotConverged("a block of wear: its equations were not solved; take a shorter one")
+            raise NotConverged(
+                f"wear block: wanted a residual below {GMRES_TOLERANCE:g}, found no convergence; take a shorter one"
+            )
         return depth, separation + pressure_change(depth)
 
 

@@ -122,7 +122,7 @@ def worn_teeth(study: WornRun) -> Figure:
     """The worn flanks on their teeth, at the end."""
     last, gears = study.pairs[-1], wearing(study)
     title = f"Worn teeth after {cycles_label(last.cycles)} cycles"
-    see = f"Little along the pitch line, where the flanks roll. {_most(study)}"
+    see = f"Little wear along the pitch line, where the flanks roll. {_most(study)}"
     figure = sheet(title, see, (6.2 * len(gears) + 1.0, 5.0))
     for ax, gear in zip(figure.subplots(1, len(gears), squeeze=False)[0], gears):
         patch, top = flank_patch(last.run, gear, PATCH), _deepest(last, gear)
@@ -130,7 +130,7 @@ def worn_teeth(study: WornRun) -> Figure:
         depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
         result = last.run.positions[0][0].result
         ax.imshow(flank_picture(last.run, result, patch, 1e3 * depth, top, (960, 720)))
-        ax.set_title(f"{GEARS[gear]}, {gear.mate.label} taken away", fontsize=10)
+        ax.set_title(f"{GEARS[gear]}, {gear.mate.label} removed", fontsize=10)
         ax.axis("off")
         _depth_bar(figure, ax, ScalarMappable(Normalize(0.0, top), PRESSURE_MAP))
     return figure

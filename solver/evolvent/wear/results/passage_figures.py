@@ -41,8 +41,8 @@ def _drawn(figure: Callable[[T], Figure], data: T) -> bytes:
 
 def point_in_contact(point: PointPassage) -> Figure:
     """Contact stress and sliding of a point of the pinion while it is in contact (Fig. 17a)."""
-    see = f"It bears over {np.degrees(point.lasts):.3f}° of pinion rotation, at most {point.pressure.max():.0f} MPa"
-    see += f" (Hertz: {point.hertz.max():.0f} MPa), and slides {1e3 * point.sliding[-1]:.1f} µm."
+    see = f"In contact over {np.degrees(point.lasts):.3f}° of pinion rotation, at most {point.pressure.max():.0f} MPa"
+    see += f" (Hertz: {point.hertz.max():.0f} MPa); it slides {1e3 * point.sliding[-1]:.1f} µm."
     figure = sheet(f"One mesh, seen from the point of the pinion at r = {point.radius:.4g} mm", see)
     left, right = figure.subplots(1, 2)
     angle = np.degrees(point.rotation)

@@ -1,4 +1,4 @@
-"""The condensed contact system: its tangent, what it balances, and the contact conditions at the solution."""
+"""The condensed contact system: tangent, Newton steps, balance of forces, contact conditions at the solution."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from evolvent import (
     Freedom,
     Material,
     NotConverged,
-    Position,
     Problem,
     Rigid,
     Step,
-    prepare,
+    StepSystem,
+    condense_bodies,
     solve,
 )
 from evolvent.contact.newton.equilibrium import (
     TOLERANCE,
-    Start,
+    ContactEquations,
+    InitialGuess,
     _accuracy,
     _assumed_contact,
-    _Contact,
     frictional,
     frictionless,
     normal_part,
@@ -60,13 +60,13 @@ def ball(friction: float = FRICTION) -> Problem:
     return Problem(bodies, (Contact((0, "arc"), (1, "top"), friction, reach=0.1),))
 
 
-def _position(problem: Problem) -> Position:
-    return Position(problem, prepare(problem), Step())
+def _position(problem: Problem) -> StepSystem:
+    return StepSystem(problem, condense_bodies(problem), Step())
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
 @pytest.mark.parametrize("law", ["coulomb", "starting guess"])
-def test_tangent(make, law):
+def test_tangent_is_the_derivative_of_the_residual(make, law):
     """The residual's derivative [I + MA, −MH; Hᵀ, 0] against central differences, 1e-6 relative, near the solution with
     open, stuck and sliding points; and a Newton step is its inverse, as accurate as asked for."""
     position = _position(make())
@@ -76,7 +76,7 @@ def test_tangent(make, law):
         "coulomb": lambda t: coulomb(t, FRICTION),
         "starting guess": lambda t: starting_guess(t, FRICTION, np.zeros((len(t), t.shape[1] - 1))),
     }
-    problem = _Contact(system, laws[law], position.slip(None))
+    problem = ContactEquations(system, laws[law], position.slip(None))
     step, compared = 2e-4, 0
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -95,24 +95,25 @@ def test_tangent(make, law):
     assert compared >= 3
 
 
-def test_accuracy_of_a_step():
-    """What a Newton step's equations leave, accuracy times residual: less than a fifth of what the bend of the law
-    leaves, 200 times the square of the residual, which may be as small as the tolerance's hundredth; no more than a
-    hundredth of the residual, and no accuracy that double precision hardly gives. A system without a load has one."""
-    for share in 10.0 ** np.arange(-9, 1):
-        left = _accuracy(share * 5e3, 5e3) * share
-        assert left <= max(0.2 * 200.0 * share**2, 1e-2 * TOLERANCE, 1e-7 * share) * (1.0 + 1e-9)
-        assert 1e-7 * share * (1.0 - 1e-9) <= left <= 1e-2 * share * (1.0 + 1e-9)
+def test_accuracy_of_a_newton_step_follows_the_residual() -> None:
+    """The linear residual of a Newton step, accuracy times residual, is less than a fifth of the residual that the
+    nonlinearity of the law leaves (200 times the square of the residual), but need not be below a hundredth of the
+    tolerance; it is at most a hundredth of the residual, and at least 1e-7 of it, which double precision reaches. A
+    system without a load has an accuracy, too."""
+    for relative in 10.0 ** np.arange(-9, 1):
+        left = _accuracy(relative * 5e3, 5e3) * relative
+        assert left <= max(0.2 * 200.0 * relative**2, 1e-2 * TOLERANCE, 1e-7 * relative) * (1.0 + 1e-9)
+        assert 1e-7 * relative * (1.0 - 1e-9) <= left <= 1e-2 * relative * (1.0 + 1e-9)
     assert 0.0 < _accuracy(0.0, 5e3) <= 1e-2 and 0.0 < _accuracy(1.0, 0.0) <= 1e-2
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_work_is_the_slope_of_the_energy(make):
+def test_work_along_a_step_is_the_derivative_of_the_energy(make):
     """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
-    relative, far from the solution and with points that open on the way. It falls in no step, as the energy is convex,
-    and Newton's step begins with a negative one."""
+    relative, far from the solution and with points that open along the step. It never decreases along a step, as the
+    energy is convex, and is negative at the start of Newton's step."""
     system = normal_part(_position(make()).system())
-    problem = _Contact(system, lambda t: coulomb(t, 0.0))
+    problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
     solution = frictionless(system)
     op = system.operator
 
@@ -133,7 +134,7 @@ def test_work_is_the_slope_of_the_energy(make):
         assert slopes[0] < 0.0 and np.all(np.diff(slopes) >= 0.0)
 
 
-def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:
+def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
     M = problem.system.operator.tangent(problem.state(x)[2])
     H = problem.system.motion / problem.system.lever
     contact = np.hstack([np.eye(len(H)) + M @ problem.system.compliance, -(M @ H)])
@@ -141,8 +142,8 @@ def _tangent(problem: _Contact, x: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_contact_conditions(make):
-    """At the solution: λ ≥ 0, no weighted overlap beyond what the flux term explains, |τ| ≤ μλ, the load is carried."""
+def test_solution_meets_the_contact_and_friction_conditions(make):
+    """At the solution: λ ≥ 0, no weighted overlap beyond the flux term, |τ| ≤ μλ, contact force equal to the load."""
     problem = make()
     position = _position(problem)
     solution, _ = position.solve(None)
@@ -156,8 +157,8 @@ def test_contact_conditions(make):
     assert solution.imbalance < 1e-10
 
 
-def test_friction_changes_the_answer():
-    """The same cylinder with μ = 0 and 0.2: no shear without friction, and a stiffer contact with it."""
+def test_friction_adds_shear_and_stiffness() -> None:
+    """The same cylinder with μ = 0 and 0.2: no shear without friction, a stiffer contact with it."""
     smooth, rough = (solve(cylinder(μ)) for μ in (0.0, FRICTION))
     shear = [
         np.abs(s.contacts[0].traction - s.contacts[0].pressure[:, None] * s.contacts[0].normals).max()
@@ -170,17 +171,17 @@ def test_friction_changes_the_answer():
 
 @pytest.mark.parametrize("make", [lambda: cylinder(first=0), lambda: cylinder(first=1), ball])
 @pytest.mark.parametrize("friction", [0.0, FRICTION])
-def test_action_is_reaction(make, friction):
-    """Nodal forces on both bodies cancel to 1e-10. Their moments cancel but for what small displacements leave out:
-    the forces act at the undeformed surfaces, which are a gap apart where they touch; at most gap times force."""
+def test_contact_forces_on_both_bodies_are_opposite(make, friction):
+    """Nodal forces on both bodies cancel to 1e-10. Their moments cancel up to gap times force: the forces act at the
+    undeformed surfaces, which are a gap apart where they touch."""
     problem = make()
     problem = Problem(problem.bodies, tuple(Contact(c.first, c.second, friction, c.reach) for c in problem.contacts))
     solution = solve(problem)
     total, moment = [], []
-    for prepared, forces in zip(solution.prepared, solution.nodal_forces, strict=True):
-        d = prepared.assembled.d
-        nodal = (prepared.forces.T @ forces).reshape(-1, d)
-        points = prepared.assembled.body.mesh.points
+    for condensed, forces in zip(solution.condensed, solution.nodal_forces, strict=True):
+        d = condensed.assembled.d
+        nodal = (condensed.test_functionals.T @ forces).reshape(-1, d)
+        points = condensed.assembled.body.mesh.points
         total.append(nodal.sum(axis=0))
         moment.append(np.cross(points, np.pad(nodal, ((0, 0), (0, 3 - d)))).sum(axis=0))
     contact = solution.contacts[0]
@@ -191,8 +192,8 @@ def test_action_is_reaction(make, friction):
     assert np.abs(moment[0] + moment[1]).max() <= np.abs(gap).max() * (contact.weights @ contact.pressure)
 
 
-def test_nothing_within_reach():
-    """A cylinder that is loaded but held away from the block by its reach: an error that says what to do."""
+def test_no_contact_within_reach_is_not_converged() -> None:
+    """No point in contact under a load: an error that says so."""
     position = _position(cylinder(0.0))
     system = normal_part(position.system())
     none = np.zeros(len(system.operator.weights), dtype=bool)
@@ -200,7 +201,7 @@ def test_nothing_within_reach():
         _assumed_contact(system, none)
 
 
-def test_start_does_not_matter():
+def test_solution_does_not_depend_on_the_initial_contact_set() -> None:
     """The frictionless solution from all points in contact and from six in the middle is the same."""
     system = normal_part(_position(cylinder(0.0)).system())
     few = np.zeros(len(system.operator.weights), dtype=bool)
@@ -209,22 +210,22 @@ def test_start_does_not_matter():
     assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
 
 
-def test_bad_guess_is_no_failure():
-    """A guess in which the bodies are a millimetre apart, or overlap by one, is given up: the solution is the one found
-    without a guess."""
+def test_bad_initial_guess_does_not_prevent_the_solution() -> None:
+    """A guess with the bodies a millimetre apart, or in overlap by one, is abandoned: the solution is that without a
+    guess."""
     position = _position(cylinder())
     system, slip = position.system(), position.slip(None)
     unknown, start = np.zeros((len(system.operator.weights), 1)), frictionless(normal_part(system))
     wanted = frictional(system, FRICTION, slip, unknown, start)
     for apart in (-1.0, 1.0):
-        guess = Start(np.zeros_like(wanted.force), wanted.motion + apart)
+        guess = InitialGuess(np.zeros_like(wanted.force), wanted.motion + apart)
         found = frictional(system, FRICTION, slip, unknown, start, guess)
         assert np.abs(found.force - wanted.force).max() < 1e-8 * wanted.force.max()
 
 
-def test_free_sideways_motion_needs_friction():
+def test_free_tangential_motion_needs_friction() -> None:
     """A cylinder that may also move sideways, pushed with less than μP: with friction it sticks; without friction on a
-    flat first surface nothing resists, and the error names that."""
+    flat first surface nothing resists the push, and the error says so."""
     push = (Freedom("x", load=0.3 * FRICTION * 5e3),)
     solution = solve(cylinder(first=1, extra=push))
     assert solution.contacts[0].force[0] == pytest.approx(-0.3 * FRICTION * 5e3, rel=1e-9)

@@ -1,4 +1,4 @@
-"""Newton steps one after the other: as accurate as asked for, with what they keep from one another and without."""
+"""Newton steps: accuracy, and reuse of factors from step to step."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from evolvent import NotConverged
 from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.newton_steps import NewtonSteps
-from evolvent.contact.newton.reduced_tangent import KeptColumns
+from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
 
 N, K = 60, 3
@@ -43,42 +43,42 @@ def dense(tangent: Tangent) -> np.ndarray:
 
 
 def error(tangent: Tangent, found: np.ndarray, right: np.ndarray) -> float:
-    """What is left of T y = b, over |b|."""
+    """Residual of T y = b over |b|."""
     return float(np.linalg.norm(right - dense(tangent) @ found) / np.linalg.norm(right))
 
 
 @pytest.fixture
 def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
-    """In which precision each factor was made, and of how many columns."""
+    """Precision and number of columns of each factor made."""
     made: list[tuple[str, int]] = []
-    original = KeptColumns.of
+    original = ReducedTangent.of
 
     def counted(M, A, H, columns):
         made.append((A.dtype.name, len(columns)))
         return original(M, A, H, columns)
 
-    monkeypatch.setattr(KeptColumns, "of", staticmethod(counted))
+    monkeypatch.setattr(ReducedTangent, "of", staticmethod(counted))
     return made
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-7, 1e-11])
-def test_accuracy(accuracy: float) -> None:
-    """A random right-hand side: T y = b up to the accuracy, beyond that of single precision too."""
+def test_newton_step_is_as_accurate_as_wanted(accuracy: float) -> None:
+    """A random right-hand side: T y = b within the accuracy, also beyond that of single precision."""
     right = RNG(1).normal(size=N * K + 1)
     tangent = sliding(20, 40, 0.2)
     found = NewtonSteps(tangent.A, tangent.H).solve(tangent, right, accuracy)
     assert error(tangent, found, right) <= 1.1 * accuracy
 
 
-def test_no_residual_no_step() -> None:
+def test_zero_residual_gives_a_zero_step() -> None:
     """T y = 0: y = 0 exactly."""
     tangent = sliding(20, 40, 0.2)
     assert not NewtonSteps(tangent.A, tangent.H).solve(tangent, np.zeros(N * K + 1), 1e-7).any()
 
 
-def test_a_factor_serves_more_than_once(factored: list[tuple[str, int]]) -> None:
+def test_factor_is_reused_for_a_similar_tangent(factored: list[tuple[str, int]]) -> None:
     """Three friction coefficients at which the same nodes touch: one factor of their normal columns, and every step is
-    as accurate as asked for. Where others touch too, there is a second one."""
+    as accurate as wanted. When other nodes touch as well, a second factor is made."""
     steps = NewtonSteps(compliance(), motion())
     for friction in (0.1, 0.15, 0.2):
         tangent = sliding(20, 40, friction)
@@ -91,8 +91,8 @@ def test_a_factor_serves_more_than_once(factored: list[tuple[str, int]]) -> None
     assert factored == [("float32", 20), ("float32", 22)]
 
 
-def test_a_factor_that_is_no_help_is_made_anew(factored: list[tuple[str, int]]) -> None:
-    """All nodes touch, then only every third: the first factor leads astray, the second step has its own."""
+def test_factor_of_a_dissimilar_tangent_is_replaced(factored: list[tuple[str, int]]) -> None:
+    """All nodes touch, then only every third: GMRES does not converge with the first factor, a second one is made."""
     steps = NewtonSteps(compliance(), motion())
     whole = sliding(0, N, 0.1)
     right = np.append(whole.M @ RNG(4).normal(size=N * K), 1.0)
@@ -103,7 +103,7 @@ def test_a_factor_that_is_no_help_is_made_anew(factored: list[tuple[str, int]]) 
     assert factored == [("float32", N), ("float32", N // 3)]
 
 
-def test_all_columns_where_iterations_fail(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_columns_are_factored_where_iterations_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     """GMRES that always fails: the step comes from a factor of all columns, exact to rounding."""
     monkeypatch.setattr(newton_steps, "gmres", lambda T, right, **_: (np.zeros_like(right), 1))
     tangent = sliding(20, 40, 0.2)
@@ -111,7 +111,7 @@ def test_all_columns_where_iterations_fail(monkeypatch: pytest.MonkeyPatch) -> N
     assert error(tangent, NewtonSteps(tangent.A, tangent.H).solve(tangent, right, 1e-2), right) < 1e-13
 
 
-def test_all_columns_kept_is_the_inverse() -> None:
+def test_reduced_tangent_with_all_columns_is_the_inverse() -> None:
     """With all columns that hold anything, T times its inverse is the identity to 1e-13; where nothing touches, a free
     motion meets no resistance: said so."""
     tangent = sliding(20, 40, 0.2)

@@ -1,4 +1,4 @@
-"""The tangent stiffness of a mesh: against two torques, and that neither relief nor wear counts as compliance."""
+"""Tangent mesh stiffness: against two torques, with tip relief and with wear."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def model(request: pytest.FixtureRequest) -> GearModel:
 
 
 @pytest.mark.parametrize("share", [0.1, 0.7])
-def test_two_torques(share: float, model: GearModel) -> None:
+def test_tangent_stiffness_is_the_difference_quotient_of_two_torques(share: float, model: GearModel) -> None:
     """Problem: a position under a torque 1e-4 smaller and larger, searched at the same place. Exact: the difference of
     torques over base radius by that of rotations times base radius, as long as no quadrature point opens or closes."""
     angle, load = share * 2.0 * np.pi / model.pair.pinion.z, model.load
@@ -60,7 +60,7 @@ def row_of(*settings: str) -> FrictionRow:
     return friction_rows(run)[0]
 
 
-def test_relief_is_no_compliance() -> None:
+def test_tip_relief_does_not_lower_the_tangent_stiffness() -> None:
     """Problem: He's pair under a tenth of its load as designed, and with relief from below the pitch circles on, so
     that all of the path of contact lacks material. What bears is as stiff as before, 18.0 N/(mm·µm); the secant counts
     what is missing as deflection: 0.55."""
@@ -70,7 +70,7 @@ def test_relief_is_no_compliance() -> None:
     assert relieved.secant_stiffness_N_per_mm_um < 0.1 * relieved.mesh_stiffness_N_per_mm_um
 
 
-def test_worn_flanks_have_a_stiffness(tmp_path: Path) -> None:
+def test_worn_flanks_keep_their_tangent_stiffness(tmp_path: Path) -> None:
     """Problem: a pinion that has lost 5 µm everywhere. Exact: it turns on by as much and bears alike, so that its mesh
     stiffness is that of the unworn one, while no secant can be told."""
     chart = tmp_path / "worn.csv"
@@ -81,7 +81,7 @@ def test_worn_flanks_have_a_stiffness(tmp_path: Path) -> None:
     assert np.isnan(worn.secant_stiffness_N_per_mm_um) and np.isfinite(new.secant_stiffness_N_per_mm_um)
 
 
-def test_the_load_does_not_matter_much(model: GearModel) -> None:
+def test_tangent_stiffness_hardly_depends_on_the_load(model: GearModel) -> None:
     """A Hertz contact hardens with the logarithm of its load: under three times the torque the tangent is larger, but
     by less than half, for teeth bend more than they flatten."""
     place = shared_position(model, 0.02, (0.0, 0.0), [0.0], None)

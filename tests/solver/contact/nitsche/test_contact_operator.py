@@ -14,7 +14,20 @@ import scipy.sparse as sp
 import ufl
 from dolfinx import fem
 
-from evolvent import Body, Contact, Fixed, Freedom, Material, MeshData, Nitsche, Position, Problem, Rigid, Step, prepare
+from evolvent import (
+    Body,
+    Contact,
+    Fixed,
+    Freedom,
+    Material,
+    MeshData,
+    Nitsche,
+    Problem,
+    Rigid,
+    Step,
+    StepSystem,
+    condense_bodies,
+)
 from evolvent.contact.nitsche.contact_operator import sandwiched
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction
@@ -39,24 +52,27 @@ def merged(request):
     return Merged(upper, lower, (STEEL, ALUMINIUM))
 
 
-def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) -> Position:
+def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) -> StepSystem:
     down = "yz"[merged.d - 2]
     bodies = (
         Body(merged.upper, STEEL, rigid=Rigid("top", (Freedom(down, load=-1000.0),))),
         Body(merged.lower, ALUMINIUM, supports=(Fixed("bottom"),)),
     )
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), friction, reach=0.5),), Nitsche(theta=theta))
-    return Position(problem, prepare(problem), Step())
+    return StepSystem(problem, condense_bodies(problem), Step())
 
 
 def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     """Degrees of freedom of the nodes of both contact surfaces among those of both bodies."""
     first, second = surface_of(merged.upper, "bottom").nodes, surface_of(merged.lower, "top").nodes
-    every = (first, len(merged.upper.points) + second)
-    return tuple((merged.d * n[:, None] + np.arange(merged.d)).ravel() for n in every)
+    upper, lower = (
+        (merged.d * nodes[:, None] + np.arange(merged.d)).ravel()
+        for nodes in (first, len(merged.upper.points) + second)
+    )
+    return upper, lower
 
 
-def test_projection(merged):
+def test_projection_agrees_with_ufl(merged):
     """M = ∫N_k N_l and MΠ = ∫N_1 N_2 of the operator over segments; UFL integrates them over inner facets."""
     op, (dofs1, dofs2) = _position(merged).operators[0], _surface_dofs(merged)
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
@@ -85,7 +101,7 @@ def _normal(merged: Merged):
     return ufl.as_vector([0.0] * (merged.d - 1) + [-1.0])
 
 
-def test_recovered_traction(merged):
+def test_recovered_traction_agrees_with_ufl(merged):
     """S of flux_recovery.py against UFL's σ(u)n."""
     found = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom")).traction
     exact = _traction(merged)
@@ -123,7 +139,7 @@ def _constant_term(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
     return (F.T @ merged.matrix(form) @ F).tocsr()
 
 
-def test_constant_term(merged):
+def test_constant_term_agrees_with_ufl(merged):
     """∫ γF_n² + γ_t|F_t|² against UFL's integral of the recovered flux."""
     nitsche = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom"))
     n = merged.d * len(merged.upper.points)
@@ -157,12 +173,12 @@ class _UflContact:
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_residual_and_tangent(merged, θ):
+def test_residual_and_tangent_agree_with_ufl(merged, θ):
     """The full residual and tangent of the solver at random states, with open, stuck and sliding points, against
     a(u,v) − θ∫F(u)·ΓF(v) + ∫(λn + τ)·([v] − θF(v)) with UFL's integrals and UFL's derivative."""
     position = _position(merged, theta=θ)
     system = FullContact(position, lambda t: coulomb(t, FRICTION), None)
-    values = position.prepared[0].tractions["bottom"].stabiliser
+    values = position.condensed[0].tractions["bottom"].stabiliser
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
     energy = ufl.inner(merged.stress(u), ufl.sym(ufl.grad(v))) * ufl.Measure("dx", domain=merged.mesh)
     K = merged.matrix(energy) - θ * _constant_term(merged, values)
@@ -184,7 +200,7 @@ def test_residual_and_tangent(merged, θ):
     assert all(state.any() for state in (λ == 0.0, (λ > 0.0) & slides, (λ > 0.0) & ~slides)), "a state was not met"
 
 
-def test_sandwiched():
+def test_sandwiched_product_agrees_with_dense_matrices() -> None:
     """Σ_q N_qi D_q N_qj for points of three facets, of two and of three nodes, one of them visited twice, against the
     same sum in dense arrays, exact but for rounding; and no points at all: zero."""
     rng = np.random.default_rng(1)
@@ -199,9 +215,9 @@ def test_sandwiched():
         assert sandwiched(N[:0], D[:0]).shape == wanted.shape and sandwiched(N[:0], D[:0]).nnz == 0
 
 
-def _unknowns(position: Position, size: int) -> np.ndarray:
+def _unknowns(position: StepSystem, size: int) -> np.ndarray:
     """(nodal displacements of both bodies) from (free degrees of freedom, the upper body's rigid motion)."""
-    first, second = (b.assembled for b in position.prepared)
+    first, second = (b.assembled for b in position.condensed)
     n = first.stiffness.shape[0]
     T = np.zeros((n + second.stiffness.shape[0], size))
     T[first.free, np.arange(len(first.free))] = 1.0
@@ -212,7 +228,7 @@ def _unknowns(position: Position, size: int) -> np.ndarray:
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["triangle", "quadrilateral", "tetrahedron", "hexahedron"])
-def test_inverse_trace_constants(shape, order):
+def test_inverse_trace_constants_agree_with_eigenvalues_of_ufl_forms(shape, order):
     """C_n and C_t of one sheared cell: the largest eigenvalue of UFL's ∫σ_n(v)² against its a(v, v)."""
     mesh = _one_cell(shape, order)
     surface = surface_of(mesh, "top")

@@ -1,4 +1,4 @@
-"""The contact law at a node: positive part, ball projection and their derivatives."""
+"""The contact law at a point: positive part, projection onto the friction disc, and their derivatives."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _differences(law, trial, step=1e-6):
 
 
 @pytest.mark.parametrize("d", [1, 2, 3])
-def test_derivative_of_coulomb(d):
+def test_derivative_of_coulombs_law(d):
     """∂(λ, τ)/∂(p, q) against central differences, 1e-6 relative."""
     trial = _trials(d)
     exact = _differences(lambda t: coulomb(t, 0.3), trial)
@@ -35,8 +35,8 @@ def test_derivative_of_coulomb(d):
 
 @pytest.mark.parametrize("d", [2, 3])
 @pytest.mark.parametrize("known", [False, True])
-def test_derivative_of_starting_guess(d, known):
-    """The same for the law of the first iteration, stuck and with a known direction of slip."""
+def test_derivative_of_the_starting_guess(d, known):
+    """The same for the law of the first iteration, sticking and with a known direction of slip."""
     trial = _trials(d)
     heading = np.zeros((len(trial), d - 1))
     heading[:, 0] = 1.0 if known else 0.0
@@ -44,16 +44,16 @@ def test_derivative_of_starting_guess(d, known):
     assert np.abs(starting_guess(trial, 0.3, heading).derivative - exact).max() < 1e-6 * np.abs(exact).max()
 
 
-def test_the_three_states():
-    """Open: nothing. Stuck: τ = q. Sliding: |τ| = μλ along q. One node each, by hand."""
+def test_coulombs_law_when_open_sticking_and_sliding() -> None:
+    """Open: no traction. Sticking: τ = q. Sliding: |τ| = μλ along q. One point each, by hand."""
     trial = np.array([[-1.0, 5.0, 5.0], [2.0, 0.3, -0.4], [2.0, 3.0, 4.0]])
     law = coulomb(trial, 0.5)
-    assert np.allclose(law.traction, [[0, 0, 0], [2.0, 0.3, -0.4], [2.0, 0.6, 0.8]], atol=1e-15)
+    assert np.allclose(law.traction, np.array([[0.0, 0.0, 0.0], [2.0, 0.3, -0.4], [2.0, 0.6, 0.8]]), atol=1e-15)
 
 
 @pytest.mark.parametrize("d", [2, 3])
-def test_cone(d):
-    """λ ≥ 0 and |τ| ≤ μλ for any trial value, also with a coefficient for each node."""
+def test_traction_stays_inside_the_friction_cone(d):
+    """λ ≥ 0 and |τ| ≤ μλ for any trial value, also with a coefficient for each point."""
     trial = np.random.default_rng(1).normal(size=(1000, d))
     μ = np.linspace(0.0, 1.0, 1000)
     traction = coulomb(trial, μ).traction
@@ -61,8 +61,8 @@ def test_cone(d):
     assert np.all(np.linalg.norm(traction[:, 1:], axis=1) <= μ * traction[:, 0] * (1.0 + 1e-14))
 
 
-def test_friction_is_not_lost():
-    """With μ > 0 a node far beyond its limit slides with exactly μλ: fails if μ is taken as zero anywhere."""
+def test_sliding_traction_is_friction_times_pressure() -> None:
+    """With μ > 0 a point far beyond its limit slides with exactly μλ; a μ that is taken as zero anywhere fails."""
     law = coulomb(np.array([[10.0, 1e6]]), 0.07)
     assert law.traction[0, 1] == pytest.approx(0.7, rel=1e-14)
     assert coulomb(np.array([[10.0, 1e6]]), 0.0).traction[0, 1] == 0.0

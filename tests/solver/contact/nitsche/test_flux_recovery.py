@@ -1,4 +1,4 @@
-"""The recovered nodal traction, the constants of the inverse trace inequality, and what they make of the stiffness."""
+"""Recovered nodal traction, constants of the inverse trace inequality, and coercivity of the stiffness with them."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _modified(mesh: MeshData, safety: float):
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
 @pytest.mark.parametrize("safety", [1.25, SAFETY])
-def test_coercive(shape, order, safety):
+def test_stiffness_with_gamma_is_coercive(shape, order, safety):
     """θ = 1: K − ∫F·ΓF is positive definite from 1.25 times the inverse trace constants on (averaging the traction
     between cells costs up to 1.18 with second-order quadrilaterals and hexahedra): no eigenvalue is negative or zero,
     and its Cholesky factor solves with it."""
@@ -74,8 +74,8 @@ def test_coercive(shape, order, safety):
     assert np.abs(stiffness @ Factor(stiffness).solve(load) - load).max() < 1e-9
 
 
-def test_not_coercive_far_below_the_limit():
-    """A tenth of the limit is indefinite, and the factorisation says so: the test above can fail."""
+def test_stiffness_far_below_the_limit_is_not_coercive() -> None:
+    """With a tenth of the limit the stiffness is indefinite, and its factorisation raises an error."""
     assert np.linalg.eigvalsh(_modified(_block("quadrilateral", 2), 0.1).toarray())[0] < 0.0
     with pytest.raises(NotPositiveDefinite):
         Factor(_modified(_block("quadrilateral", 2), 0.1))
@@ -83,7 +83,7 @@ def test_not_coercive_far_below_the_limit():
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
 def test_rigid_motion_has_no_flux(shape, order):
-    """A small rotation and a shift carry no stress: F = 0, so δ enters the contact by the trace alone."""
+    """A small rotation and a translation cause no stress: F = 0, and δ enters the contact by the trace alone."""
     mesh = _block(shape, order)
     nitsche = nitsche_traction(mesh, Material(210e3, 0.3), surface_of(mesh, "top"))
     d = mesh.dimension
@@ -93,7 +93,7 @@ def test_rigid_motion_has_no_flux(shape, order):
     assert np.abs(nitsche.flux() @ u).max() < 1e-12 * np.abs(u).max()
 
 
-def test_constant_term_of_a_uniform_stress():
+def test_constant_term_of_a_uniform_stress() -> None:
     """Where F is uniform, ∫ γF_n² + γ_t|F_t|² is its value times the area: uniaxial strain, F_n = σ_yy/γ, F_t = 0."""
     mesh, material = _block("quadrilateral", 2), Material(210e3, 0.3)
     nitsche = nitsche_traction(mesh, material, surface_of(mesh, "top"))

@@ -1,5 +1,4 @@
-"""Bodies of very different stiffness, named in either order: the softer one carries the pressure from a ratio of 10
-on."""
+"""Bodies of very different stiffness, named in either order: beyond a ratio of 10 the softer carries the pressure."""
 
 from __future__ import annotations
 
@@ -7,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent import Body, Contact, Fixed, Freedom, Material, MeshData, Problem, Rigid, Solution, Step, solve, sweep
-from evolvent.contact.problem.pressure_carrier import STIFFER
+from evolvent.contact.problem.pressure_carrier import STIFFNESS_RATIO
 from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, rectangle
 
 RATIOS = (1e-8, 1e-4, 1e-2, 1.0, 1e2, 2e4, 5e4, 1e8)  # from 5e4 on Newton's method stalled with the stiff body first
@@ -16,15 +15,15 @@ SHORTENED = 1e-3  # mm
 
 
 def oedometric(modulus: float) -> float:
-    """Stress over strain [MPa] of a body that cannot get wider."""
+    """Stress over strain [MPa] of a body that cannot expand sideways."""
     return modulus * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
 
 
 def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
     """Two blocks, 2 mm wide and 1 mm high each, one on the other, whose meshes do not match; held to the sides."""
     if d == 2:
-        sides = (Fixed("left", "x"), Fixed("right", "x"))
-        return rectangle(2.0, 1.0, 4, 2), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0)), sides, "y"
+        plane = (Fixed("left", "x"), Fixed("right", "x"))
+        return rectangle(2.0, 1.0, 4, 2), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0)), plane, "y"
     sides = (Fixed("left", "x"), Fixed("right", "x"), Fixed("front", "y"), Fixed("back", "y"))
     sizes = (2.0, 2.0, 1.0)
     return box(sizes, (2, 2, 1), 1), box(sizes, (3, 3, 1), 1, origin=(0.0, 0.0, -1.0)), sides, "z"
@@ -34,7 +33,7 @@ def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("by_load", [False, True])
-def test_ratios_of_stiffness(d, friction, order, by_load):
+def test_column_of_any_stiffness_ratio_is_exact(d, friction, order, by_load):
     """A column of two blocks that cannot get wider, its top lowered by δ, either by prescribing δ or by the force that
     takes: the stress is δ/Σ(h/M), exactly, on any mesh. Force and sinking within 1e-6, for moduli of the upper block
     1e-8 to 1e8 times that of the lower one, in 2D and 3D, with and without friction, each block named first."""
@@ -65,7 +64,7 @@ def roller(stiffer: float, order: int) -> Solution:
     return pushed
 
 
-def test_named_order_keeps_its_meaning():
+def test_signs_follow_the_named_order_whichever_surface_carries() -> None:
     """Whichever surface carries the pressure, force is on the second body, normals point out of the first, slip is of
     the first over the second. A roller 1e6 times as stiff as its block, named first and second: the same fields, with
     opposite signs; pushed to the right, it slides and drags the block along with μλ."""
@@ -80,10 +79,11 @@ def test_named_order_keeps_its_meaning():
     assert np.allclose(np.linalg.norm(shear, axis=1), 0.2 * first.pressure, rtol=1e-6)
 
 
-@pytest.mark.parametrize(("stiffer", "carrier"), [(0.99 * STIFFER, (0, "arc")), (1.01 * STIFFER, (1, "top"))])
-def test_who_carries(stiffer, carrier):
-    """The first surface, and the softer one where the first body is more than STIFFER times as stiff; by either the
-    roller sinks in the same within 1 %."""
-    found = roller(stiffer, 0)
-    assert found.contacts[0].carrier == carrier
-    assert found.motions[0][0] == pytest.approx(roller(stiffer, 1).motions[0][0], rel=0.01)
+@pytest.mark.parametrize(("ratio", "carrier"), [(0.99, (0, "arc")), (1.01, (1, "top"))])
+def test_softer_surface_carries_the_pressure_beyond_the_stiffness_ratio(ratio, carrier):
+    """A roller on a block, `ratio` times STIFFNESS_RATIO as stiff and named first: it carries the pressure below the
+    ratio, the block above. With either the roller sinks in by the same within 1 %."""
+    stiffer = ratio * STIFFNESS_RATIO
+    solution = roller(stiffer, 0)
+    assert solution.contacts[0].carrier == carrier
+    assert solution.motions[0][0] == pytest.approx(roller(stiffer, 1).motions[0][0], rel=0.01)

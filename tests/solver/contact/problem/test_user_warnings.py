@@ -1,4 +1,4 @@
-"""Warnings point to the user's line, through all functions of the packages."""
+"""Warnings point to the line of the user, whatever function of the packages raises them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COARSE = rubber(4.0, 5.0)
     [lambda: solve(COARSE), lambda: Sweep(COARSE).solve(Step()), lambda: [*sweep(COARSE, [Step()])]],
     ids=["solve", "Sweep", "sweep"],
 )
-def test_where(call: Callable[[], object]) -> None:
+def test_warning_points_to_the_line_of_the_user(call: Callable[[], object]) -> None:
     """Raised at three depths, one of them inside a generator: the line is of this file each time."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -28,7 +28,7 @@ def test_where(call: Callable[[], object]) -> None:
     assert {w.filename for w in ours} == {__file__}
 
 
-def test_each_of_a_loop() -> None:
+def test_every_warning_of_a_loop_is_shown() -> None:
     """The same warning of the same line, twice: with Python's own filters, which show a warning of a line once, both
     are seen; an application that ignores them sees none."""
     for action, count in (("default", 2), ("ignore", 0)):

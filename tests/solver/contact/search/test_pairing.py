@@ -1,4 +1,4 @@
-"""The contact search: no area missed or covered twice, exact partners and gaps, on curved and non-matching facets."""
+"""Pairing: no area missed or covered twice, exact partners and gaps, on curved and non-matching facets."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from evolvent import SearchError
-from evolvent.contact.search.clipping import clip, fan
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
-from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, hats
 from tests.support.surface_shapes import cap, curve, facing, lattice, rectangle, shaken
 
+Kind = tuple[str, int]
+"""Shape and order of facets."""
 QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangle", 1), ("triangle", 2)
 FACES = [(QUAD1, QUAD1), (QUAD2, QUAD2), (TRI1, TRI1), (TRI2, TRI2), (QUAD2, TRI1), (TRI2, QUAD2), (QUAD1, TRI2)]
 
@@ -29,12 +29,6 @@ def covered(surface: Surface, p: Pairing) -> np.ndarray:
     return total / reference_cell(surface.shape, surface.order).measure
 
 
-def by_pair(first: Surface, second: Surface, p: Pairing, values: np.ndarray) -> np.ndarray:
-    """Sums over the points of each pair of facets."""
-    n = len(second.facets)
-    return np.bincount(p.facet1 * n + p.facet2, values, minlength=len(first.facets) * n)
-
-
 def assert_consistent(first: Surface, second: Surface, p: Pairing) -> None:
     """x2(ξ2) = x1(ξ1) + gap n1 at every point, with n1 the normalised interpolated normal."""
     n = first.evaluate(first.normals, p.facet1, p.xi1[:, None])[0][:, 0]
@@ -45,12 +39,12 @@ def assert_consistent(first: Surface, second: Surface, p: Pairing) -> None:
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_area_and_moments_of_a_planar_overlap(first, second):
+def test_area_and_moments_of_a_planar_overlap(first: Kind, second: Kind) -> None:
     """Surface 2, the rectangle [0.3, 1.7] × [0.2, 0.9] turned by 0.3 rad, lies wholly over surface 1 at gap 0.01.
 
     ∫1, ∫x, ∫xy, ∫x²y² over the overlap are those of the rectangle, to 1e-12, whatever the meshes.
     """
-    low, high, turn = np.array([0.3, 0.2]), np.array([1.7, 0.9]), 0.3
+    low, high, turn = (0.3, 0.2), (1.7, 0.9), 0.3
     a = lattice(5, 4, *first, rectangle((-0.5, -0.5), (2.2, 1.9)))
     b = facing(lattice(4, 3, *second, rectangle(low, high, turn, 0.01)))
     p = pair_surfaces(a, b, 0.1, 0.1)
@@ -58,7 +52,7 @@ def test_area_and_moments_of_a_planar_overlap(first, second):
     s, w = np.polynomial.legendre.leggauss(4)
     u, v = (low[i] + (high[i] - low[i]) * (s + 1) / 2 for i in (0, 1))
     U, V = np.meshgrid(u, v, indexing="ij")
-    W = np.outer(w, w) / 4 * np.prod(high - low)
+    W = np.outer(w, w) / 4 * (high[0] - low[0]) * (high[1] - low[1])
     X, Y = np.cos(turn) * U - np.sin(turn) * V, np.sin(turn) * U + np.cos(turn) * V
     for f in (lambda x, y: 1 + 0 * x, lambda x, y: x, lambda x, y: x * y, lambda x, y: x * x * y * y):
         assert p.weight @ f(x, y) == pytest.approx((W * f(X, Y)).sum(), abs=1e-12)
@@ -67,7 +61,7 @@ def test_area_and_moments_of_a_planar_overlap(first, second):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_shape_functions_of_the_other_side(first, second):
+def test_shape_functions_of_surface_2_are_integrated_exactly(first: Kind, second: Kind) -> None:
     """Parallel planes, surface 2 wholly covered: ∫N2_k∘π over surface 1 is ∫N2_k over surface 2, for every node k."""
     a = lattice(5, 4, *first, rectangle((-0.5, -0.5), (2.2, 1.9)))
     b = facing(lattice(4, 3, *second, rectangle((0.3, 0.2), (1.7, 0.9), 0.3, 0.01)))
@@ -78,7 +72,7 @@ def test_shape_functions_of_the_other_side(first, second):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_hats_of_a_wholly_covered_surface(first, second):
+def test_hat_functions_of_a_covered_surface_are_integrated_exactly(first: Kind, second: Kind) -> None:
     """Surface 1 wholly covered by a larger, turned surface 2: ∫ψ_j over the segments is m_j, for every node j."""
     a = lattice(4, 3, *first, rectangle((0.3, 0.2), (1.7, 0.9), 0.3))
     b = facing(lattice(5, 4, *second, rectangle((-0.5, -0.5), (2.2, 1.9), 0.0, 0.01)))
@@ -89,7 +83,7 @@ def test_hats_of_a_wholly_covered_surface(first, second):
 
 @pytest.mark.parametrize("order1", [1, 2])
 @pytest.mark.parametrize("order2", [1, 2])
-def test_two_lines(order1, order2):
+def test_overlap_of_two_lines_has_exact_moments(order1: int, order2: int) -> None:
     """2D: y = 0 over [0, 2] below y = 0.02 over [0.7, 3.1]: overlap 1.3, ∫x = 1.755, ∫x² = (8 − 0.343)/3."""
     a = curve(5, order1, lambda u: np.stack([2 * (1 - u), 0 * u], axis=1))
     b = curve(7, order2, lambda u: np.stack([0.7 + 2.4 * u, 0.02 + 0 * u], axis=1))
@@ -102,7 +96,7 @@ def test_two_lines(order1, order2):
     assert_consistent(a, b, p)
 
 
-def test_planar_facets_of_any_form():
+def test_areas_of_distorted_planar_facets_are_exact() -> None:
     """Planes meshed with facets whose inner nodes are displaced at random, so that edges are curved: areas exact.
 
     Regular [0, 2] × [0, 1] under a displaced [0.5, 2.5] × [−0.5, 0.5]: 0.75; displaced [0, 2] × [0, 1] wholly under a
@@ -121,7 +115,7 @@ def test_planar_facets_of_any_form():
 
 
 @pytest.mark.parametrize("kind", [QUAD1, QUAD2, TRI2])
-def test_gap_between_offset_surfaces_is_exact(kind):
+def test_gap_between_offset_surfaces_is_exact(kind: Kind) -> None:
     """Surface 2 is surface 1 (a curved cylinder) with every node moved by 0.05 along its normal, turned over.
 
     Then x2(ξ) = x1(ξ) + 0.05 ΣN_k n_k: the gap at ξ is 0.05 |ΣN_k n_k|, the partner the same point of the same facet.
@@ -141,7 +135,7 @@ def test_gap_between_offset_surfaces_is_exact(kind):
 
 
 @pytest.mark.parametrize(("first", "second", "rate"), [(QUAD2, QUAD2, 6.0), (TRI2, QUAD2, 6.0), (QUAD1, TRI1, 3.0)])
-def test_gap_between_spheres_converges(first, second, rate):
+def test_gap_between_spheres_converges(first: Kind, second: Kind, rate: float) -> None:
     """Concentric caps of radius 5 and 5.01, meshed differently: the gap is 0.01; its largest error falls as h³ (h²)."""
     error = []
     for n in (6, 12):
@@ -154,7 +148,7 @@ def test_gap_between_spheres_converges(first, second, rate):
 
 
 @pytest.mark.parametrize(("first", "second"), FACES)
-def test_curved_surfaces_are_covered_once(first, second):
+def test_curved_surfaces_are_covered_once(first: Kind, second: Kind) -> None:
     """Caps with doubly curved, obliquely meeting facets of other sizes: every facet of 1 is covered exactly once."""
     for n1, n2 in ((3, 10), (9, 4), (7, 7)):
         a = lattice(n1, n1, *first, cap(5.0, 0.3, 0.0, 0.3))
@@ -166,7 +160,7 @@ def test_curved_surfaces_are_covered_once(first, second):
         assert np.abs(p.xi2 - 0.5).max() < 0.6, inside
 
 
-def test_long_narrow_facets():
+def test_long_narrow_facets_are_covered_once() -> None:
     """Helical flanks have facets twenty times as long as wide; crossed at 6° on a cylinder, all are covered once."""
     def flank(radius, turn, width):
         def place(u, v):
@@ -182,7 +176,7 @@ def test_long_narrow_facets():
     assert np.abs(p.gap - 0.002).max() < 1e-6
 
 
-def test_some_facets_only_and_partial_overlap():
+def test_points_of_chosen_facets_are_those_of_the_whole_search() -> None:
     """The points for chosen facets are those of the whole search; facets beyond the edge of surface 2 have none."""
     a = lattice(6, 6, *QUAD2, rectangle((0, 0), (6, 6)))
     b = facing(lattice(3, 3, *TRI2, rectangle((-1, -1), (3.25, 3.25), 0.0, 0.1)))
@@ -197,7 +191,7 @@ def test_some_facets_only_and_partial_overlap():
     assert len(pair_surfaces(a, b, 0.2, 0.2, facets1=[]).gap) == 0
 
 
-def test_only_gaps_in_range_are_kept():
+def test_only_gaps_in_range_are_kept() -> None:
     """A plane y = 0 and a slope y = 0.1 x over [0, 4], max_gap 0.1, max_overlap 0: the points have 0 <= gap <= 0.1."""
     a = curve(40, 2, lambda u: np.stack([6 * (0.5 - u), 0 * u], axis=1))
     b = curve(4, 1, lambda u: np.stack([8 * (u - 0.5), 0.8 * (u - 0.5)], axis=1))
@@ -211,47 +205,9 @@ def test_only_gaps_in_range_are_kept():
     assert len(pair_surfaces(a, Surface.from_arrays(b.points, b.facets[:, ::-1], "interval", 1), 1, 1).gap) == 0
 
 
-@pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1)])
-def test_moving_both_changes_nothing(first, second):
-    """Both caps turned and shifted together: gaps, partners' shape functions and weights as sums, to 1e-12."""
-    a, b = lattice(5, 4, *first, cap(5, 0.3, 0, 0.3)), facing(lattice(4, 5, *second, cap(5.01, 0.3, 0.4, 0.2)))
-    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
-    turn *= np.linalg.det(turn)
-    p = pair_surfaces(a, b, 0.5, 0.5)
-    q = pair_surfaces(a.moved(turn, [3.0, -2.0, 1.0]), b.moved(turn, [3.0, -2.0, 1.0]), 0.5, 0.5)
-    for value in (lambda p: p.weight, lambda p: p.weight * p.gap, lambda p: p.weight * p.xi2[:, 0] * p.xi1[:, 1]):
-        totals = [by_pair(a, b, r, value(r)) for r in (p, q)]
-        assert np.abs(totals[0] - totals[1]).max() < 1e-12
-
-
-@pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1), (QUAD1, TRI2)])
-def test_against_the_plain_loops(first, second):
-    """Same integrals of gap and partners as pairing_reference.py, pair of facets by pair.
-
-    To 1e-9: the triangles may differ, and the rule of degree 8 is not exact on curved facets.
-    """
-    a, b = lattice(2, 2, *first, cap(5, 0.35, 0, 0.1)), facing(lattice(3, 1, *second, cap(5.01, 0.3, 0.4, 0.2)))
-    fast, slow = pair_surfaces(a, b, 0.5, 0.5, degree=8), pair_surfaces_slowly(a, b, 0.5, 0.5, degree=8)
-    assert_same_integrals(a, b, fast, slow)
-
-
-def test_against_the_plain_loops_in_2d():
-    """As above for a circle against a wavy line that it overlaps in part."""
-    a = curve(6, 2, lambda u: np.stack([np.sin(1.5 - 3 * u), np.cos(1.5 - 3 * u)], axis=1))
-    b = curve(5, 2, lambda u: np.stack([1.4 * (u - 0.5), 0.9 + 0.05 * np.sin(9 * u)], axis=1))
-    assert_same_integrals(a, b, pair_surfaces(a, b, 0.2, 0.2), pair_surfaces_slowly(a, b, 0.2, 0.2))
-
-
-def assert_same_integrals(a: Surface, b: Surface, fast: Pairing, slow: Pairing) -> None:
-    assert len(slow.gap) > 20
-    for value in (lambda p: 1.0, lambda p: p.gap, lambda p: p.xi2[:, 0] * p.xi1[:, -1],
-                  lambda p: hats(a.shape, a.order, p.xi1)[:, 0] * p.xi2[:, -1]):
-        totals = [by_pair(a, b, p, p.weight * value(p)) for p in (fast, slow)]
-        assert np.abs(totals[0] - totals[1]).max() < 1e-9
-
-
-def test_wrong_input_is_refused():
-    """Mixed dimensions and negative limits are ValueErrors; two layers in range and hopeless facets SearchErrors."""
+def test_unusable_surfaces_and_limits_are_refused() -> None:
+    """Mixed dimensions and negative limits are ValueErrors; two layers within reach and too coarse facets are
+    SearchErrors."""
     a = lattice(3, 3, *QUAD2, rectangle((0, 0), (1, 1)))
     line = curve(3, 1, lambda u: np.stack([u, 0 * u], axis=1))
     with pytest.raises(ValueError, match="found 3D facing 2D"):
@@ -267,8 +223,8 @@ def test_wrong_input_is_refused():
         pair_surfaces(a, both, 0.3, 0.3)
 
 
-def test_partners_that_cannot_be_found_are_not_silent():
-    """A hilly surface (radius 0.2, slopes of 60°) meshed with three facets: what has no partner raises SearchError."""
+def test_area_without_partners_is_refused() -> None:
+    """A hilly surface (radius 0.2, slopes of 60°) with three facets: area without partners raises SearchError."""
     def hills(turn, z):
         def place(u, v):
             x, y, _ = rectangle((-1, -1), (1, 1), turn)(u, v).T
@@ -278,37 +234,3 @@ def test_partners_that_cannot_be_found_are_not_silent():
     a, b = lattice(3, 3, *TRI2, hills(0.0, 0.0)), facing(lattice(16, 16, *TRI2, hills(0.5, 0.02)))
     with pytest.raises(SearchError, match="no partner found"):
         pair_surfaces(a, b, 0.3, 0.3)
-
-
-def test_clipped_triangles_fill_the_polygon():
-    """The unit square cut by a triangle: the fan's areas sum to the known overlap; a point outside leaves nothing.
-
-    Triangle (0.5, 0.5), (2, 0.5), (0.5, 2) and the square share the square of side 0.5: area 0.25.
-    """
-    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
-    windows = np.array([[[0.5, 0.5], [2, 0.5], [0.5, 2]], [[3, 3], [4, 3], [3, 4]]], float)
-    polygons, count = clip(np.stack([square, square]), np.array([4, 4]), windows)
-    owner, triangles = fan(polygons, count)
-    area = 0.5 * np.linalg.det(triangles[:, 1:] - triangles[:, :1])
-    assert np.bincount(owner, area, minlength=2) == pytest.approx([0.25, 0.0])
-
-
-def test_fan_does_not_depend_on_the_first_corner() -> None:
-    """A rectangle, listed from each of its corners and moved by round-off: the same two triangles."""
-    corners = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]])
-    found = []
-    for first in range(4):
-        turned = np.roll(corners, first, axis=0) + 1e-15 * np.arange(8).reshape(4, 2)
-        _, triangles = fan(turned[None], np.array([4]))
-        found.append(sorted(tuple(sorted(map(tuple, np.round(t, 9).tolist()))) for t in triangles))
-    assert all(cut == found[0] for cut in found[1:])
-
-
-def test_fan_of_a_dented_polygon_overlaps_nowhere():
-    """A square with one dented side: the apex is chosen so that no triangle has negative area; they sum to 0.95."""
-    dented = np.array([[[0, 0], [0.5, 0.1], [1, 0], [1, 1], [0, 1]]], float)
-    for turn in range(5):
-        _, triangles = fan(np.roll(dented, turn, axis=1), np.array([5]))
-        area = 0.5 * np.linalg.det(triangles[:, 1:] - triangles[:, :1])
-        assert area.min() > 0
-        assert area.sum() == pytest.approx(0.95)

@@ -1,4 +1,4 @@
-"""Condensation is elimination: the condensed and the full system have one solution; and the full tangent is right."""
+"""Condensation is exact elimination: the condensed and the full system have the same solution."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evolvent import Freedom, Nitsche, Placement, Position, Step, prepare
+from evolvent import Freedom, Nitsche, Placement, Step, StepSystem, condense_bodies
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
 from tests.solver.contact.newton.test_equilibrium import ball, cylinder
@@ -16,27 +16,27 @@ CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) 
 
 
 @pytest.mark.parametrize(("make", "θ", "μ"), CASES)
-def test_condensed_is_full(make, θ, μ):
+def test_condensed_and_full_system_have_the_same_solution(make, θ, μ):
     """Pressure, traction, rigid motion and the whole displacement field of both ways agree to 1e-8 (θ = 1, 0, −1, with
     and without friction, 2D and 3D)."""
     problem = replace(make(μ), nitsche=Nitsche(theta=θ))
     x, system = full_solution(problem, Step())
-    position = Position(problem, prepare(problem), Step())
+    position = StepSystem(problem, condense_bodies(problem), Step())
     solution, _ = position.solve(None)
     assert np.max(_differences(position, solution, x, system)) < 1e-8
 
 
 @pytest.mark.parametrize("θ", [1.0, -1.0])
 @pytest.mark.parametrize("μ", [0.0, 0.1])
-def test_after_finite_sliding(θ, μ):
+def test_condensed_and_full_system_agree_after_finite_sliding(θ, μ):
     """The block has moved 0.8 mm sideways (several nodes) under the cylinder: new projections, the old compliance, and
     the slip since the first step. The block then drags the cylinder along with μ times the load."""
     problem = replace(cylinder(μ, first=1, extra=(Freedom("x", displacement=0.0),)), nitsche=Nitsche(theta=θ))
-    prepared = prepare(problem)
+    condensed = condense_bodies(problem)
     rest = Placement.at_rest(2)
-    _, before = Position(problem, prepared, Step()).solve(None)
+    _, before = StepSystem(problem, condensed, Step()).solve(None)
     moved = Step(placements=(rest, Placement(np.eye(2), np.array([0.8, 0.0]))))
-    position = Position(problem, prepared, moved)
+    position = StepSystem(problem, condensed, moved)
     x, system = full_equilibrium(position, position.slip(before))
     solution, _ = position.solve(before)
     assert np.max(_differences(position, solution, x, system)) < 1e-8
@@ -50,7 +50,7 @@ def _differences(position, solution, x, system):
     motion = np.concatenate([m[p.free] for m, p in zip(solution.motions, position.motions, strict=True)])
     pairs = [(solution.contacts[0].traction, traction), (motion, x[system.K.shape[0] :])]
     at = 0
-    for index, body in enumerate(position.prepared):
+    for index, body in enumerate(position.condensed):
         a = body.assembled
         u = np.zeros(a.stiffness.shape[0])
         u[a.free] = x[at : at + len(a.free)]
@@ -61,11 +61,11 @@ def _differences(position, solution, x, system):
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_full_tangent(θ):
+def test_full_tangent_is_the_derivative_of_the_residual(θ):
     """∂residual/∂x against central differences in a random direction near the solution, 1e-6 relative."""
     problem = replace(cylinder(), nitsche=Nitsche(theta=θ))
     x, _ = full_solution(problem, Step())
-    position = Position(problem, prepare(problem), Step())
+    position = StepSystem(problem, condense_bodies(problem), Step())
     system = FullContact(position, lambda t: coulomb(t, 0.2), position.slip(None))
     rng = np.random.default_rng(0)
     x = x * (1.0 + 1e-3 * rng.normal(size=len(x)))

@@ -1,4 +1,4 @@
-"""ParaView output of own problems, read back by pyvista: numbers, places, node order of every cell."""
+"""ParaView output of contact problems, read back by pyvista: values, positions, node order of every cell."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ AWAY = Placement(TURN, np.array([3.0, 1.0]))
 
 
 @pytest.mark.parametrize(("shape", "order"), SHAPES)
-def test_every_cell_has_its_nodes_in_vtks_order(shape, order, tmp_path):
+def test_every_cell_has_its_nodes_in_the_order_of_vtk(shape, order, tmp_path):
     """Every node of the straight cells that are read back lies where VTK's own reference cell, mapped by the cell's
     corners, has it; two nodes exchanged would not."""
     plane = shape in ("triangle", "quadrilateral")
@@ -74,9 +74,9 @@ def written(tmp_path_factory) -> tuple[list[Solution], pyvista.PVDReader]:
 
 
 @pytest.mark.parametrize("step", [0, 1])
-def test_bodies(written, step):
-    """Places, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along the
-    turned height and σ_z = −νp, in ParaView's order of components."""
+def test_body_files_have_displacement_and_stress(written, step):
+    """Positions, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along
+    the rotated height and σ_z = −νp, in ParaView's order of components."""
     solutions, reader = written
     reader.set_active_time_value(step + 1.0)
     p, R = (30.0, np.eye(2)) if step == 0 else (60.0, TURN)
@@ -94,7 +94,7 @@ def test_bodies(written, step):
         assert np.allclose(mises, von_mises(cell_stress(mesh, material, solutions[step].displacement(index))))
 
 
-def test_contact(written):
+def test_contact_file_has_pressure_and_traction(written):
     """The pressure at the nodes of the first surface, and the traction on the second body in space."""
     reader = written[1]
     reader.set_active_time_value(2.0)
@@ -105,20 +105,20 @@ def test_contact(written):
     assert surface.n_cells == 4
 
 
-def test_averages_keep_the_force(tmp_path):
-    """A cylinder on a block: nodal pressures times the hats' areas are the force; no node is pulled, none is above the
-    peak at the points."""
+def test_nodal_averages_keep_the_contact_force(tmp_path):
+    """A cylinder on a block: nodal pressures times the areas of the hat functions are the force; no nodal pressure is
+    negative or above the peak at the points."""
     (solution,) = sweep(cylinder(), [Step()])
     contact = solution.contacts[0]
     surface = pyvista.get_reader(write_paraview(solution, tmp_path)).read()[2]
-    hats = solution.prepared[0].surfaces["arc"].weights()
+    hats = solution.condensed[0].surfaces["arc"].weights()
     assert hats @ surface["pressure_MPa"] == pytest.approx(contact.weights @ contact.pressure, rel=1e-12)
     assert surface["pressure_MPa"].min() == 0.0
     assert 0.9 * contact.pressure.max() < surface["pressure_MPa"].max() < contact.pressure.max()
 
 
 def test_series_grows_with_the_sweep(tmp_path):
-    """A sweep that fails at its third step leaves two that can be read, nothing half."""
+    """A sweep that fails at its third step leaves two steps that can be read and no partial file."""
 
     def steps():
         yield from (Step(0.5), Step(1.0))
@@ -130,8 +130,8 @@ def test_series_grows_with_the_sweep(tmp_path):
     assert not list(tmp_path.glob(f"*{PART}*"))
 
 
-def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path):
-    """A folder in a file's place: an error that names it, and no temporary file stays."""
+def test_failed_write_leaves_no_partial_file(tmp_path):
+    """A folder with the name of the file: an error that names it, and no temporary file is left."""
     (tmp_path / "body_0_0001.vtu").mkdir()
     (solution,) = sweep(pressed(), [Step()])
     with pytest.raises(WriteError, match="body_0_0001"):

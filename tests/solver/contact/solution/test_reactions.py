@@ -1,4 +1,4 @@
-"""Reactions of supports and couplings: they balance what acts on each body, and are what statics says."""
+"""Reactions of supports and couplings: balance of each body, and agreement with statics."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_reactions_balance_each_body(solution):
         assert np.abs(held + 0.75 * given[body] + sign * contact).max() < 1e-10 * 300.0
 
 
-def test_reaction_of_a_coupling(solution):
+def test_reaction_of_a_rigid_coupling_includes_its_load(solution):
     """In the direction of a loaded freedom a coupling presses with its load; about its centre, with its moment."""
     (lid,) = reactions(solution, 0, about=(1.0, 2.0))
     assert (lid.group, lid.directions) == ("top", "rigid")
@@ -64,15 +64,15 @@ def test_reaction_of_a_coupling(solution):
     assert lid.moment[0] == pytest.approx(0.75 * 20.0, rel=1e-7)
 
 
-def test_two_supports(solution):
-    """Each support takes what its directions hold: the edge that is led along x carries no vertical force."""
+def test_node_held_twice_counts_for_the_first_support(solution):
+    """Each support has the forces along its own directions: an edge held along x carries no vertical force."""
     bottom, right = reactions(solution, 1)
     assert (bottom.group, right.group) == ("bottom", "right")
     assert right.force[1] == 0.0
     assert right.force[0] != 0.0
 
 
-def test_reaction_of_a_beam_in_3d():
+def test_reaction_moment_of_a_beam_in_3d() -> None:
     """A plate on the floor, loaded on its left half only by a second one, held at the left and right below: the
     supports share the load as levers say, whatever the elasticity: two unknowns, two equations of statics."""
     plate = box((4.0, 1.0, 1.0), (4, 1, 1), 1)

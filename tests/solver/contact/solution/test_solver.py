@@ -1,7 +1,8 @@
-"""The public API: steps, sweeps, placements, several contacts, what is refused; and the page of docs that shows it."""
+"""The public API: steps, sweeps, placements, several contacts, refused steps; and the page that describes it."""
 
 from __future__ import annotations
 
+import importlib
 import re
 
 import numpy as np
@@ -26,14 +27,13 @@ from evolvent import (
     solve,
     sweep,
 )
-from evolvent.contact.solution import solver as problem_api
 from evolvent.contact.solution.full_system import full_solution
 from evolvent_meshes.shapes.blocks import rectangle
 from tests.solver.contact.newton.test_equilibrium import FRICTION, cylinder
 from tests.support.checkout import ROOT
 
 
-def test_own_problem_page(tmp_path, monkeypatch):
+def test_programs_of_the_page_on_own_problems_run(tmp_path, monkeypatch):
     """The programs in docs/own_problem.md run as they stand; the first one has at most 40 lines and carries its load,
     and the peak that it prints is within 0.2 % of that of a mesh ten times as fine, 2275.4 MPa; the ground carries what
     the contact gives, and ParaView's files are there."""
@@ -53,16 +53,15 @@ def test_own_problem_page(tmp_path, monkeypatch):
     assert len(list((tmp_path / "out").glob("*.vtu"))) == 3 * len(names["solutions"])
 
 
-def test_page_names_every_class():
-    """The tables of docs/own_problem.md have every public name that a program states or asks for."""
+def test_page_on_own_problems_lists_every_public_name() -> None:
+    """The tables of docs/own_problem.md have every public name."""
     text = (ROOT / "docs/own_problem.md").read_text()
-    inner = {"STEEL", "MeshData", "Position", "PreparedBody", "Side", "prepare", "EvolventError", "ResultError"}
     rows = "\n".join(line.split("|")[1] for line in text.splitlines() if line.startswith("|"))
-    assert [name for name in sorted(set(problem_api.__all__) - inner) if f"`{name}" not in rows] == []
+    assert [name for name in importlib.import_module("evolvent").__all__ if f"`{name}" not in rows] == []
 
 
-def test_surfaces_out_of_reach_are_refused():
-    """Two blocks 1 mm apart, and a reach of 0.1 mm: said, with both surfaces and what to do."""
+def test_surfaces_out_of_reach_are_refused() -> None:
+    """Two blocks 1 mm apart, and a reach of 0.1 mm: SearchError, with both surfaces and what to do."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2, origin=(0.0, -1.0))
     bodies = Body(upper, rigid=Rigid("top", (Freedom("y", load=-1.0),))), Body(lower, supports=(Fixed("bottom"),))
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
@@ -70,7 +69,7 @@ def test_surfaces_out_of_reach_are_refused():
         solve(problem)
 
 
-def test_load_factor_scales_a_closed_contact():
+def test_load_factor_scales_a_closed_contact() -> None:
     """Two flat blocks that stay in full contact are linear: half the load, half the pressure and displacement."""
     problem = _flat()
     half, full = list(sweep(problem, [Step(0.5), Step(1.0)]))
@@ -78,8 +77,8 @@ def test_load_factor_scales_a_closed_contact():
     assert np.allclose(2.0 * half.displacement(0), full.displacement(0), atol=1e-12)
 
 
-def test_load_or_displacement():
-    """Prescribing the motion that a load made gives that load back, in a later step of the same sweep too."""
+def test_load_and_displacement_give_the_same_contact() -> None:
+    """Prescribing the motion that resulted from a load gives that load, also in a later step of the same sweep."""
     problem = cylinder(0.0)
     by_load = solve(problem)
     sunk = float(by_load.motions[0][0])
@@ -88,12 +87,12 @@ def test_load_or_displacement():
     assert np.allclose(by_motion.contacts[0].pressure, by_load.contacts[0].pressure, atol=1e-6)
 
 
-def test_iterations_count_the_start():
+def test_iterations_include_those_of_the_frictionless_start() -> None:
     """With friction the iterations are those of the frictionless start, the same as without, and at least one more."""
     assert solve(cylinder(FRICTION)).iterations > solve(cylinder(0.0)).iterations > 0
 
 
-def test_normal_then_tangential():
+def test_tangential_load_after_the_normal_load_makes_partial_slip() -> None:
     """First pressed, then pushed with half of what slides: the tangential load arrives, some points stick and some
     slide. Repeating the same step moves the cylinder by less than a thousandth of what the push did; the traction near
     the edge of sticking, a kink that the stored nodal history cannot follow, moves by some per cent at a/3."""
@@ -114,7 +113,7 @@ def test_normal_then_tangential():
     assert contact.weights @ change**2 < 0.05**2 * (contact.weights @ (FRICTION * contact.pressure) ** 2)
 
 
-def test_sliding_there_and_back():
+def test_friction_reverses_when_a_sliding_block_returns() -> None:
     """The lower block moved to the right and back under the pressed cylinder: friction μP to the right, then to the
     left. A solver that forgets the last step, or loses μ, cannot do this."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
@@ -124,8 +123,8 @@ def test_sliding_there_and_back():
     assert forces[2] == pytest.approx(-FRICTION * 5e3, rel=1e-6)
 
 
-def test_frame_does_not_matter():
-    """Both bodies turned and moved together: the same pressure, the traction turned."""
+def test_contact_does_not_depend_on_the_common_frame() -> None:
+    """Both bodies rotated and translated together: the same pressure, and the traction rotated."""
     problem = cylinder(FRICTION)
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
     place = Placement(turn, np.array([5.0, -3.0]))
@@ -134,8 +133,8 @@ def test_frame_does_not_matter():
     assert np.allclose(here.contacts[0].traction @ turn.T, there.contacts[0].traction, atol=1e-7)
 
 
-def test_two_contacts_share_the_load():
-    """A stack of three blocks: the weight of the load passes both interfaces, one with friction and one without."""
+def test_two_contacts_share_the_load() -> None:
+    """A stack of three blocks: both interfaces transmit the whole load, one with friction and one without."""
     blocks = [rectangle(2.0, 1.0, n, 2, origin=(0.0, y)) for n, y in ((4, 2.0), (5, 1.0), (3, 0.0))]
     bodies = (
         Body(blocks[0], supports=(Fixed("left", "x"),), loads=(Traction("top", (0.0, -60.0)),)),
@@ -148,7 +147,7 @@ def test_two_contacts_share_the_load():
         assert np.allclose(contact.pressure, 60.0, rtol=1e-9)
 
 
-def test_separation():
+def test_lifted_part_of_an_interface_has_no_tension() -> None:
     """Only part of a tilted load's interface touches: no tension anywhere, the rest of the load where it touches.
 
     A block 2 wide and 4 high pushed at its top to the side lifts off on one edge."""
@@ -167,9 +166,9 @@ def test_separation():
 def _centre(solution: Solution, body: int) -> float:
     """x of the resultant contact force on a flat body, from its nodal forces (half a hat function at an edge acts
     inside the edge node, so the nodal pressures alone would not do)."""
-    prepared = solution.prepared[body]
-    force = (prepared.forces.T @ solution.nodal_forces[body]).reshape(-1, 2)[:, 1]
-    return float(force @ prepared.assembled.body.mesh.points[:, 0] / force.sum())
+    condensed = solution.condensed[body]
+    force = (condensed.test_functionals.T @ solution.nodal_forces[body]).reshape(-1, 2)[:, 1]
+    return float(force @ condensed.assembled.body.mesh.points[:, 0] / force.sum())
 
 
 @pytest.mark.parametrize(
@@ -184,13 +183,13 @@ def _centre(solution: Solution, body: int) -> float:
         (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
     ],
 )
-def test_bad_input(make, message):
+def test_inconsistent_steps_are_refused(make, message):
     """Each mistake is a ValueError that names what was found."""
     with pytest.raises(ValueError, match=message):
         make(cylinder())
 
 
-def test_rigid_punch_centre():
+def test_rigid_coupling_rotates_about_its_centre() -> None:
     """A moment about the coupling's centre tilts a punch: the pressure's centre moves by moment over force."""
     punch = rectangle(2.0, 1.0, 6, 3, origin=(-1.0, 0.0))
     ground = rectangle(6.0, 3.0, 24, 6, origin=(-3.0, -3.0))
@@ -204,19 +203,9 @@ def test_rigid_punch_centre():
     assert solution.contacts[0].force[1] == pytest.approx(-1000.0, rel=1e-9)
 
 
-def test_one_place_for_all_names():
-    """The solver's module has what a program of one's own needs, and nothing that it lists is missing."""
-    assert all(hasattr(problem_api, name) for name in problem_api.__all__)
-    wanted = "Body BodyForce Fixed Freedom Rigid Traction Material Contact Problem Step Sweep Placement solve sweep"
-    wanted += " read_msh reactions write_paraview cell_stress von_mises"
-    wanted += " NotConverged SearchError InputError EvolventError"
-    assert set(wanted.split()) <= set(problem_api.__all__)
-
-
-def test_on_after_a_step_that_failed():
-    """A cylinder that is pressed, then pushed by more than friction can hold: that step has no equilibrium, which
-    is said. The same sweep takes a smaller push instead, and gives what a sweep without the failure gives, history
-    included."""
+def test_sweep_continues_after_a_step_that_failed() -> None:
+    """A cylinder is pressed, then pushed by more than friction can hold: that step has no equilibrium, and the error
+    says so. The same sweep then solves a smaller push with the result of a sweep without the failure, slip included."""
     problem = cylinder(FRICTION, first=1, extra=(Freedom("x", displacement=0.0),))
 
     def push(share: float) -> Step:
@@ -234,8 +223,8 @@ def test_on_after_a_step_that_failed():
     assert run.solved == 2
 
 
-def test_one_line_a_step(caplog):
-    """The logger "evolvent" tells of each step: its number, the load factor, iterations, force and peak pressure."""
+def test_every_step_logs_one_line(caplog):
+    """One line a step on the logger "evolvent": number, load factor, iterations, force and peak pressure."""
     with caplog.at_level("INFO", logger="evolvent"):
         first, _ = sweep(_flat(), [Step(0.5), Step(1.0)])
     lines = [record.getMessage() for record in caplog.records if record.name == "evolvent"]
@@ -244,7 +233,7 @@ def test_one_line_a_step(caplog):
     assert lines[1].startswith("step 2: load factor 1, ")
 
 
-def test_a_face_that_is_moved():
+def test_prescribed_displacement_of_a_face_gives_uniaxial_strain() -> None:
     """Two blocks of height h each pressed by moving the top: uniaxial strain under rollers on all sides,
     p = E(1−ν)/((1+ν)(1−2ν)) δ/2h, and the reactions at the moved face and at the bottom are p times the width."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
@@ -264,7 +253,7 @@ def test_a_face_that_is_moved():
     assert bottom == pytest.approx([0.0, 2.0 * p], rel=1e-9, abs=1e-9)
 
 
-def test_a_moved_face_without_condensation():
+def test_prescribed_displacement_agrees_with_the_full_system() -> None:
     """The same on all degrees of freedom (full_system.py), with friction and a clamped bottom: the same motion."""
     upper, lower = rectangle(2.0, 1.0, 4, 2, origin=(0.0, 1.0)), rectangle(2.0, 1.0, 5, 2)
     bodies = (
@@ -274,8 +263,8 @@ def test_a_moved_face_without_condensation():
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), 0.2, reach=0.1),))
     x, _ = full_solution(problem, Step())
     solution = solve(problem)
-    free = solution.prepared[0].assembled.free
-    condensed = solution.prepared[0].deformation(solution.nodal_forces[0], 1.0)
+    free = solution.condensed[0].assembled.free
+    condensed = solution.condensed[0].deformation(solution.nodal_forces[0], 1.0)
     assert np.allclose(x[: len(free)], condensed[free], atol=1e-9 * np.abs(condensed).max())
 
 

@@ -1,5 +1,5 @@
-"""Contacts whose surfaces move: reach that is too small, bodies placed in overlap, dragged off an edge, turned; and
-what is too large for small strain. Each is held against the same problem stated so that nothing of this matters."""
+"""Contacts whose surfaces move: reach that is too small, bodies placed in overlap, dragged off an edge, rotated; and
+steps beyond small strain. Each is compared with a formulation of the same problem that needs no second search."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from evolvent import (
     Freedom,
     Material,
     MeshData,
+    PairingNotSettled,
     Placement,
     Problem,
     Rigid,
     SearchError,
+    SmallStrainExceeded,
     Solution,
     Step,
-    TooLarge,
-    Unsettled,
     solve,
     sweep,
 )
@@ -43,10 +43,10 @@ def cylinder(reach: float | None, freedom: Freedom) -> Problem:
 
 @pytest.mark.parametrize("freedom", [Freedom("y", load=-5e3), Freedom("y", displacement=-0.15)])
 @pytest.mark.parametrize("reach", [1e-2, 1e-3])
-def test_reach_too_small(freedom, reach):
-    """Gaps at the edge of contact are 0.05 mm. A reach of a fifth or less of it cut the contact off: force −6 to −27 %,
-    a peak of six to eleven times. It grows: the contact is that of a large reach, force and approach within 0.1 %,
-    pressure within 5 % (its points at the edge differ)."""
+def test_overlap_beyond_a_small_reach_is_found(freedom, reach):
+    """Gaps at the edge of contact are 0.05 mm. A contact cut off at a reach of a fifth or less of them has a force 6
+    to 27 % too small and a peak six to eleven times too large. The reach is increased: force and approach are those of
+    a large reach within 0.1 %, the peak within 5 % (points at the edge differ)."""
     wanted, found = solve(cylinder(1.0, freedom)), solve(cylinder(reach, freedom))
     assert found.searches > 1
     assert found.contacts[0].force[1] == pytest.approx(wanted.contacts[0].force[1], rel=1e-3)
@@ -54,7 +54,7 @@ def test_reach_too_small(freedom, reach):
     assert found.contacts[0].pressure.max() == pytest.approx(wanted.contacts[0].pressure.max(), rel=0.05)
 
 
-def test_ample_reach_changes_nothing():
+def test_contact_that_stays_in_place_is_searched_once() -> None:
     """A contact that stays where it is searched is searched once, and its solution is that of one search."""
     found = solve(cylinder(0.5, Freedom("y", load=-5e3)))
     assert found.searches == 1
@@ -83,7 +83,7 @@ def fitted(contact: ContactResult) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("share", [0.05, 0.2])
-def test_placed_in_overlap(share):
+def test_bodies_placed_in_overlap_are_paired_where_they_meet(share):
     """Pressed by a placement in overlap, by a prescribed motion from where they touch, and by the force that takes: the
     same approach, force, peak pressure and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 the first two are
     7 % and 10 % off in peak and width. Half-spheres are a rung of the ladder."""
@@ -110,7 +110,7 @@ def half_of(body: Body, side: float) -> Body:
     return replace(body, mesh=half, supports=(*body.supports, Fixed("symmetry", "x")))
 
 
-def test_half_a_contact_is_half_of_the_whole():
+def test_half_of_a_symmetric_contact_agrees_with_the_whole() -> None:
     """The right half of two half-discs that are placed in overlap, with a support in the plane of symmetry: half of the
     force, and the peak, of the whole, but for rounding. The halves were pulled apart along their mean normal, which
     points to the side: the peak was 8 % too high (a quarter of two spheres: 4.6 %)."""
@@ -136,7 +136,7 @@ def last(problem: Problem, *steps: Step) -> Solution:
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_dragged_off_an_edge(friction):
+def test_block_dragged_off_an_edge_loses_its_partners(friction):
     """Dragged 2 mm, so that half of it hangs over the edge: by a prescribed motion as by a placement, where half of the
     force is left. It was the whole of it, on the pairs of the start."""
     drag = Step(freedoms=((0, Freedom("x", displacement=2.0)),))
@@ -158,7 +158,7 @@ def turned_disc(angle: float, first: int) -> Problem:
 
 
 @pytest.mark.parametrize("first", [0, 1])
-def test_turned_about_its_centre(first):
+def test_body_rotated_about_its_centre_is_paired_again(first):
     """A disc that turns by 0.09 rad about its centre stays the disc it was: the contact lies below the centre, at
     −0.9 mm of the disc's own surface, with Hertz' peak pressure within 1 %; not where the disc touched before."""
     found = solve(turned_disc(0.09, first)).contacts[0]
@@ -168,9 +168,9 @@ def test_turned_about_its_centre(first):
     assert found.pressure.max() == pytest.approx(1916.0, rel=0.01)
 
 
-def test_large_turn_is_refused():
-    """0.8 rad would lengthen the disc by a third: said, with the angle and what to do."""
-    with pytest.raises(TooLarge, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
+def test_large_rotation_is_refused() -> None:
+    """0.8 rad would lengthen the disc by a third: refused, with the angle and what to do."""
+    with pytest.raises(SmallStrainExceeded, match=r"body 0.*at most 0\.1 rad.*found 0\.8 rad; turn it by a Placement"):
         solve(turned_disc(0.8, 0))
 
 
@@ -183,28 +183,29 @@ def column(modulus: float) -> Problem:
     return Problem((upper, lower), (Contact((0, "bottom"), (1, "top"), reach=0.5),))
 
 
-def test_large_strain_is_refused():
+def test_large_strain_is_refused() -> None:
     """Strains 1000/E: 0.19 is solved, 0.21 and 2 are refused with what was found."""
     assert solve(column(1000 / 0.19)).motions[0][0] == pytest.approx(-2 * 0.19 - 4 * 0.019, rel=1e-6)
     for strain in (0.21, 2.0):
-        with pytest.raises(TooLarge, match=rf"body 0.*strain of at most 0\.2 in every cell.*found {strain:g};"):
+        message = rf"body 0.*strain of at most 0\.2 in every cell.*found {strain:g};"
+        with pytest.raises(SmallStrainExceeded, match=message):
             solve(column(1000 / strain))
 
 
-def test_what_does_not_settle_is_refused(monkeypatch):
+def test_pairing_that_does_not_settle_is_refused(monkeypatch):
     """With one search allowed, both a reach that is too small and a placement in overlap are refused, with what was
     found and what to do."""
-    monkeypatch.setattr(displaced_search, "ROUNDS", 1)
+    monkeypatch.setattr(displaced_search, "SEARCHES", 1)
     with pytest.raises(
-        Unsettled, match=r"'arc' of body 0.*found an overlap of 0\.0\d+ mm without; give .* larger reach"
+        PairingNotSettled, match=r"'arc' of body 0.*found an overlap of 0\.0\d+ mm without; give .* larger reach"
     ):
         solve(cylinder(1e-3, Freedom("y", displacement=-0.15)))
-    with pytest.raises(Unsettled, match=r"elsewhere after 1 searches \(gaps off by .*smaller steps"):
+    with pytest.raises(PairingNotSettled, match=r"elsewhere after 1 searches \(gaps off by .*smaller steps"):
         solve(*half_discs(0.2, placed=True))
 
 
-def test_turned_round_a_corner_is_no_silence():
-    """A punch that is turned by a Placement until its side faces the block finds no partner, and says so."""
+def test_surfaces_that_face_away_are_refused() -> None:
+    """A punch that is rotated by a Placement until its side faces the block has no partners: SearchError."""
     quarter = Placement(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([0.0, 0.0]))
     step = Step(placements=(quarter, Placement.at_rest(2)))
     with pytest.raises(SearchError, match="wanted surfaces within"):

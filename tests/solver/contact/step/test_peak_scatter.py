@@ -1,5 +1,5 @@
-"""How far the largest pressure lies from its surroundings: of known pressures, of good meshes, and of bad ones, whose
-peaks are off by much more than 5 % though they have cells enough across the contact."""
+"""Scatter of the largest pressure: of known pressures, of good meshes, and of meshes whose peaks are off by much more
+than 5 % though they have enough cells across the contact."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from evolvent import (
     Contact,
     ContactResult,
     Fixed,
-    Position,
     Problem,
     ScatteredPressureWarning,
     Step,
-    prepare,
+    StepSystem,
+    condense_bodies,
     solve,
 )
-from evolvent.contact.problem.step_pairing import Meeting
-from evolvent.contact.step.peak_scatter import LARGE, parabola, peak_scatter
+from evolvent.contact.step.paired_surfaces import PairedSurfaces
+from evolvent.contact.step.peak_scatter import SCATTER_LIMIT, parabola, peak_scatter
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.checkout import ROOT
 from tests.support.contact_cases import press_fit, punch, rubber
 
 
-def flat(d: int) -> Meeting:
+def flat(d: int) -> PairedSurfaces:
     """Pairs of two flat blocks of 8 mm, with cells of 0.5 and 0.8 mm."""
     if d == 2:
         upper, lower = rectangle(8.0, 1.0, 16, 1), rectangle(8.0, 1.0, 10, 1, origin=(0.0, -1.0))
@@ -38,31 +38,31 @@ def flat(d: int) -> Meeting:
         lower = box((8.0, 8.0, 1.0), (10, 10, 1), 1, origin=(0.0, 0.0, -1.0))
     bodies = Body(upper, supports=(Fixed("top"),)), Body(lower, supports=(Fixed("bottom"),))
     problem = Problem(bodies, (Contact((0, "bottom"), (1, "top"), reach=0.1),))
-    return Position(problem, prepare(problem), Step()).meetings[0]
+    return StepSystem(problem, condense_bodies(problem), Step()).paired[0]
 
 
 @pytest.fixture(scope="module", params=[2, 3])
-def meeting(request) -> Meeting:
+def paired(request) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_smooth_pressures(meeting):
+def test_smooth_pressures_have_no_scatter(paired):
     """Uniform, a square root, and Hertz' over ten cells: smooth but for rounding."""
-    x = meeting.operator.points[:, :-1]
+    x = paired.operator.points[:, :-1]
     r = np.linalg.norm(x - 4.1, axis=1)
     hertz = 9.0 * np.sqrt(np.maximum(0.0, 1.0 - (r / 2.5) ** 2))
     for pressure in (np.full(len(x), 3.0), np.sqrt(1.0 + x[:, 0]), hertz):
-        assert peak_scatter(meeting, pressure) < 1e-9
+        assert peak_scatter(paired, pressure) < 1e-9
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0])
-def test_waves(meeting, period):
-    """±10 % that come and go with each cell of 0.5 mm, or with every second: found at about that."""
-    x = meeting.operator.points[:, 0]
-    assert peak_scatter(meeting, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
+def test_scatter_of_a_wave_is_its_amplitude(paired, period):
+    """Waves of ±10 % with the length of one cell of 0.5 mm, or of two: a scatter of about 10 %."""
+    x = paired.operator.points[:, 0]
+    assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
 
 
-def test_weights_below_zero():
+def test_parabola_ignores_negative_weights() -> None:
     """Values 1 + x − 2y + xy at 20 points of a plane, one with a quadrature weight of −1e-3, as a few have: the
     parabola fitted to them is that polynomial."""
     x, y = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 20))
@@ -71,14 +71,14 @@ def test_weights_below_zero():
     np.testing.assert_allclose(parabola(points, weights, values), values, atol=1e-12)
 
 
-def test_nothing_presses(meeting):
+def test_open_contact_has_no_scatter(paired):
     """No pressure, no scatter."""
-    assert peak_scatter(meeting, np.zeros(len(meeting.operator.weights))) == 0.0
+    assert peak_scatter(paired, np.zeros(len(paired.operator.weights))) == 0.0
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
 @pytest.mark.parametrize("cells", [2.0, 4.0, 4.54, 8.0])
-def test_hertz(cells, first):
+def test_scatter_of_an_accurate_hertz_contact_is_small(cells, first):
     """4, 8, 9 and 16 cells across the contact, wherever its edge cuts a cell: the peak is right within 0.6 %, and lies
     within 2 % of its surroundings."""
     contact = solve(cylinder_on_block(cells, ratio=1.37, first=first)).contacts[0]
@@ -87,11 +87,11 @@ def test_hertz(cells, first):
 
 
 def warned(contact: ContactResult) -> bool:
-    return contact.peak_scatter > LARGE
+    return contact.peak_scatter > SCATTER_LIMIT
 
 
 @pytest.mark.parametrize(("cells", "over"), [(4.0, 0.25), (8.0, 0.12)])
-def test_order_1_on_a_polygon(cells, over):
+def test_scatter_of_order_1_cells_on_a_cylinder_is_large(cells, over):
     """Cells of order 1 on a finer block meet the cylinder as a polygon: the peak is more than a quarter and an eighth
     too high, at 8 and 16 cells."""
     contact = solve(cylinder_on_block(cells, order=1, ratio=1.37, first="block")).contacts[0]
@@ -99,7 +99,7 @@ def test_order_1_on_a_polygon(cells, over):
     assert warned(contact)
 
 
-def test_rubber_beyond_the_fine_zone():
+def test_scatter_of_rubber_beyond_the_fine_zone_is_large() -> None:
     """The contact on rubber, ν = 0.49, ends outside the fine zone: a peak 36 % too high, at its edge. On cells of
     0.3 mm all over the contact the peak is right within 0.5 %: 1.461 MPa, as with 0.2 and 0.1 mm."""
     bad, good = (solve(rubber(0.3, fine)).contacts[0] for fine in (1.5, 4.0))
@@ -109,7 +109,7 @@ def test_rubber_beyond_the_fine_zone():
     assert not warned(good)
 
 
-def test_press_fit():
+def test_scatter_of_a_coarse_press_fit_is_large() -> None:
     """A press fit has a uniform pressure. Where the sag of coarse cells is not small against the interference it is
     wavy by 14 %, at ten cells; with twice as many it is uniform within 2 %."""
     coarse, fine = press_fit(14, 11, 0.008), press_fit(28, 22, 0.008)
@@ -121,20 +121,20 @@ def test_press_fit():
     assert not warned(fine)
 
 
-def test_flat_punch():
-    """The pressure at the edge of a flat punch is infinite: the peak grows by a tenth or more with each mesh, and no
-    mesh is let pass."""
+def test_scatter_at_the_edge_of_a_flat_punch_is_large() -> None:
+    """The pressure at the edge of a flat punch is infinite: the peak grows with each mesh, and all of them are warned
+    of."""
     coarse, fine = punch(4), punch(16)
     assert fine.pressure.max() > 1.2 * coarse.pressure.max()
     assert warned(coarse)
     assert warned(fine)
 
 
-def test_what_the_docs_say(tmp_path, monkeypatch):
+def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
     """docs/own_problem.md about its example: with 0.25 mm, 4.2 cells, the peak is 11 % too high, and warned of; every
     mesh of two cells and more that is not warned of is within 3.5 %, from five cells on within 0.6 %."""
     page = (ROOT / "docs/own_problem.md").read_text()
-    program = re.search(r"```python\n(.*?)drag = ", page, re.DOTALL).group(1)
+    (program,) = re.findall(r"```python\n(.*?)drag = ", page, re.DOTALL)[:1]
     program = program.replace("hook.msh", str(tmp_path / "hook.msh"))
 
     def found(cell: float) -> ContactResult:
@@ -151,8 +151,8 @@ def test_what_the_docs_say(tmp_path, monkeypatch):
         assert cell != 0.25 or off == pytest.approx(0.106, abs=0.01)
 
 
-def test_the_warning():
-    """It names the contact and what was found; a good mesh is not warned of."""
+def test_scattered_peak_is_warned_of() -> None:
+    """The warning has the name of the contact and the scatter; a good mesh is not warned of."""
     said = r"'top' \(body 1, 'body'\) with 'arc' \(body 0, .*within 5%.*found it 1\d% off"
     with pytest.warns(ScatteredPressureWarning, match=said):
         solve(rubber(0.3, 1.5))

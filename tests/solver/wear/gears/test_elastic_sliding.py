@@ -67,7 +67,7 @@ def apart(model: GearModel, here: GearContact, found: SharedPosition) -> Floats:
 
 
 @pytest.mark.parametrize(("kind", "tolerance"), [("steel", 0.02), ("plastic", 0.06), ("helical", 0.08)])
-def test_material_points_followed(kind: str, tolerance: float) -> None:
+def test_elastic_sliding_of_followed_material_points(kind: str, tolerance: float) -> None:
     """A steel pinion on a wheel of steel or of plastic, and a helical pair, without friction. Two states TURN before
     and after a position say how its pairs of material points slide over one another. At each tooth the pressure's mean
     of that is what wear takes: less the nominal (1 + 1/u) ξ within 2 % of its largest with steel (0.06 mm/rad, where
@@ -96,7 +96,7 @@ def test_material_points_followed(kind: str, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize("on", Member)
-def test_worn_flanks_meet_elsewhere(on: Member) -> None:
+def test_sliding_changes_as_worn_flanks_shift_the_contact(on: Member) -> None:
     """Flanks worn by 20 and 10 µm everywhere are parallel curves, involutes of the same base circles: the free gear
     turns after, and the contact moves along the line of action by what the other gear has lost, h. So the sliding
     changes by (1 + 1/u) h, towards the gear that is held, within 2 % in the mean of pressure and pitch."""
@@ -150,7 +150,7 @@ def made_up(pair: GearPair, grids: Grids, count: int) -> PitchDeflection:
 
 
 @pytest.mark.parametrize("k", [0, 17, 79])
-def test_given_deflections(k: int) -> None:
+def test_elastic_sliding_of_given_deflections(k: int) -> None:
     """Points of a helical pair, u = 1.2, whose teeth deflect by given smooth functions of place and time: what is added
     is d/dφ of t·(x_1 − x_2), x = c + R(φ, ε)(X + u(X, φ)), less that of rigid gears, from 80 positions within 0.3 %;
     also at the first and the last position, whose neighbours are a tooth further."""

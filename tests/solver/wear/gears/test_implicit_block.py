@@ -1,4 +1,4 @@
-"""A long block of wear of a gear pair: its linear equations, with responses as matrices and as products."""
+"""An implicit block of a gear pair: its linear equations, with responses as matrices and as products."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def fresh() -> tuple[GearWear, PitchState]:
     return gears, gears.evaluate(gears.begin)
 
 
-def test_response_as_a_matrix() -> None:
+def test_pressure_response_as_matrix_and_as_product() -> None:
     """R times an opening is the same by the matrix and by the product, to rounding; points that have left the contact
-    keep no pressure, whatever opens."""
+    keep no pressure for any opening."""
     now = fresh()[1]
     whole = PositionResponse.of(now.shared[0], now.points[0])
     pulled = np.arange(len(whole.separating)) % 3 == 0
@@ -41,8 +41,8 @@ def test_response_as_a_matrix() -> None:
     np.testing.assert_allclose(left.separation[pulled], -left.points.pressure[pulled], rtol=1e-12)
 
 
-def test_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An implicit block is the same within what GMRES leaves, however many points count as few."""
+def test_implicit_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An implicit block is the same within the tolerance of GMRES whether responses are stored as matrices or not."""
     gears, now = fresh()
     few, _ = gears.implicit_block(gears.begin, now, LENGTH)
     monkeypatch.setattr(implicit_block, "SMALL", 0)
@@ -50,9 +50,10 @@ def test_block_by_matrices_and_by_products(monkeypatch: pytest.MonkeyPatch) -> N
     np.testing.assert_allclose(few, many, atol=1e-5 * few.max())
 
 
-def test_long_block_lets_points_go() -> None:
-    """In 4e5 cycles at once points would pull: what is worn off is nowhere below zero, and the pressures of the block's
-    end, found by solving the pitch there, are those that it has reckoned with, within a tenth of the work."""
+def test_long_implicit_block_has_no_negative_depth() -> None:
+    """Problem: 4e5 cycles at once, after which linearised pressures of many points would be negative. Exact: no depth
+    is negative, and the depths are those of the pressures at the block's end, by solving the pitch there, within a
+    fifth of the volume."""
     gears, now = fresh()
     depth, end = gears.implicit_block(gears.begin, now, LENGTH)
     assert depth.min() >= 0.0

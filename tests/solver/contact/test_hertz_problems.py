@@ -1,12 +1,12 @@
-"""Variants of the verification problems: cells, normals, friction, an edge of contact inside a cell.
+"""Variants of Hertz' problems: cells, normals, friction, an edge of contact inside a cell.
 
 The problems themselves are rungs of the ladder (test_ladder.py).
 
-Errors are taken against an overkill solution of the same problem, because a block of 200 mm is no half-space for a
-contact of 12 mm: what is left against Hertz then is the problem's, and is bounded on its own.
+Errors are measured against an overkill solution of the same problem, because a block of 200 mm is no half-space for a
+contact of 12 mm; the difference of that solution from Hertz' has a bound of its own.
 
-Where cells end decides: at a/8 and with γ = 2 C the profile is off by 1 % where a cell ends at the edge of contact (as
-at a/8 by construction), by up to 6 % where the edge cuts a cell, in 2D and in 3D. Both are tested.
+The position of the cells matters: at a/8 and with γ = 2 C the profile is off by 1 % where a cell ends at the edge of
+contact (as at a/8 by construction), by up to 6 % where the edge cuts a cell, in 2D and in 3D. Both are tested.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from evolvent import Nitsche, NotConverged, hertz, solve
 
 @pytest.mark.parametrize("ratio", [1.0, 0.73, 1.37])
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_cylinder_on_block(first, ratio):
+def test_cylinder_on_block_agrees_with_an_overkill_solution(first, ratio):
     """NAFEMS 1 at h = a/8, order 2, matching and non-matching: p0 within 1 %, the profile within 2.5 % in L2. On the
     cylinder a cell ends at Hertz' edge."""
     found, overkill = line.pressed(line.cylinder_on_block(8, 2, ratio, first)), line.overkill(first)
@@ -32,7 +32,7 @@ def test_cylinder_on_block(first, ratio):
 
 
 @pytest.mark.parametrize("cells", [7.3, 8.6])
-def test_edge_inside_a_cell(cells):
+def test_skew_variant_resolves_an_edge_of_contact_inside_a_cell(cells):
     """NAFEMS 1 with the edge of contact inside a cell of the cylinder, about a/8: the symmetric method's profile is
     within 7 %, the skew one's with γ = 0.3 C within 2 %; p0 of both within 0.5 %."""
     problem, overkill = line.cylinder_on_block(cells, 2, 1.37, "cylinder"), line.overkill("cylinder")
@@ -44,7 +44,7 @@ def test_edge_inside_a_cell(cells):
 
 
 @pytest.mark.parametrize("shape", ["triangle"])
-def test_cylinder_on_block_of_triangles(shape):
+def test_cylinder_on_block_of_triangles_agrees_with_an_overkill_solution(shape):
     """The same bounds with second-order triangles."""
     found = line.pressed(line.cylinder_on_block(8, 2, 1.37, "block", shape=shape))
     assert found.peak == pytest.approx(line.overkill("block").peak, rel=0.01)
@@ -52,7 +52,7 @@ def test_cylinder_on_block_of_triangles(shape):
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_problem_is_close_to_hertz(first):
+def test_overkill_solution_of_the_cylinder_is_close_to_hertz(first):
     """The overkill solution itself: p0 within 0.5 % of Hertz' 3585.36 MPa and the profile within 1.5 %. The rest is the
     finite block, the held half-disc, and a contact whose normals turn by 7°."""
     overkill = line.overkill(first)
@@ -63,7 +63,7 @@ def test_problem_is_close_to_hertz(first):
     assert overkill.error(exact) < 0.015
 
 
-def test_finer_body_first():
+def test_error_falls_with_order_1_and_the_finer_body_first() -> None:
     """Order 1 with the finer body carrying the pressure is the bad choice: the pressure wiggles, but the error still
     falls with the element size, and p0 is within 1 % at a/16."""
     found = [line.pressed(line.cylinder_on_block(n, 1, 1.37, "block")) for n in (2, 4, 8, 16)]
@@ -74,7 +74,7 @@ def test_finer_body_first():
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_partial_slip(first):
+def test_partial_slip_of_the_cylinder_agrees_with_cattaneo(first):
     """Cattaneo: P first, then Q = μP/2. The traction within 5 % (block's normals) or 8 % in L2, the stick zone within a
     node of c = a√(1 − Q/μP), the resultants exact."""
     slip = line.Slip()
@@ -88,8 +88,8 @@ def test_partial_slip(first):
     assert np.abs(pressed.shear).max() < 0.2 * slip.friction * slip.peak  # of the curved surfaces: vanishes with a/R
 
 
-def test_no_more_than_the_friction_force():
-    """Pushed with 1.05 μP there is no equilibrium, and no solution is made up; |τ| ≤ μλ holds up to there."""
+def test_push_beyond_the_friction_force_has_no_equilibrium() -> None:
+    """Pushed with 1.05 μP there is no equilibrium: NotConverged; |τ| ≤ μλ holds at 0.95 μP."""
     pushed = line.Slip(share=0.95).profiles(4)[1]
     assert (np.abs(pushed.shear) <= 0.3 * pushed.pressure * (1.0 + 1e-9) + 1e-9).all()
     with pytest.raises(NotConverged):
@@ -97,7 +97,7 @@ def test_no_more_than_the_friction_force():
 
 
 @pytest.mark.parametrize(("cells", "first"), [(3, "block"), (3, "ball"), (2, "block")])
-def test_ball_on_block(cells, first):
+def test_ball_on_block_agrees_with_hertz(cells, first):
     """R = 8 mm, 2000 N, a quarter, non-matching hexahedra of order 2 in rings: p0 within 0.5 % of Hertz' 4318 MPa; the
     load comes back, and friction between equal materials changes p0 by less than 0.5 %."""
     contact = solve(point.ball_on_block(cells, first=first)).contacts[0]
@@ -111,7 +111,7 @@ def test_ball_on_block(cells, first):
         assert rough.peak == pytest.approx(profile.peak, rel=0.005)
 
 
-def test_ball_profile_on_squares():
+def test_skew_variant_halves_the_profile_error_of_a_ball_on_square_cells() -> None:
     """Square cells of a/4, cut by the edge at all angles: the skew method's profile with γ = 0.3 C is off by less than
     4 %, and by less than half of what the symmetric one's is (13 %)."""
     symmetric, skew = (

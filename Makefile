@@ -32,21 +32,21 @@ test: $(ready)
 	.venv/bin/python -m pytest $(ON_ALL_CORES) $(PYTEST_ARGS)
 
 verification: $(ready)
-	.venv/bin/python -m evidence.ladder --out docs
+	.venv/bin/python -m evidence.verification --out docs
 
 pages: $(ready)
 	.venv/bin/python -m evidence.pages
 
 stress: export OMP_NUM_THREADS ?= 1
 stress: $(ready)
-	.venv/bin/python -m evidence.stress all
+	.venv/bin/python -m evidence.robustness all
 
 bench: $(ready)
-	.venv/bin/python -m evidence.benchmark all
+	.venv/bin/python -m evidence.benchmarks all
 
 bench-peers: $(ready)
 	packages/peers build/peers
-	.venv/bin/python -m evidence.benchmark all --peers
+	.venv/bin/python -m evidence.benchmarks all --peers
 
 setup: $(ready)
 

@@ -1,4 +1,4 @@
-"""Where this checkout lies."""
+"""The folders of this checkout."""
 
 from __future__ import annotations
 
@@ -8,5 +8,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 DEMOS = ROOT / "demos"
 DOCS = ROOT / "docs"
-PYTHONPATH = os.pathsep.join(str(ROOT / root) for root in ("", "solver", "meshes"))
-"""For programs that are started: this checkout's packages, also where another copy is installed."""
+
+
+def python_path(root: Path = ROOT) -> str:
+    """PYTHONPATH of a checkout's packages, for programs that are started: also where another copy is installed."""
+    return os.pathsep.join(str(root / folder) for folder in ("", "solver", "meshes"))

@@ -1,4 +1,4 @@
-"""A claim: a figure that was measured, what it is held against, and how far off it may be."""
+"""Claims: computed figures, the reference values that they are compared with, and their tolerances."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 
 class Reference(Enum):
-    """What a claim is held against. Only a regression proves nothing but that nothing changed."""
+    """Kind of a reference value. A regression shows only that nothing changed."""
 
     ANALYTICAL = "analytical"
     EXTERNAL = "external"
@@ -21,48 +21,21 @@ class Reference(Enum):
 
 @dataclass(frozen=True)
 class Claim:
-    """`found` lies within `tolerance` (absolute) of `wanted`.
-
-    quantity: what it is, with its unit. source: the formula, publication or mesh that `wanted` comes from.
-    missed: why a bar is known to be missed. Such a claim must fail: that it holds one day shall be noticed.
-    one_sided: more than `wanted` is no error.
-    """
+    """A figure lies within a tolerance of a reference value."""
 
     quantity: str
+    """Its name and unit."""
     found: float
     wanted: float
     tolerance: float
+    """Absolute."""
     reference: Reference
     source: str
+    """Of `wanted`: formula, publication or mesh."""
     missed: str = ""
+    """Why it is known not to hold. Such a claim must fail, so that it is noticed on the day it holds."""
     one_sided: bool = False
-
-    @staticmethod
-    def relative(
-        quantity: str,
-        found: float,
-        wanted: float,
-        tolerance: float,
-        reference: Reference,
-        source: str,
-        missed: str = "",
-    ) -> Claim:
-        """The tolerance is a share of `wanted`."""
-        return Claim(quantity, found, wanted, tolerance * abs(wanted), reference, source, missed)
-
-    @staticmethod
-    def bound(
-        quantity: str, error: float, largest: float, reference: Reference, source: str, missed: str = ""
-    ) -> Claim:
-        """An error (a norm, not negative) is at most `largest`."""
-        return Claim(quantity, error, 0.0, largest, reference, source, missed)
-
-    @staticmethod
-    def at_least(
-        quantity: str, found: float, least: float, tolerance: float, reference: Reference, source: str, missed: str = ""
-    ) -> Claim:
-        """`found` is above `least`, or below it by no more than `tolerance`."""
-        return Claim(quantity, found, least, tolerance, reference, source, missed, one_sided=True)
+    """More than `wanted` is no error."""
 
     @property
     def error(self) -> float:
@@ -71,7 +44,7 @@ class Claim:
 
     @property
     def holds(self) -> bool:
-        """False for a found number that is not one."""
+        """False for NaN."""
         return self.error <= self.tolerance
 
     @property
@@ -96,13 +69,61 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Rung:
-    """A verification problem solved. name: of its picture's file. problem: what is solved, and its known answer, in a
-    paragraph. draw: its figure, found against exact. see: the line below the figure's title that says what to see."""
+class Source:
+    """Where reference values come from; makes the claims against them."""
+
+    reference: Reference
+    name: str
+    """Formula, publication or mesh."""
+
+    def absolute(self, quantity: str, found: float, wanted: float, tolerance: float, missed: str = "") -> Claim:
+        """With an absolute tolerance."""
+        return Claim(quantity, found, wanted, tolerance, self.reference, self.name, missed)
+
+    def relative(self, quantity: str, found: float, wanted: float, tolerance: float, missed: str = "") -> Claim:
+        """With a tolerance relative to `wanted`."""
+        return self.absolute(quantity, found, wanted, tolerance * abs(wanted), missed)
+
+    def bound(self, quantity: str, error: float, largest: float, missed: str = "") -> Claim:
+        """An error (a norm, not negative) is at most `largest`."""
+        return self.absolute(quantity, error, 0.0, largest, missed)
+
+    def at_least(self, quantity: str, found: float, least: float, tolerance: float) -> Claim:
+        """`found` is above `least`, or below it by no more than an absolute tolerance."""
+        return Claim(quantity, found, least, tolerance, self.reference, self.name, one_sided=True)
+
+
+def analytical(name: str) -> Source:
+    """An exact solution."""
+    return Source(Reference.ANALYTICAL, name)
+
+
+def external(name: str) -> Source:
+    """Published by others."""
+    return Source(Reference.EXTERNAL, name)
+
+
+def overkill(name: str) -> Source:
+    """The same problem on a much finer mesh."""
+    return Source(Reference.OVERKILL, name)
+
+
+def regression(name: str) -> Source:
+    """Another computation of this program."""
+    return Source(Reference.REGRESSION, name)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """A verification problem, solved."""
 
     name: str
+    """Of the file of its figure."""
     title: str
-    problem: str
+    statement: str
+    """What is solved, and its known solution, in a paragraph."""
     claims: tuple[Claim, ...]
     draw: Callable[[Figure], None]
-    see: str = ""
+    """Its figure: computed and exact solution."""
+    caption: str = ""
+    """The line below the figure's title that says what to see."""

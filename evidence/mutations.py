@@ -1,15 +1,13 @@
-"""`python -m evidence.mutations [NAME ...]`: breaks what the tests of docs/edges.md hold, one line at a time, and sees
-whether they fail.
+"""`python -m evidence.mutations [NAME ...]`: checks that tests fail when a line that they protect is changed.
 
-A mutation of mutations.toml exchanges one line of the program, in a copy of the tree, for one that undoes what the page
-says; each test that it names has to fail then, and to pass before. What was seen goes into docs/edges_seen.csv, from
-which `make pages` writes the table of the page. All of them take more than an hour on one core; a name runs the
-mutations that begin with it.
+A mutation of mutations.toml exchanges one line of the program, in a copy of the tree, for one that undoes what a line
+of docs/edges.md says. Each test that it names must pass before and fail then. The results are kept in
+docs/edges_seen.csv, from which `make pages` writes the table of the page. All mutations take more than an hour on one
+core; a name runs those that begin with it.
 """
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import os
 import shutil
@@ -22,7 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from evidence.checkout import ROOT
+from evidence.checkout import ROOT, python_path
+from evidence.tables import markdown, read_csv, write_csv
 
 LIST, SEEN = Path("evidence/mutations.toml"), Path("docs/edges_seen.csv")
 PATIENCE = 900.0  # seconds a test; one that hangs has not failed
@@ -72,18 +71,17 @@ def seen(root: Path = ROOT) -> Seen:
     """What was seen to fail so far."""
     if not (root / SEEN).exists():
         return set()
-    with open(root / SEEN, newline="", encoding="utf-8") as file:
-        return {(row["mutation"], row["fingerprint"], row["test"]) for row in csv.DictReader(file)}
+    return {(row["mutation"], row["fingerprint"], row["test"]) for row in read_csv(root / SEEN)}
 
 
 def table(root: Path = ROOT) -> str:
     """The table of docs/edges.md: of each mutation the tests that were seen to fail with it."""
-    known, rows = seen(root), ["| the program broken on purpose | in | seen to fail |", "| --- | --- | --- |"]
+    known, rows = seen(root), []
     for each in mutations(root):
         if tests := [test for test in each.tests if (each.name, each.fingerprint, test) in known]:
             named = ", ".join(f"`{test}`" for test in dict.fromkeys(test.split("[")[0] for test in tests))
-            rows.append(f"| {each.when} | `{each.file}` | {named} |")
-    return "\n".join(rows)
+            rows.append((each.when, f"`{each.file}`", named))
+    return markdown(("the program broken on purpose", "in", "seen to fail"), rows)
 
 
 def failures(mutation: Mutation, tree: Path) -> tuple[dict[str, str], str]:
@@ -100,11 +98,10 @@ def failures(mutation: Mutation, tree: Path) -> tuple[dict[str, str], str]:
 def failing(tests: Sequence[str], tree: Path) -> tuple[dict[str, str], str]:
     """Which of these tests fail in a tree -> what they say; and pytest's last line."""
     nodes, report = [f"tests/{test.replace('::', '.py::', 1)}" for test in tests], tree / "report.xml"
-    roots = os.pathsep.join(str(tree / root) for root in ("", "solver", "meshes"))
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}", *nodes]
     try:
         done = subprocess.run(
-            command, cwd=tree, env={**os.environ, "PYTHONPATH": roots, "OMP_NUM_THREADS": "1"},
+            command, cwd=tree, env={**os.environ, "PYTHONPATH": python_path(tree), "OMP_NUM_THREADS": "1"},
             capture_output=True, text=True, timeout=PATIENCE * len(tests), check=False,
         )  # fmt: skip
         said = _said(report) if report.exists() else {}
@@ -112,10 +109,10 @@ def failing(tests: Sequence[str], tree: Path) -> tuple[dict[str, str], str]:
         return {}, f"not done after {PATIENCE * len(tests):g} s"
     finally:
         report.unlink(missing_ok=True)
-    found = {test: [text for case, text in said.items() if case == test or case.startswith(f"{test}[")]
+    texts_of = {test: [text for case, text in said.items() if case == test or case.startswith(f"{test}[")]
              for test in tests}  # fmt: skip
     last = (done.stdout + done.stderr).strip().rpartition("\n")[2]
-    return {test: texts[0] for test, texts in found.items() if texts}, last
+    return {test: texts[0] for test, texts in texts_of.items() if texts}, last
 
 
 def _said(report: Path) -> dict[str, str]:
@@ -144,9 +141,7 @@ def keep(mutation: Mutation, failed: dict[str, str]) -> None:
     rows = {row for row in seen() if row[0] in order and row[0] != mutation.name}
     rows |= {(mutation.name, mutation.fingerprint, test) for test in failed}
     ordered = sorted(rows, key=lambda row: (order.index(row[0]), row))
-    with open(ROOT / SEEN, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerows([("mutation", "fingerprint", "test"), *ordered])
+    write_csv(ROOT / SEEN, ("mutation", "fingerprint", "test"), ordered)
 
 
 def main(names: list[str]) -> int:
@@ -163,8 +158,8 @@ def main(names: list[str]) -> int:
 
 def see(mutation: Mutation, tree: Path, before: Collection[str]) -> int:
     """How many of a mutation's tests are not seen to fail; those of `before` fail without it too."""
-    found, last = failures(mutation, tree)
-    failed = {test: text for test, text in found.items() if test not in before}
+    failures_of, last = failures(mutation, tree)
+    failed = {test: text for test, text in failures_of.items() if test not in before}
     keep(mutation, failed)
     for test in mutation.tests:
         text = failed[test].partition("\n")[0] if test in failed else f"NOT SEEN TO FAIL: {last}"

@@ -1,10 +1,10 @@
-"""What pages of measured figures share: tables, pictures, and by what command and on which machine they were made."""
+"""Pages of measured figures: their header with command, machine and versions, their pictures."""
 
 from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -12,9 +12,6 @@ from PIL import Image
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.drawing import style
-
-COLOURS = 128
-"""Of a picture's palette: as good as all on a sheet of curves, at a third of the size."""
 
 
 def header(title: str, command: str) -> str:
@@ -27,19 +24,6 @@ def header(title: str, command: str) -> str:
             f"Written by `{command}` on {machine()}; {versions()}.",
         )
     )
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]], right: Container[int] = ()) -> str:
-    """A Markdown table. right: the columns of numbers. Raises ValueError for a row of another length."""
-    for row in rows:
-        if len(row) != len(head):
-            raise ValueError(f"table: wanted rows of {len(head)} columns ({', '.join(head)}), found {list(row)}")
-    rule = ["---:" if column in right else "---" for column in range(len(head))]
-    return "\n".join(_line(row) for row in (head, rule, *rows))
-
-
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
 def machine() -> str:
@@ -62,10 +46,10 @@ def versions() -> str:
 
 
 def picture(figure: Figure, path: Path) -> Path:
-    """Writes a PNG with a small palette, so that it may stay in the repository. Gives its path back. Raises OSError."""
+    """Writes a PNG with a palette, a third as large as one without. Gives its path back. Raises OSError."""
     style.save(figure, path)
     with Image.open(path) as image:
-        image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+        image.convert("RGB").quantize().save(path, optimize=True)
     return path
 
 

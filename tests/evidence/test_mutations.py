@@ -32,7 +32,7 @@ def tree(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_failures(tree: Path) -> None:
+def test_mutation_fails_the_tests_that_see_it(tree: Path) -> None:
     """Of a program that divides by 4: a test fails if one of its cases does; one that cannot see it passes, one that
     fails for another reason (NameError) does not count. The program is as before."""
     tests = "test_half", "test_half[0.0]", "test_half[3.0]", "test_of_nothing", "test_other_name"

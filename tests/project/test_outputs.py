@@ -17,12 +17,12 @@ import jsonschema
 import pytest
 import pyvista
 
-from evidence.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
-from evidence.pages import ROOT
+from evidence.pages.outputs import ARRAYS, DEFORMED, FILES, SECTIONS, described
 from evolvent.cli import main
 from evolvent.results.tables.summary_rows import PositionRow, ToothRow
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.report import GearReport, PairReport, WearReport
+from tests.support.checkout import ROOT
 
 SCHEMA = json.loads((ROOT / "docs" / "summary.schema.json").read_text(encoding="utf-8"))
 SHORT = ("sweep.positions=2", "output.animation=false", "output.pictures=false")

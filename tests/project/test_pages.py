@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from evidence.benchmark.page import parts
-from evidence.outputs import described, unit
-from evidence.pages import ROOT, generated
-from evidence.promises import measured, promises, table_of
-from evidence.yang import kept
+from evidence.benchmarks.pages.page import parts
+from evidence.pages.generated import generated
+from evidence.pages.outputs import described, unit
+from evidence.pages.promises import PROMISES, measured, promises
+from evidence.pages.yang_figures import kept
+from tests.support.checkout import ROOT
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 PICTURES = list((ROOT / "docs").rglob("*.png"))  # the Docker image goes without
@@ -31,7 +32,7 @@ def test_the_benchmark_is_what_its_tables_say() -> None:
     """Exact: below its header, which names the machine, docs/benchmark.md is what the tables beside it make."""
     text = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
     wanted = "\n\n".join(part.strip() for part in parts(ROOT / "docs" / "benchmark")) + "\n"
-    assert text.endswith("\n\n" + wanted), "run `python -m evidence.benchmark page`"
+    assert text.endswith("\n\n" + wanted), "run `python -m evidence.benchmarks page`"
     assert text[: -len(wanted)].count("\n\n") <= 2
 
 
@@ -43,7 +44,7 @@ def test_another_figure_is_noticed(tmp_path: Path) -> None:
         for source in (ROOT / "docs" / name).iterdir():
             (tmp_path / name / source.name).write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
     before = promises(tmp_path)
-    assert table_of(before) == table_of(promises(ROOT / "docs"))
+    assert PROMISES.markdown(before) == PROMISES.markdown(promises(ROOT / "docs"))
     ratios = tmp_path / "benchmark" / "ratios.csv"
     head, first, *rest = ratios.read_text().splitlines()
     cells = first.split(",")

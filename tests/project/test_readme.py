@@ -12,8 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from evidence.pages import ROOT
 from evolvent import __version__
+from tests.support.checkout import ROOT
 
 
 def test_mpirun_as_it_is_typed(tmp_path: Path) -> None:

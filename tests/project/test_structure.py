@@ -93,20 +93,24 @@ ROOMS: dict[str, tuple[str, ...]] = {
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
 FILES, BELOW, LINES = 12, 9, 300
 """Of a room at most: its files, the rooms directly below it, the lines of a file."""
-TREES = ("solver/evolvent", "meshes/evolvent_meshes", "demos")
+PACKAGES = ("solver/evolvent", "meshes/evolvent_meshes")
+TREES = (*PACKAGES, "demos", "evidence")
 Imports = Mapping[str, set[str]]
 
 
-def modules() -> dict[str, Path]:
-    """Every module of the two packages but the doors of rooms (`__init__.py`), which only say what a room has."""
-    roots = (ROOT / "solver", ROOT / "meshes")
-    files = ((root, path) for root in roots for path in sorted(root.rglob("*.py")) if path.name != "__init__.py")
-    return {".".join(path.relative_to(root).with_suffix("").parts): path for root, path in files}
+def modules(trees: tuple[str, ...] = PACKAGES) -> dict[str, Path]:
+    """Every module of these trees but the doors of rooms (`__init__.py`), which only say what a room has."""
+    roots = [(ROOT / tree).parent for tree in trees]
+    files = [[path for path in sorted((ROOT / tree).rglob("*.py")) if path.name != "__init__.py"] for tree in trees]
+    return {
+        ".".join(path.relative_to(root).with_suffix("").parts): path
+        for root, paths in zip(roots, files) for path in paths
+    }  # fmt: skip
 
 
-def imports() -> dict[str, set[str]]:
-    """Module -> the modules that it imports."""
-    known = modules()
+def imports(trees: tuple[str, ...] = PACKAGES) -> dict[str, set[str]]:
+    """Module -> the modules of these trees that it imports."""
+    known = modules(trees)
     return {name: set(_targets(ast.parse(path.read_bytes()), known)) - {name} for name, path in known.items()}
 
 
@@ -178,6 +182,43 @@ def test_the_rule_can_be_broken() -> None:
     assert refused(found) == ["evolvent.fem.surface imports evolvent.contact.search.pairing"]
     with pytest.raises(CycleError):
         TopologicalSorter(found).prepare()
+
+
+def evidence_room(module: str) -> str:
+    """The folder of a module of evidence. A command (`__main__`) is a room of its own above those that it starts."""
+    return module if module.endswith(".__main__") else module.rpartition(".")[0]
+
+
+def between_rooms(found: Imports) -> dict[str, set[str]]:
+    """Room of evidence -> the rooms that it imports."""
+    rooms: dict[str, set[str]] = {evidence_room(module): set() for module in found}
+    for module, targets in found.items():
+        rooms[evidence_room(module)] |= {evidence_room(target) for target in targets}
+    return {name: targets - {name} for name, targets in rooms.items()}
+
+
+def test_evidence_has_no_circle() -> None:
+    """Evidence may import all of the packages and demos; its own files, and its own rooms, have no circle."""
+    found = imports(("evidence",))
+    assert len(found) > 60
+    TopologicalSorter(found).prepare()
+    TopologicalSorter(between_rooms(found)).prepare()
+
+
+def test_a_circle_of_rooms_can_be_seen() -> None:
+    """Two files of one room that import, and are imported by, another room: no circle of files, but one of rooms."""
+    found = {"evidence.a.one": {"evidence.b.two"}, "evidence.b.two": {"evidence.a.three"}, "evidence.a.three": set()}
+    TopologicalSorter(found).prepare()
+    with pytest.raises(CycleError):
+        TopologicalSorter(between_rooms(found)).prepare()
+
+
+def test_packages_import_nothing_that_stands_on_them() -> None:
+    """Neither evidence nor demos nor tests."""
+    above = imports((*PACKAGES, "evidence", "demos", "tests"))
+    outside = [f"{module} imports {target}" for module in modules() for target in above[module]
+               if target.split(".")[0] in ("evidence", "demos", "tests")]  # fmt: skip
+    assert outside == []
 
 
 def sizes(tree: Path) -> list[str]:

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from demos.two_blocks import Patch
-from evidence.stress.matrix import Cylinder, patch_cell
-from evidence.stress.sheets import Cell, attempt
+from evidence.robustness.settings.matrix import Cylinder, patch_cell
+from evidence.robustness.settings.sheets import Cell, attempt
 from evolvent import Problem, SmallStrainExceeded, solve
 from evolvent.contact.newton import equilibrium, snes
 from evolvent.contact.newton.snes import NotConverged

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from evidence.stress.faults import GLANCE, differs, run, started
+from evidence.robustness.faults import GLANCE, differs, run, started
 from evolvent.stopping import Stopped, stoppable
 from tests.support.checkout import ROOT
 

@@ -15,7 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from evidence.stress.faults import SETTINGS
+from evidence.robustness.faults import SETTINGS
 from evolvent.cli import main
 from evolvent.results.archive.archive import ArchiveError, read_arrays
 

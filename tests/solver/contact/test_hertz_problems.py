@@ -1,6 +1,6 @@
 """Variants of Hertz' problems: cells, normals, friction, an edge of contact inside a cell.
 
-The problems themselves are rungs of the ladder (test_ladder.py).
+The problems themselves are solved in tests/evidence/verification/test_problems.py.
 
 Errors are measured against an overkill solution of the same problem, because a block of 200 mm is no half-space for a
 contact of 12 mm; the difference of that solution from Hertz' has a bound of its own.

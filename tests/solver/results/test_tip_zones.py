@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evidence.benchmark.spacing import PLASTIC
+from evidence.benchmarks.accuracy.spacing import PLASTIC
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.contact_slices import Slices
@@ -19,7 +19,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.scene import scene_from_text
+from evolvent.scene.scene import load_scene
 from tests.solver.results.tables.test_run_warnings import GOOD
 from tests.support.gear_cases import QUIET
 from tests.support.synthetic_run import synthetic_run
@@ -29,7 +29,7 @@ from tests.support.synthetic_run import synthetic_run
 def runs() -> list[RunData]:
     """An unrelieved plastic pinion without friction: one pitch of 40 positions, of which each fourth is taken, four
     times."""
-    scene = scene_from_text(PLASTIC, [*QUIET, "contact.friction=0.0", "sweep.positions=40"])
+    scene = load_scene(PLASTIC, [*QUIET, "contact.friction=0.0", "sweep.positions=40"])
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
     assert run is not None
     return [replace(run, positions=run.positions[k::4]) for k in range(4)]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from evidence.stress.faults import Struck, arguments, differs, run, struck_again_and_again
+from evidence.robustness.faults import Struck, arguments, differs, run, struck_again_and_again
 from evolvent.results.archive.archive import read_arrays
 from tests.conftest import Run
 

@@ -12,7 +12,7 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
-from evidence.benchmark.skips import CASES, differences
+from evidence.benchmarks.gears.skips import CASES, differences
 from evolvent.cli import main
 from evolvent.gears import gear_model
 from evolvent.gears.full_gear import WholeGear

@@ -23,7 +23,7 @@ scatter above what fewer show.
 With friction, what a position remembers of those before it also depends on how far apart they are. That is in none of
 these estimates: in a helical pair at μ = 0.2 it is 0.1 % of the secant stiffness at 20 positions.
 
-evidence/benchmark/spacing.py holds these estimates against many positions.
+evidence/benchmarks/accuracy/spacing.py compares these estimates with many positions.
 """
 
 from __future__ import annotations

@@ -86,7 +86,7 @@ def fitted(contact: ContactResult) -> tuple[float, float]:
 def test_bodies_placed_in_overlap_are_paired_where_they_meet(share):
     """Pressed by a placement in overlap, by a prescribed motion from where they touch, and by the force that takes: the
     same approach, force, peak pressure and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 the first two are
-    7 % and 10 % off in peak and width. Half-spheres are a rung of the ladder."""
+    7 % and 10 % off in peak and width. Half-spheres are a verification problem."""
     moved, placed = (solve(*half_discs(share, by)).contacts[0] for by in (False, True))
     force = float(np.linalg.norm(moved.force))
     loaded = solve(*half_discs(share, False, force))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evidence.stress.random_scenes import random_scene
+from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact import pair_contact, tooth_contact
 from evolvent.gears.contact.overlap_check import overlap_outside, unwatched

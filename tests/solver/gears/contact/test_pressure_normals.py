@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evidence.stress.outcomes import Verdict, outcome_of
-from evidence.stress.random_scenes import random_scene
+from evidence.robustness.campaigns.random_scenes import random_scene
+from evidence.robustness.campaigns.scene_outcomes import Verdict, outcome_of
 from evolvent.contact.nitsche.contact_operator import contact_operator
 from evolvent.contact.search.pairing import pair_surfaces
 from evolvent.fem.nodal_frames import tangent_frames

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evidence.benchmark.skips import differences
-from evidence.stress.random_scenes import random_scene
+from evidence.benchmarks.gears.skips import differences
+from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.surface import Surface
 from evolvent.gears.contact.pair_contact import gear_contact

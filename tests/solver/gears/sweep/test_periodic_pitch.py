@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evidence.stress.outcomes import some_positions
-from evidence.stress.random_scenes import random_scene
+from evidence.robustness.campaigns.random_scenes import random_scene
+from evidence.robustness.campaigns.scene_outcomes import some_positions
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import friction_history, periodic_pitch

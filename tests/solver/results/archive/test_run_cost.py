@@ -13,11 +13,11 @@ from typing import Any
 
 import pytest
 
-from evidence.pages import ROOT
 from evolvent.cli import Exit, main
 from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_cost import FILE, Cost, Timings, keep_cost, kept_cost
 from evolvent.results.archive.run_folder import RunFolder
+from tests.support.checkout import ROOT
 
 SHORT = ("sweep.positions=2", "output.animation=false", "output.pictures=false", "output.fields=false")
 HE = (str(ROOT / "demos/he2022.toml"), "--quiet", "--level", "quick", *(w for key in SHORT for w in ("--set", key)))

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evidence.benchmark.bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
-from evidence.benchmark.subdivision import halved
+from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
+from evidence.benchmarks.accuracy.subdivision import halved
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem

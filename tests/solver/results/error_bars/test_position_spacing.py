@@ -9,8 +9,8 @@ import pytest
 from matplotlib.text import Text
 from mpi4py import MPI
 
-from evidence.benchmark.bars import hit_rate
-from evidence.benchmark.spacing import PLASTIC, SpacingProblem, measure_spacing
+from evidence.benchmarks.accuracy.error_bars import hit_rate
+from evidence.benchmarks.accuracy.spacing import PLASTIC, SpacingProblem, measure_spacing
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import added
 from evolvent.results.drawing.style import styled
@@ -33,7 +33,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import SPACING_SAID, warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.scene import scene_from_text
+from evolvent.scene.scene import load_scene
 from tests.solver.results.tables.test_run_warnings import GOOD
 from tests.support.synthetic_run import synthetic_run
 
@@ -41,7 +41,7 @@ COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")
 
 
 def plastic(positions: int) -> RunData:
-    scene = scene_from_text(PLASTIC, [*COARSE, f"sweep.positions={positions}"])
+    scene = load_scene(PLASTIC, [*COARSE, f"sweep.positions={positions}"])
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
     assert run is not None
     return run
@@ -150,7 +150,7 @@ def test_a_plastic_pinion() -> None:
     leaves the tip-edge zone, and whose transmission error has a corner half a degree wide, at quick. Exact: the same
     mesh at 80 positions. Nine in ten of the parts hold the true error; at 12 and 20 positions that of the largest
     pressure is a few per cent, a hundred times what round-off would be, and shrinks with more."""
-    problem = SpacingProblem("plastic", scene_from_text(PLASTIC, COARSE))
+    problem = SpacingProblem("plastic", load_scene(PLASTIC, COARSE))
     rows = measure_spacing(problem, (12, 20), 80)
     assert hit_rate(rows) >= 0.9
     assert np.median([row.bar / row.error for row in rows if row.error]) < 5.0

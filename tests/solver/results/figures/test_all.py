@@ -14,7 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
 
-from evidence.tutorial import small
+from evidence.pages.tutorial import small
 from evolvent.cli import Exit, main
 from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.drawing.offscreen import off_screen

@@ -1,0 +1,1 @@
+"""How often error bars contain the true error."""

@@ -1,0 +1,1 @@
+"""The cost of gear pairs: a position, a pitch, their growth, and what each skip saves."""

@@ -1,0 +1,1 @@
+"""The page docs/benchmark.md and its figures, from the measured tables."""

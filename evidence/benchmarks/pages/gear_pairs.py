@@ -1,0 +1,161 @@
+"""What gear pairs cost: the sections on pitches, sizes, skips, 2D against 3D, and wear."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from evidence.benchmarks.gears.pitch_precision import PitchRow
+from evidence.benchmarks.gears.plane_and_solid import SpurRow
+from evidence.benchmarks.gears.profile import ProfileRow
+from evidence.benchmarks.gears.scaling import RatioRow, SizeRow, exponent
+from evidence.benchmarks.gears.skips import SkipRow
+from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow, WearPrecisionRow
+from evidence.benchmarks.pages import figures
+from evidence.benchmarks.pages.section import Section, verdict
+from evidence.tables import Column, Table
+
+SPUR_BAR = 20.0
+WEAR_BAR = 5.0
+PITCHES = """Wall seconds of the whole process without meshing: for a run of one position, for the pitch, and for one
+position with an empty cache of compiled forms (*cold*). Error: of the pitch's mean transmission error, against the
+overkill pitch. *Elements* are those across the contact width; the body keeps what its level has, and with order 1 the
+error of that remains."""
+
+
+def _power_laws(rows: Sequence[SizeRow]) -> list[str]:
+    solved = [row for row in rows if not row.note]
+    if len(solved) < 2:
+        return []
+    dofs = figures.column(solved, "dofs")
+    names = {"memory_MB": "memory", "condense": "condensing", "position": "one more position"}
+    laws = [f"{text} ~ dofs^{exponent(dofs, figures.column(solved, name)):.2f}" for name, text in names.items()]
+    return ["; ".join(laws) + "."]
+
+
+def _profile_said(rows: Sequence[ProfileRow]) -> list[str]:
+    return [
+        f"A pitch of {rows[0].positions} positions at one friction coefficient, {rows[0].dofs:,} dofs, by Python's "
+        "profiler, which slows small functions down."
+    ]
+
+
+def _skips_said(rows: Sequence[SkipRow]) -> list[str]:
+    beyond = [row.skip for row in rows if not row.difference <= row.tolerance]
+    said = f"Beyond their tolerance: {', '.join(beyond)}." if beyond else "All differences are within the tolerances."
+    return [
+        f"Whole runs at level quick (wall time, pictures and error bars off), with a skip and with `--no-skip`. {said}"
+    ]
+
+
+def least_ratio(rows: Sequence[SpurRow]) -> float:
+    """Least ratio of the seconds in 3D over those in 2D."""
+    return min(row.volume_seconds / row.seconds for row in rows)
+
+
+def _spur_said(rows: Sequence[SpurRow]) -> list[str]:
+    least = least_ratio(rows)
+    met = "met" if least >= SPUR_BAR else f"MISSED, {least:.1f} at the least"
+    return [
+        "He's spur pair, 20 positions without friction, in 2D and on the smallest 3D mesh whose error in the "
+        f"transmission error is no larger; CPU seconds. Wanted: at least {SPUR_BAR:g} times: {met}."
+    ]
+
+
+def _wear_said(rows: Sequence[WearCostRow]) -> list[str]:
+    whole, bare = (
+        "met" if all(getattr(row, name) <= WEAR_BAR for row in rows) else "missed" for name in ("whole", "bare")
+    )
+    return [
+        f"A study of {BLOCKS} implicit blocks over one sweep of the unworn pair, without friction, CPU seconds; "
+        f"*whole* with preparing both gears, on either side, *bare* without. Wanted at most {WEAR_BAR:g} times: whole "
+        f"{whole}, bare {bare}."
+    ]
+
+
+PITCH_TABLE = Table(
+    PitchRow,
+    (
+        Column("cells", "shape", words=True), Column("order", "order"), Column("ranks", "ranks"),
+        Column("elements", "elements", "g"), Column("dofs", "dofs", ","), Column("one position s", "one", ".3g"),
+        Column("cold s", "cold", ".3g"), Column("pitch s", "pitch", ".3g"), Column("MB", "memory_MB", ".0f"),
+        Column("error %", "error", "+.2%"), Column("overkill's own %", "reference_error", ".2%"),
+    ),
+)  # fmt: skip
+RATIO_TABLE = Table(
+    RatioRow,
+    (
+        Column("ratio of", "what", words=True), Column("dofs", "dofs", ","), Column("s", "above", ".3g"),
+        Column("over s", "below", ".3g"), Column("found", lambda row: f"**{row.ratio:.2f}**"),
+        Column("bar", lambda row: f"at {'least' if row.is_least else 'most'} {row.bar:g}"), Column("aim", "aim", "g"),
+        Column("bar is", lambda row: verdict(row.met), words=True),
+    ),
+)  # fmt: skip
+SIZE_TABLE = Table(
+    SizeRow,
+    (
+        Column("elements across 2b", "elements", "g"), Column("dofs", "dofs", ","),
+        Column("assemble s", "assemble", ".3g"), Column("condense s", "condense", ".3g"),
+        Column("s a position", "position", ".3g"), Column("Newton", "iterations", ".0f"),
+        Column("MB", "memory_MB", ".0f"),
+    ),
+)  # fmt: skip
+PROFILE_TABLE = Table(
+    ProfileRow,
+    (
+        Column("part", "part", words=True), Column("s", "seconds", ".3g"), Column("%", "share", ".1%"),
+        Column("calls", "calls"),
+    ),
+)  # fmt: skip
+SKIP_TABLE = Table(
+    SkipRow,
+    (
+        Column("skip", "skip", words=True), Column("scene", lambda row: row.scene.removeprefix("demos/"), words=True),
+        Column("s", "seconds", ".3g"), Column("without s", "long_seconds", ".3g"),
+        Column("times", lambda row: f"**{row.long_seconds / row.seconds:.2f}**"), Column("MB", "memory_MB", ".0f"),
+        Column("without MB", "long_memory_MB", ".0f"),
+        Column("times", lambda row: row.long_memory_MB / row.memory_MB, ".2f"),
+        Column("difference", "difference", ".1e"), Column("tolerance", "tolerance", ".0e"),
+    ),
+)  # fmt: skip
+SPUR_TABLE = Table(
+    SpurRow,
+    (
+        Column("2D elements", "elements", "g"), Column("body", lambda row: "finer" if row.fine_body else "as is"),
+        Column("s", "seconds", ".3g"), Column("MB", "memory_MB", ".0f"), Column("error %", "error", ".2%"),
+        Column("3D elements", "volume_elements", "g"), Column("layers", "layers"),
+        Column("s", "volume_seconds", ".3g"), Column("MB", "volume_memory_MB", ".0f"),
+        Column("error %", "volume_error", ".2%"),
+        Column("3D over 2D", lambda row: f"**{row.volume_seconds / row.seconds:.1f}**"),
+    ),
+)  # fmt: skip
+WEAR_COST_TABLE = Table(
+    WearCostRow,
+    (
+        Column("pair", "case", words=True), Column("dofs", "dofs", ","), Column("prepare s", "prepare", ".3g"),
+        Column("sweep s", "sweep", ".3g"), Column(f"{BLOCKS} blocks s", "study", ".3g"),
+        Column("whole", lambda row: f"**{row.whole:.2f}**"), Column("bare", "bare", ".2f"),
+    ),
+)  # fmt: skip
+WEAR_TABLE = Table(
+    WearPrecisionRow,
+    (
+        Column("blocks", "method", words=True), Column("tolerance", "tolerance", "g"), Column("made", "blocks"),
+        Column("refused", "refused"), Column("s", "seconds", ".3g"), Column("error of the depths %", "error", ".2%"),
+        Column("of the volume %", "volume_error", "+.2%"),
+    ),
+)  # fmt: skip
+COSTS: tuple[Section, ...] = (
+    Section(
+        "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
+        words=lambda _: [PITCHES],
+    ),
+    Section("A pitch", "ratios", RATIO_TABLE),
+    Section("Size", "sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size", after=_power_laws),
+    Section("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
+    Section("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
+    Section("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
+)  # fmt: skip
+WEAR: tuple[Section, ...] = (
+    Section("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
+    Section("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
+)

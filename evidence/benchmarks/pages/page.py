@@ -1,0 +1,28 @@
+"""docs/benchmark.md: tables and figures from the measured rows; nothing is typed in by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evidence.benchmarks.pages import accuracy, comparison, gear_pairs
+from evidence.benchmarks.pages.section import PICTURES
+from evidence.report import header, write
+
+COMMAND = "python -m evidence.benchmarks all --peers"
+TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
+reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
+Errors are relative to the overkill solution of the same problem."""
+SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *gear_pairs.WEAR)
+
+
+def write_page(out: Path) -> Path:
+    """The page and its figures, below this folder; parts that were not measured are left out. Raises OSError."""
+    (out / PICTURES).mkdir(parents=True, exist_ok=True)
+    for section in SECTIONS:
+        section.draw(out / "benchmark", out / PICTURES)
+    return write(out / "benchmark.md", [header("Benchmarks", COMMAND), *parts(out / "benchmark")])
+
+
+def parts(tables: Path) -> list[str]:
+    """The page below its header, from the tables in this folder."""
+    return [TERMS, *(part for section in SECTIONS for part in section.parts(tables))]

@@ -1,0 +1,1 @@
+"""Generated pages, and generated parts of pages."""

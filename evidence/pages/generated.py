@@ -1,0 +1,47 @@
+"""What generated pages should hold, from the code and from what was measured before.
+
+A page that is written by hand has generated parts between two marks, `<!-- begin NAME: ... -->` and `<!-- end -->`.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from evidence import mutations
+from evidence.checkout import ROOT
+from evidence.pages import outputs, promises, readme, tutorial, yang
+
+
+def generated(root: Path = ROOT) -> dict[Path, str]:
+    """File -> what it should hold. Raises ValueError where a page lacks a part's marks."""
+    docs = root / "docs"
+    bars = promises.said(docs)
+    first = root / "demos" / "first_pair.toml"
+    parts = {
+        root / "README.md": {
+            "speed": readme.speed(docs), "bars": bars, "verification": readme.verification(docs),
+            "accuracy": yang.accuracy(docs),
+        },
+        docs / "scene.md": {"levels": yang.levels(docs)},
+        docs / "yang2022.md": {"accuracy": yang.accuracy(docs), "points": yang.points(docs)},
+        docs / "evidence.md": {"bars": bars},
+        docs / "edges.md": {"seen": mutations.table(root)},
+        docs / "tutorial.md": {
+            "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
+            "figures": tutorial.figures(docs),
+        },
+    }  # fmt: skip
+    pages = {page: _filled(page, texts) for page, texts in parts.items()}
+    whole = "\n\n".join(part.strip() for part in outputs.page()) + "\n"
+    return {**pages, docs / "outputs.md": whole, docs / "summary.schema.json": outputs.schema_text()}
+
+
+def _filled(page: Path, parts: dict[str, str]) -> str:
+    text = page.read_text(encoding="utf-8")
+    for name, part in parts.items():
+        mark = re.compile(rf"(<!-- begin {name}: [^\n]*? -->\n\n)(?:.*?\n\n)??(<!-- end -->)", re.DOTALL)
+        if (count := len(mark.findall(text))) != 1:
+            raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {count} of them")
+        text = mark.sub(lambda found, part=part: f"{found[1]}{part}\n\n{found[2]}", text)  # type: ignore[misc]
+    return text

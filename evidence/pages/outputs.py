@@ -1,0 +1,179 @@
+"""docs/outputs.md and docs/summary.schema.json: every file, column and key of a run, from the dataclasses that are
+written. What a field means stands beside it, as the text below it in its class."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import json
+import textwrap
+import types
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from itertools import pairwise
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+from evidence.tables import markdown
+from evolvent.results.archive.error_bar_data import FigureErrors
+from evolvent.results.archive.run_cost import Timings
+from evolvent.results.mesh_facts import MeshFacts
+from evolvent.results.shaft_forces import ShaftForces
+from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
+from evolvent.scene.skips import Skipped
+from evolvent.wear.gears.gear_study import BlockRow
+from evolvent.wear.results.report import GearReport, PairReport, WearReport
+
+Schema = dict[str, Any]
+
+UNITS = {
+    "_N_per_mm_um": "N/(mm·µm)", "_mm2_per_N": "mm²/N", "_mm_per_rad": "mm/rad", "_Nm": "N·m", "_N": "N", "_MPa": "MPa",
+    "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB", "_s": "s",
+}  # fmt: skip
+SECONDS = Timings, "seconds"  # named without their unit
+FILES = (
+    ("summary.json", "all figures of the run: its scene, facts, figures a friction coefficient, positions"),
+    ("positions.csv", "a line a position and friction coefficient"),
+    ("teeth.csv", "a line a tooth pair, position and friction coefficient"),
+    ("run.log", "what was skipped, a line a position, how long everything took"),
+    ("scene.toml", "the scene with all its defaults; it is a scene itself"),
+    ("flank_pinion.csv", "the flank chart that the scene names, docs/scene.md; likewise flank_wheel.csv"),
+    ("flank_wheel.csv", "see flank_pinion.csv"),
+    ("pictures/*.png", "the pictures, docs/tutorial.md"),
+    ("pictures/animation.gif", "the pair turning through a pitch, coloured by the pressure"),
+    ("fields/contact.pvd", "open this one in ParaView: the positions of the pitch, over the pinion's angle in degrees"),
+    ("fields/flanks_*.vtp", "the loaded flanks at each position, with the arrays below"),
+    ("fields/gears_*.vtp", "the teeth around them, without arrays"),
+    ("fields/deformed.pvd", "with `output.deformation`: open this one in ParaView for what is inside the teeth"),
+    ("fields/deformed_*.vtu", "the sectors that carry load, undeformed where they stand, with the arrays below"),
+    ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
+    ("results/cost.json", "wall time and memory of the run so far, to which a resumed one adds its own"),
+    ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
+    (".evolvent.lock", "there while a run goes on: one run a folder"),
+    ("wear.csv", "a wear study: a line a block of cycles"),
+    ("wear.json", "a wear study: the figures at each report"),
+    ("worn_*", "a wear study: the pair after so many cycles, a folder with all of the above"),
+)
+ARRAYS = (
+    ("gear", "0 on the pinion, 1 on the wheel"),
+    ("tooth", "the tooth pair, as in teeth.csv"),
+    ("roll_distance_mm", "distance from the pitch point along the path of contact, negative towards the pinion's root"),
+    ("pressure_MPa (mu=...)", "contact pressure, NaN where a tip's edge bears; on the wheel the pinion's"),
+    ("edge_pressure_MPa (mu=...)", "pressure where a tip's edge bears, where it is singular; 0 elsewhere"),
+    ("traction_MPa (mu=...)", "what the wheel presses on the pinion with, a vector; 0 on the wheel"),
+    ("slip_mm_per_rad (mu=...)", "sliding of the pinion over the wheel, a vector; 0 on the wheel"),
+    ("sticks (mu=...)", "1 where the flanks stick, 0 where they slide or do not touch"),
+)  # fmt: skip
+DEFORMED = (
+    ("displacement_mm", "of the nodes, a vector, at the first friction coefficient: Warp By Vector bends the teeth"),
+    ("stress_MPa", "in the cells, at their centres: nine components, in space"),
+    ("von_mises_MPa", "in the cells, at their centres"),
+    ("gear", "of a cell: 0 the pinion's, 1 the wheel's"),
+    ("tooth", "of a cell: the tooth pair, as in teeth.csv"),
+)
+FORCES = (
+    "Mean over the pitch, and largest less smallest value; friction included. The forces act on the gear, bearings "
+    "react with the opposite. x is the line of centres, from pinion to wheel, z the axis; seen from +z the pinion "
+    "turns counter-clockwise; y = z × x. Without friction they are those of the textbooks: tangential T/r_w, radial "
+    "that times tan α_wt, axial that times tan β_w; where a relieved flank or a tip's edge bears its normal is tilted, "
+    "and the radial force is one or two per cent larger in the mean. These forces have no error bar: hold runs with "
+    "more positions and finer meshes against each other."
+)
+SECTIONS = (
+    ("`summary.json`", Summary, "Python's `json` or any other reader; a number that does not exist is `null`."),
+    ("`mesh`", MeshFacts, ""),
+    ("`skipped`, each entry", Skipped, ""),
+    ("`timings_s`", Timings, ""),
+    ("`estimated_error`", ErrorBars, ""),
+    ("`frictions`, each entry", FrictionRow, ""),
+    ("`frictions`, `forces_on_pinion` and `forces_on_wheel` of an entry", ShaftForces, FORCES),
+    ("`frictions`, `estimated_error` and `spacing_error` of an entry", FigureErrors, ""),
+    ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
+    ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
+    ("`wear.csv`", BlockRow, ""),
+    ("`wear.json`", WearReport, ""),
+    ("`wear.json`, `reports`, each entry", PairReport, ""),
+    ("`wear.json`, `pinion` and `wheel` of a report", GearReport, ""),
+)  # fmt: skip
+INTRODUCTION = f"""
+What a run leaves in its folder, `--out`. Units stand in the names: `_um` is µm, `_Nm` is N·m. Numbers in CSV files have
+nine digits, and `nan` where there is none. Other programs should read `summary.json` and the CSV files.
+
+`summary.json` follows the [JSON schema](summary.schema.json) of `schema_version` {SCHEMA_VERSION}. New keys may come
+without a new version; where a key goes or means something else the version is one more, and CHANGELOG.md says so.
+"""
+
+
+def described(kind: type) -> dict[str, str]:
+    """Field -> the text below it in the class. Raises ValueError for a field without one."""
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
+    assert isinstance(tree, ast.ClassDef)
+    texts = {}
+    for field, text in pairwise([*tree.body, ast.Pass()]):
+        if not isinstance(field, ast.AnnAssign):
+            continue
+        name = ast.unparse(field.target)
+        if not (isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)):
+            raise ValueError(f"{kind.__name__}.{name}: wanted a text below it that says what it is, found none")
+        texts[name] = " ".join(str(text.value.value).split())
+    bases = [base for base in kind.__bases__ if is_dataclass(base)]
+    return texts | {name: text for base in bases for name, text in described(base).items()}
+
+
+def unit(name: str, kind: type | None = None) -> str:
+    """What a name's ending says."""
+    if kind in SECONDS or name in SECONDS:
+        return "s"
+    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+
+
+def page() -> list[str]:
+    """The parts of docs/outputs.md."""
+    parts = ["# What a run leaves", "<!-- Written by `make pages`: do not edit. -->", INTRODUCTION]
+    parts += ["## Files", markdown(("file", "what it is"), [(f"`{name}`", what) for name, what in FILES])]
+    for title, kind, words in SECTIONS:
+        rows = [(f"`{name}`", unit(name, kind), text) for name, text in described(kind).items()]
+        parts += [f"## {title}", *([words] if words else []), markdown(("name", "unit", "meaning"), rows)]
+    for files, arrays in (("flanks_*.vtp", ARRAYS), ("deformed_*.vtu", DEFORMED)):
+        rows = [(f"`{name}`", unit(name.split()[0]), text) for name, text in arrays]
+        parts += [f"## Arrays in `fields/{files}`", markdown(("name", "unit", "meaning"), rows)]
+    return parts
+
+
+def schema() -> Schema:
+    """The JSON schema of summary.json."""
+    summary = _object(Summary)
+    summary["properties"]["schema_version"]["const"] = SCHEMA_VERSION
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "summary.json of an Evolvent run"}
+    return {**head, **summary}
+
+
+def schema_text() -> str:
+    """As in docs/summary.schema.json."""
+    return json.dumps(schema(), ensure_ascii=False, indent=1) + "\n"
+
+
+def _object(kind: type) -> Schema:
+    hints, texts = get_type_hints(kind), described(kind)
+    properties = {f.name: {"description": texts[f.name], **_type(hints[f.name])} for f in fields(kind)}
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+def _type(hint: Any) -> Schema:
+    """Of a field; a float may be null, which stands for NaN."""
+    simple = {bool: "boolean", int: "integer", str: "string"}
+    if hint in simple:
+        return {"type": simple[hint]}
+    if hint is float:
+        return {"type": ["number", "null"]}
+    if is_dataclass(hint):
+        return _object(hint)  # type: ignore[arg-type]
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return {"anyOf": [{"type": "null"} if part is type(None) else _type(part) for part in parts]}
+    if origin in (tuple, list, Sequence) and parts:
+        return {"type": "array", "items": _type(parts[0])}
+    if origin is Mapping:
+        return {"type": "object", "additionalProperties": {} if parts[1] is object else _type(parts[1])}
+    if origin is not None and all(isinstance(part, str) for part in parts):
+        return {"enum": list(parts)}  # a Literal
+    raise TypeError(f"wanted a type that JSON has, found {hint}")

@@ -1,0 +1,172 @@
+"""What Evolvent must reach, and what was found: from the tables of the benchmarks and of robustness."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from evidence.benchmarks.accuracy.error_bars import BarRow
+from evidence.benchmarks.comparison.work_precision import Row
+from evidence.benchmarks.gears.plane_and_solid import SpurRow
+from evidence.benchmarks.gears.position_cost import GearRow
+from evidence.benchmarks.gears.scaling import RatioRow
+from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow
+from evidence.benchmarks.pages.comparison import FROM, GEAR_BARS, TITLES, advantage, anew, large, unmatched
+from evidence.benchmarks.pages.gear_pairs import SPUR_BAR, WEAR_BAR, least_ratio
+from evidence.tables import Column, Table, read_csv, read_rows
+
+TERMS = """Errors are relative. p0 is the peak pressure. γ is the stabiliser of Nitsche's method, θ its variant, C the
+least γ of theory (docs/design.md). *Over γ*: by how much a result moves with it, which it should not."""
+HELD = 0.9  # share of the error bars that must hold
+OVER_PARAMETERS = (
+    ("p0 over γ from 1.25 to 50 C, spur pair, `standard`", "p0 [MPa], spur pair, standard"),
+    ("p0 over γ from 1.25 to 50 C, spur pair, `fine`", "p0 [MPa], spur pair, fine"),
+    ("transmission error over γ, spur pair", "TE [mm], spur pair,"),
+    ("wheel torque over γ, spur pair", "wheel torque [N], spur pair,"),
+    ("p0 over θ, spur pair as two bodies", "p0 [MPa], spur pair as two bodies"),
+    ("p0 over θ and γ, cylinder", "relative error of p0, cylinder"),
+)
+"""What must not depend on γ and θ, and how its claims begin in docs/stress/independence.md."""
+
+
+@dataclass(frozen=True)
+class Promise:
+    """A bar, and what was found; both with their units, as they are to be read."""
+
+    what: str
+    bar: str
+    found: str
+    met: bool
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A claim as a page's table has it."""
+
+    section: str
+    """The heading above the table."""
+    quantity: str
+    found: float
+    wanted: float
+    allowed: float
+    """Absolute."""
+    held: bool
+    """As the page says."""
+
+    @property
+    def off(self) -> float:
+        """Relative error; the figure itself where zero is wanted."""
+        return abs(self.found / self.wanted - 1.0) if self.wanted else abs(self.found)
+
+
+PROMISES = Table(
+    Promise,
+    (
+        Column("", "what", words=True),
+        Column("bar", "bar"),
+        Column("found", "found"),
+        Column("", lambda promise: "met" if promise.met else "**missed**", words=True),
+    ),
+)
+
+
+def said(docs: Path) -> str:
+    """The table of all promises, and what its terms mean."""
+    gears = read_rows(docs / "benchmark" / "gears.csv", GearRow)
+    return "\n\n".join([PROMISES.markdown(promises(docs)), *anew(gears), TERMS])
+
+
+def promises(docs: Path) -> list[Promise]:
+    """All of them, from the tables below `docs`. Raises OSError, ValueError where a table is missing."""
+    tables, robustness = docs / "benchmark", docs / "stress"
+    return [*_speed(tables), *_error_bars(tables), *_scenes(robustness), *_parameters(robustness)]
+
+
+def _speed(tables: Path) -> Iterator[Promise]:
+    for name, title in TITLES.items():
+        least, bar = FROM[name]
+        rows = read_rows(tables / f"{name}.csv", Row)
+        peer, _, ratio = min(advantage(rows, least), key=lambda line: line[2])
+        what = f"{title}, {least:,} dofs and more: seconds of the fastest other program ({peer.program}) over ours"
+        yield _at_least(f"{what}, at no larger error", ratio, bar, better=not unmatched(rows, least))
+    gears = read_rows(tables / "gears.csv", GearRow)
+    for program, bar in GEAR_BARS.items():
+        (row,) = large(gears, program)
+        yield _at_least(f"gear pair, {row.dofs:,} dofs: seconds a position of {program} over ours", row.ratio, bar)
+    for ratio_row in read_rows(tables / "ratios.csv", RatioRow):
+        compared = _at_least if ratio_row.is_least else _at_most
+        yield compared(f"{ratio_row.what}, {ratio_row.dofs:,} dofs", ratio_row.ratio, ratio_row.bar)
+    spur = "spur pair, seconds in 3D over 2D at equal error, least of three meshes"
+    yield _at_least(spur, least_ratio(read_rows(tables / "spur.csv", SpurRow)), SPUR_BAR)
+    for cost in read_rows(tables / "wear_cost.csv", WearCostRow):
+        what = f"wear study of {BLOCKS} blocks over a sweep, {cost.case}"
+        yield _at_most(f"{what}, preparing counted", cost.whole, WEAR_BAR)
+        yield _at_most(f"{what}, preparing not counted", cost.bare, WEAR_BAR)
+
+
+def _error_bars(tables: Path) -> Iterator[Promise]:
+    for name, what in (("bars", "true error inside the error bar"),
+                       ("spacing", "error of the spacing of positions inside its bar")):  # fmt: skip
+        rows = read_rows(tables / f"{name}.csv", BarRow)
+        inside = sum(row.inside for row in rows)
+        yield Promise(what, f"{100 * HELD:.0f} %", f"{inside} of {len(rows)}", inside >= HELD * len(rows))
+
+
+def _scenes(robustness: Path) -> Iterator[Promise]:
+    verdicts, worn = ([line["verdict"] for line in read_csv(robustness / name)] for name in ("scenes.csv", "wear.csv"))
+    good = verdicts.count("converged")
+    yield Promise("random scenes that converge, balanced", "all", f"{good} of {len(verdicts)}", good == len(verdicts))
+    wrong = sum(verdict in ("wrong", "crashed", "hung") for verdict in worn)
+    yield Promise("random wear studies that are wrong, crash or hang", "0", f"{wrong} of {len(worn)}", not wrong)
+
+
+def _parameters(robustness: Path) -> Iterator[Promise]:
+    claims = measured(robustness / "independence.md")
+    for what, start in OVER_PARAMETERS:
+        solved = [each for each in claims if each.quantity.startswith(start) and not math.isnan(each.found)]
+        worst = max(each.off for each in solved)
+        yield Promise(what, "0.5 %", f"{100 * worst:.2g} %", all(each.held for each in solved))
+    refused = {each.quantity.split(", ")[2] for each in claims if math.isnan(each.found)}
+    yield Promise("γ = 1.1 C, spur pair", "a result", f"refused, {' and '.join(sorted(refused))}", not refused)
+    newton = max(each.found for each in claims if each.quantity.startswith("Newton iterations"))
+    yield _at_most("Newton iterations a position with friction, mean", newton, 8.0)
+    (kills,) = measured(robustness / "faults.md")
+    yield Promise("killed 20 times and resumed: largest difference", "1e-7", f"{kills.found:.0e}", kills.held)
+
+
+def measured(page: Path) -> list[Measured]:
+    """The claims in the tables of a page. Raises OSError; ValueError where there is none."""
+    claims = [Measured(section, *_numbers(line)) for section, line in _lines(page) if {"found", "wanted"} <= set(line)]
+    if not claims:
+        raise ValueError(f"{page}: wanted a table with what was found and wanted, found none")
+    return claims
+
+
+def _numbers(line: dict[str, str]) -> tuple[str, float, float, float, bool]:
+    wanted = line["wanted"].removeprefix("at least ")
+    allowed = line.get("allowed") or line["tolerance"]
+    return line["quantity"], float(line["found"]), float(wanted), float(allowed), line[""] == "holds"
+
+
+def _lines(page: Path) -> Iterator[tuple[str, dict[str, str]]]:
+    """The heading above each line of the tables of a page, and its cells by the names of their columns."""
+    head: list[str] = []
+    section = ""
+    for line in page.read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if line.startswith("## "):
+            section = line.removeprefix("## ")
+        if cells and head and not cells[0].startswith("---"):
+            yield section, dict(zip(head, cells))
+        head = (head or cells) if cells else []
+
+
+def _at_least(what: str, ratio: float, bar: float, better: bool = True) -> Promise:
+    return Promise(what, f"at least {bar:g}", f"{ratio:.3g}", ratio >= bar and better)
+
+
+def _at_most(what: str, ratio: float, bar: float) -> Promise:
+    return Promise(what, f"at most {bar:g}", f"{ratio:.3g}", ratio <= bar)

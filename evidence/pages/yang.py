@@ -1,0 +1,52 @@
+"""What pages say of the helical pair of Yang et al. 2022, from the figures that were kept of its runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evidence.pages.yang_figures import kept
+from evidence.tables import markdown
+from evolvent.results.archive.error_bar_data import plus_minus
+
+POINTS = Path(__file__).with_name("yang_points.md")
+
+
+def beside_hertz(docs: Path, level: str) -> str:
+    """How far the peaks at mid-face stand from Hertz for their own line load."""
+    f = kept(docs, level)
+    return (
+        f"{f['over_hertz_median_percent']:+.1f} % in the median, nine in ten within "
+        f"{f['off_hertz_nine_in_ten_percent']:.1f} %, at most {f['off_hertz_largest_percent']:.0f} % off, "
+        f"at ξ = {f['off_hertz_largest_xi_mm']:.1f} mm"
+    )
+
+
+def accuracy(docs: Path) -> str:
+    """A sentence on both levels."""
+    return (
+        "Peak pressures at mid-face of Yang's helical pair, beside Hertz for their own line load: level `quick`, which "
+        f"is for looking, {beside_hertz(docs, 'quick')}; level `standard` {beside_hertz(docs, 'standard')}."
+    )
+
+
+def levels(docs: Path) -> str:
+    """What to expect of each level."""
+    return markdown(
+        ("level", "elements across 2b_H", "peak pressure beside Hertz for its own line load"),
+        [
+            ("quick", "1.7", f"{beside_hertz(docs, 'quick')} ([Yang's pair](yang2022.md), mid-face)"),
+            ("standard", "3", f"{beside_hertz(docs, 'standard')} (the same)"),
+            ("fine", "6", "1 % (measured on the spur pair)"),
+        ],
+    )
+
+
+def points(docs: Path) -> str:
+    """The paper's statements beside what was found at level standard: yang_points.md with its figures."""
+    f = kept(docs, "standard")
+    bars = {"largest": plus_minus(f["largest_MPa"], f["low_largest_bar_MPa"], 0)}
+    for side in ("low", "high"):
+        for name, unit in (("transmission_error", "um"), ("efficiency", "percent")):
+            value, bar = f[f"{side}_{name}_{unit}"], f[f"{side}_{name}_bar_{unit}"]
+            bars[f"{side}_{name}"] = plus_minus(value, bar, 2)
+    return POINTS.read_text(encoding="utf-8").rstrip().format(**f, **bars)

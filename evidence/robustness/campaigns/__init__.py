@@ -1,0 +1,1 @@
+"""Random scenes and wear studies, solved by the hundred."""

@@ -1,0 +1,88 @@
+"""Random scenes or wear studies by the hundred, one after the other in a process that may crash or hang.
+
+The process writes one line of JSON a seed. It is killed where a seed takes too long, and started again with the next.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+from enum import Enum
+from queue import Empty, Queue
+from threading import Thread
+from typing import Any
+
+from evidence.processes import environment, module_run
+from evidence.robustness.campaigns.random_scenes import random_scene
+from evidence.robustness.campaigns.random_wear import random_study
+from evidence.robustness.campaigns.scene_outcomes import Outcome, Verdict, outcome_of
+from evidence.robustness.campaigns.wear_outcomes import WearOutcome, WearVerdict, wear_outcome_of
+from evolvent.fem.backend import dolfinx_compat
+
+PATIENCE = 900.0
+"""Seconds after which a seed has hung. Nearly all take one to twenty; 206, a wide plastic pair whose friction history
+lasts thirteen pitches, before and after deflection, takes 250 on a core of its own."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is done with each seed."""
+
+    command: str
+    """Of `python -m evidence.robustness`, for the process that may die."""
+    solve: Callable[[int], Any]
+    """Seed -> an `outcome` with a `verdict`."""
+    outcome: type
+    verdict: type[Enum]
+
+
+SCENES = Trial("seeds", lambda seed: outcome_of(random_scene(seed), seed), Outcome, Verdict)
+WEAR = Trial("wear-seeds", lambda seed: wear_outcome_of(random_study(seed), seed), WearOutcome, WearVerdict)
+
+
+def solve_seeds(trial: Trial, first: int, count: int) -> None:
+    """In the process that may die: one JSON line a seed on standard output."""
+    dolfinx_compat.silence_logs()
+    for seed in range(first, first + count):
+        outcome = trial.solve(seed)
+        print(json.dumps({**asdict(outcome), "verdict": outcome.verdict.name}), flush=True)
+
+
+def campaign(first: int, count: int, patience: float = PATIENCE, trial: Trial = SCENES) -> Iterator[Any]:
+    """The outcomes of the seeds first, first + 1, ..., whatever they do to the process."""
+    seed = first
+    while seed < first + count:
+        for outcome in _until_it_dies(seed, first + count - seed, patience, trial):
+            yield outcome
+            seed = outcome.seed + 1
+
+
+def _until_it_dies(first: int, count: int, patience: float, trial: Trial) -> Iterator[Any]:
+    command = module_run("evidence.robustness", trial.command, first, count)
+    with subprocess.Popen(
+        command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as process:
+        assert process.stdout is not None
+        lines: Queue[str] = Queue()
+        Thread(target=_pass_on, args=(process.stdout, lines), daemon=True).start()
+        for seed in range(first, first + count):
+            try:
+                line = lines.get(timeout=patience)
+            except Empty:
+                process.kill()
+                yield trial.outcome(seed, trial.verdict["HUNG"], f"no result after {patience:g} s")
+                return
+            if not line:
+                yield trial.outcome(seed, trial.verdict["CRASHED"], f"the process ended with status {process.wait()}")
+                return
+            values = json.loads(line)
+            yield trial.outcome(**{**values, "verdict": trial.verdict[values["verdict"]]})
+
+
+def _pass_on(source: Iterable[str], lines: Queue[str]) -> None:
+    """Every line as it comes, and an empty one at the end."""
+    for line in source:
+        lines.put(line)
+    lines.put("")

@@ -1,0 +1,1 @@
+"""Matrices of settings, and independence of the parameters of Nitsche's method."""

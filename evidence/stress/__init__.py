@@ -1,1 +1,0 @@
-"""Stability under stress: random scenes, a matrix of settings, independence of the method's parameters, faults."""

@@ -1,0 +1,1 @@
+"""Problems with a known answer, each solved and compared with it."""

@@ -1,0 +1,1 @@
+"""Exact and independent solutions that the verification problems are compared with."""

@@ -1,0 +1,57 @@
+"""The page says what was measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evidence.benchmarks.accuracy.error_bars import BarRow
+from evidence.benchmarks.comparison.work_precision import Row
+from evidence.benchmarks.gears.pitch_precision import PitchRow
+from evidence.benchmarks.gears.plane_and_solid import SpurRow
+from evidence.benchmarks.gears.profile import ProfileRow
+from evidence.benchmarks.gears.skips import SkipRow
+from evidence.benchmarks.gears.wear import WearCostRow, WearPrecisionRow
+from evidence.benchmarks.pages.comparison import advantage, unmatched
+from evidence.benchmarks.pages.page import write_page
+from evidence.tables import read_rows, write_rows
+
+
+def test_an_advantage_counts_only_at_no_larger_error(tmp_path: Path) -> None:
+    """Evolvent's fast but coarse row may not beat a peer's better one; a peer that nobody matches is said so; rows
+    survive their file."""
+
+    def row(program: str, seconds: float, error: float, dofs: int = 50_000) -> Row:
+        return Row("c", program, "quadrilateral", 2, 8, dofs, cpu=seconds, profile_error=error)
+
+    rows = [row("Evolvent", 1.0, 0.05), row("Evolvent", 4.0, 0.01), row("GetFEM", 6.0, 0.02), row("GetFEM", 2.0, 0.06)]
+    assert [ratio for *_, ratio in advantage(rows, 20_000)] == [1.5, 2.0]
+    assert unmatched([*rows, row("Kratos", 9.0, 0.001)], 20_000)[0].program == "Kratos"
+    assert not advantage([row("Evolvent", 1.0, 0.05), row("GetFEM", 6.0, 0.05, 10_000)], 20_000)
+    write_rows(tmp_path / "rows.csv", rows)
+    assert [r.cpu for r in read_rows(tmp_path / "rows.csv", Row)] == [1.0, 4.0, 6.0, 2.0]
+
+
+def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
+    """Rows of every kind, in and out of their bars: the page holds ratios of the rows (30/10, 25/1, one of two inside),
+    names the skip beyond its tolerance, and leaves out what was not measured."""
+    nan = float("nan")
+    rows = {
+        "skips": [SkipRow("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
+                  SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
+        "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
+        "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
+        "wear_cost": [WearCostRow("spur", 1000, 1.0, 2.0, 8.0), WearCostRow("helical", 1000, 9.0, 1.0, 8.0)],
+        "wear": [WearPrecisionRow("implicit", 0.05, 10, 0, 2.0, 0.02, -0.01),
+                 WearPrecisionRow("explicit", 0.05, 30, 2, 4.0, 0.001, 0.001)],
+        "profile": [ProfileRow("search", 1000, 4, 2.0, 0.25, 4), ProfileRow("everything else", 1000, 4, 6.0, 0.75, 1)],
+        "pitches": [PitchRow("hexahedron", 2, 1, 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
+                    PitchRow("hexahedron", 1, 1, 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
+    }  # fmt: skip
+    for name, own in rows.items():
+        write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
+    text = write_page(tmp_path).read_text(encoding="utf-8")
+    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures", "75.0", "14",
+                   "killed", "**3.00**", "8.00", "whole met, bare missed"):
+        assert wanted in text
+    assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
+    assert "Cylinder on block" not in text

@@ -1,0 +1,99 @@
+"""Random valid gear pairs, each solved at a few positions. `make stress` solves 500; these are a seeded sample."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import pytest
+
+from evidence.robustness.campaigns import campaign, scene_outcomes
+from evidence.robustness.campaigns.random_scenes import random_scene
+from evidence.robustness.campaigns.scene_outcomes import Verdict, outcome_of
+from evidence.robustness.campaigns.summaries import scene_summary
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.scene.scene import SceneError, scene_from_text
+from tests.conftest import ROOT
+
+PLANE, SOLID = range(40, 58), range(1, 5)
+CYCLED = (6, 75, 84)
+"""Plane seeds with friction on which SNES' l2 line search, without the cut of steps that cycle, did not converge."""
+HARD = (102, 450)
+"""102: μ = 0.73 and moduli as 200 to 1, on which lengths of steps chosen by the residual cycled. 450: near the pitch
+point, slip of a hundred times the flanks' displacements, which taken for stuck at first tears them apart."""
+
+
+@pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID), (None, HARD)])
+def test_random_scenes_converge(plane: bool | None, seeds: range | tuple[int, ...]) -> None:
+    """Every scene converges and balances its energy over the pitch; none crashes, hangs, or is refused."""
+    outcomes = [outcome_of(random_scene(seed, plane), seed) for seed in seeds]
+    wrong = [o for o in outcomes if o.verdict is not Verdict.CONVERGED]
+    assert not wrong, wrong
+
+
+def test_a_seed_is_one_scene() -> None:
+    """The same scene every time; it survives the way through TOML; another seed is another one."""
+    scene = random_scene(3)
+    assert scene == random_scene(3) == scene_from_text(scene.resolved_toml())
+    assert scene != random_scene(4)
+
+
+def test_outcomes_tell_refusals_from_crashes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An error that a user is told is a refusal; any other is a crash; a wrong torque is out of balance."""
+    scene = random_scene(41, plane=True)
+
+    def raising(error: Exception) -> Verdict:
+        def broken(*_: object) -> None:
+            raise error
+
+        with monkeypatch.context() as patch:
+            patch.setattr(scene_outcomes, "prepare_model", broken)
+            return outcome_of(scene, 41).verdict
+
+    assert raising(NotConverged("no")) is Verdict.REFUSED
+    assert raising(ZeroDivisionError("no")) is Verdict.CRASHED
+    original = scene_outcomes.sweep_closed
+
+    def wrong(*arguments: object):  # type: ignore[no-untyped-def]
+        for position in original(*arguments):
+            results = tuple(replace(r, torques=(r.torques[0], 1.02 * r.torques[1])) for r in position.results)
+            yield replace(position, results=results)
+
+    monkeypatch.setattr(scene_outcomes, "sweep_closed", wrong)
+    assert outcome_of(scene, 41).verdict is Verdict.UNBALANCED
+
+
+def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that dies at its third scene, and one that never answers: both are said, and the rest is still done."""
+    crash = (
+        "import sys, json; first, n = int(sys.argv[-2]), int(sys.argv[-1])\n"
+        "for seed in range(first, first + n):\n"
+        "    if seed == 2: sys.exit(11)\n"
+        "    if seed == 4:\n        import time; time.sleep(60)\n"
+        "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
+    )
+    popen = campaign.subprocess.Popen
+
+    def fake(command: list[str], **options: object) -> object:
+        return popen([sys.executable, "-c", crash, *command[-2:]], **options)
+
+    monkeypatch.setattr(campaign.subprocess, "Popen", fake)
+    verdicts = [o.verdict for o in campaign.campaign(0, 6, patience=5.0)]
+    good = Verdict.CONVERGED
+    assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]
+
+
+def test_scene_summary_counts_every_outcome() -> None:
+    """Every outcome is counted, and every bad one has its line."""
+    good = replace(outcome_of(random_scene(41, plane=True), 41), seed=0)
+    text = scene_summary([good, replace(good, seed=1, verdict=Verdict.REFUSED, message="NotConverged: no")])
+    assert "| converged | 1 |" in text and "| refused, with a message | 1 |" in text and "NotConverged: no" in text
+
+
+def test_load_that_bends_teeth_too_far_is_refused() -> None:
+    """He's pair: 120 N/mm bend a steel tooth pair of 14 N/(mm µm) by 8.6 µm = 0.0029 modules, a tenth of a module is
+    reached at 35 times the torque, 6.0 kN m with E = 210 instead of 206 GPa; below it the scene is valid."""
+    text = (ROOT / "demos/he2022.toml").read_text(encoding="utf-8")
+    assert scene_from_text(text, ["load.torque_Nm=5700"]).load.torque_Nm == 5700
+    with pytest.raises(SceneError, match=r"bend by about 0\.1\d* modules.*up to 6\.0\de\+03 N·m.*lower the torque"):
+        scene_from_text(text, ["load.torque_Nm=6800"])

@@ -22,8 +22,9 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.coulomb import LawValues, coulomb
 from evolvent.contact.step import paired_surfaces
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep import pitch_sweep, position
-from evolvent.gears.sweep.position import PositionResult, shared_position
+from evolvent.gears.sweep import pitch_sweep, position_search
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import shared_position
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -69,12 +70,12 @@ def fails(check: Callable[[], None]) -> bool:
 def forces_cancel(model: GearModel) -> None:
     """The forces on both gears in the common frame, summed over the nodes: Σ F_1 + Σ F_2 = 0."""
     shared = shared_position(model, 0.02, (0.0, 0.0), (0.0,), None)
-    contact, force = shared.contact, shared.smooth.force
-    ends = np.cumsum([len(t.operator.nodes) for t in contact.teeth])[:-1]
-    total = np.zeros((2, contact.d))
+    geometry, force = shared.contact.geometry, shared.smooth.force
+    ends = np.cumsum([len(t.operator.nodes) for t in geometry.teeth])[:-1]
+    total = np.zeros((2, geometry.d))
     for gear in Member:
-        turned = contact.stand.rotation(gear, contact.d)
-        for own, nodal in zip(contact.jump_maps(gear, 1), np.split(force, ends), strict=True):
+        turned = geometry.stand.rotation(gear, geometry.d)
+        for own, nodal in zip(geometry.jump_maps(gear, 1), np.split(force, ends), strict=True):
             total[gear] += own.forces(nodal).sum(axis=0) @ turned.T
     assert np.linalg.norm(total[0]) > 0.5 * force.sum()
     assert np.linalg.norm(total.sum(axis=0)) < 1e-8 * force.sum()
@@ -88,14 +89,15 @@ def test_forces_on_curved_flanks_cancel(
     to fail where the projection loses a thousandth of a constant."""
     model = request.getfixturevalue(name)
     forces_cancel(model)
-    original = position.gear_contact
+    original = position_search.gear_contact
 
     def leaking(*arguments):  # type: ignore[no-untyped-def]
         contact = original(*arguments)
-        teeth = [replace(t, operator=replace(t.operator, jump2=0.999 * t.operator.jump2)) for t in contact.teeth]
-        return replace(contact, teeth=tuple(teeth))
+        geometry = contact.geometry
+        teeth = [replace(t, operator=replace(t.operator, jump2=0.999 * t.operator.jump2)) for t in geometry.teeth]
+        return replace(contact, geometry=replace(geometry, teeth=tuple(teeth)))
 
-    monkeypatch.setattr(position, "gear_contact", leaking)
+    monkeypatch.setattr(position_search, "gear_contact", leaking)
     assert fails(lambda: forces_cancel(model))
 
 
@@ -153,10 +155,10 @@ def test_size_of_gears(scale: float) -> None:
 
 def test_size_of_gears_sees_a_fixed_length(monkeypatch: pytest.MonkeyPatch) -> None:
     """The check above fails where the search is repeated beyond 0.5 µm whatever the module, as it once was."""
-    original = position.shared_position
+    original = position_search.shared_position
 
     def fixed(model: GearModel, *arguments, **options):  # type: ignore[no-untyped-def]
-        monkeypatch.setattr(position, "RELOCATE", 5e-4 / model.pair.pinion.normal_module)
+        monkeypatch.setattr(position_search, "RELOCATE", 5e-4 / model.pair.pinion.normal_module)
         return original(model, *arguments, **options)
 
     monkeypatch.setattr(pitch_sweep, "shared_position", fixed)

@@ -135,9 +135,9 @@ def break_it(how: str) -> None:
     elif kind == "full":
         at_archive_file(int(numbers[0]), disk_full)
     elif kind == "raise":
-        before_call(parallel_sweep._Crew, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
+        before_call(parallel_sweep._RankedSweep, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "killrank":
-        before_call(parallel_sweep._Crew, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
+        before_call(parallel_sweep._RankedSweep, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "nan":
         no_number(int(numbers[0]))
     elif how == "unbalanced":

@@ -9,7 +9,8 @@ from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
-from evolvent.gears.sweep.position import PositionResult, shared_position
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import shared_position
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.arrays import Floats
@@ -108,7 +109,7 @@ def touches(model: GearModel, degrees: float, tooth: int) -> bool:
     """Whether a tooth pair carries load without friction at a pinion rotation [°]."""
     shared = shared_position(model, float(np.radians(degrees)), (0.0, 0.0), (0.0,), None)
     pressed = shared.smooth.traction[:, 0] > 0.0
-    return bool(np.any(pressed & (shared.contact.point_tooth == tooth)))
+    return bool(np.any(pressed & (shared.contact.geometry.point_tooth == tooth)))
 
 
 def with_load(model: GearModel, torque: float, on: Member) -> GearModel:

@@ -21,7 +21,7 @@ from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import GearShape, gear_shape
 from evolvent.results.run_data import RunData, SolvedPosition, run_data
 from evolvent.scene.gear_problem import gear_problem

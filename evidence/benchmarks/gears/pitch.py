@@ -28,7 +28,7 @@ from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
 from evolvent.run.context import peak_memory_MB
 from evolvent.run.pitch_run import pitch_of
@@ -108,7 +108,7 @@ def solved(scene: Scene) -> PitchFacts:
     seconds: list[float] = []
     swept: list[SweptPosition] = []
     begin = time.perf_counter()
-    for position in sweep_closed(preparation.model, pitch, scene.contact.friction, state, comm):
+    for position in sweep_until_periodic(preparation.model, pitch, scene.contact.friction, state, comm):
         seconds.append(time.perf_counter() - begin)
         swept.append(position)
         begin = time.perf_counter()

@@ -20,7 +20,7 @@ from evidence.processes import Command, module_run, run
 from evidence.scenes import model_dofs
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import prepare_model
-from evolvent.gears.sweep.periodic_pitch import sweep_closed
+from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.gear_problem import gear_problem
@@ -41,7 +41,7 @@ PARTS = (
     ("positions: what the window leaves out", "gears/contact/overlap_check.py", "overlap_outside"),
     ("positions: without friction", "contact/newton/equilibrium.py", "frictionless"),
     ("positions: with friction", "contact/newton/equilibrium.py", "frictional"),
-    ("positions: friction history", "gears/sweep/friction_history.py", "recalled"),
+    ("positions: friction history", "gears/sweep/friction_history.py", "previous_jumps"),
 )
 """Name, file below solver/evolvent, and the function whose time with all that it calls it is; none calls another."""
 
@@ -75,7 +75,7 @@ def profiled(elements: float, positions: int, frictions: str) -> list[ProfileRow
     profiler.enable()
     model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     μ = scene.contact.friction
-    list(sweep_closed(model, pitch_of(scene), μ, initial_state(μ), MPI.COMM_SELF))
+    list(sweep_until_periodic(model, pitch_of(scene), μ, initial_state(μ), MPI.COMM_SELF))
     profiler.disable()
     return _parts(pstats.Stats(profiler), model_dofs(model), positions)
 

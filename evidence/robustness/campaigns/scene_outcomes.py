@@ -14,7 +14,7 @@ from mpi4py import MPI
 from evidence.scenes import model_dofs
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.solution.certificates import BalanceError, PitchImbalance, certify, certify_pitch, pitch_imbalance
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -89,7 +89,7 @@ def _solved(scene: Scene, seed: int) -> Outcome:
 def _swept(model: GearModel, scene: Scene, seed: int) -> tuple[Outcome, bool]:
     """And whether only the pitch was refused."""
     pitch, frictions = some_positions(scene, seed), scene.contact.friction
-    swept = one_pitch(list(sweep_closed(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF)))
+    swept = one_pitch(list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF)))
     results = [result for position in swept for result in position.results]
     counted = [r for r in results if r.friction > 0.0] or results
     refusal = _out_of_balance(swept)

@@ -13,7 +13,7 @@ from evidence.claims import Claim, Verification, analytical, external
 from evidence.scenes import spur_pair
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.gears.sweep.position import shared_position
+from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
@@ -103,7 +103,7 @@ def _carries(model: GearModel, rotation: float) -> bool:
     tooth = int(np.floor(rotation / pitch))
     position = shared_position(model, rotation - tooth * pitch, (0.0, 0.0), (0.0,), None)
     pressed = position.smooth.traction[:, 0] > 0.0
-    return bool(np.any(pressed & (position.contact.point_tooth == tooth)))
+    return bool(np.any(pressed & (position.contact.geometry.point_tooth == tooth)))
 
 
 def verify() -> Verification:

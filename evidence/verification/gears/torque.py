@@ -14,7 +14,7 @@ from evidence.claims import Verification, analytical
 from evidence.scenes import helical_pair, spur_pair
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.drawing.style import PINION, WHEEL, note
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from evolvent.gears.solution.solver import solve_pitch as solve_pitch
     from evolvent.gears.solution.solver import solve_pitches as solve_pitches
     from evolvent.gears.solution.solver import solve_single_position as solve_single_position
-    from evolvent.gears.sweep.position import PositionResult as PositionResult
+    from evolvent.gears.sweep.position_result import PositionResult as PositionResult
     from evolvent_meshes.gears.errors import GeometryError as GeometryError
     from evolvent_meshes.gears.gear import GearParameters as GearParameters
     from evolvent_meshes.gears.gear_geometry import Modifications as Modifications

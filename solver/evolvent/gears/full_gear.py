@@ -19,7 +19,7 @@ from evolvent.fem.material import Material
 from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import surface_of
 from evolvent.gears.kinematics import turn
-from evolvent.gears.ring.ring_compliance import Part
+from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -63,7 +63,7 @@ class WholeGear:
         """Flank nodes n of one tooth."""
         return len(self.matrix) // (self.dimension * len(self.teeth))
 
-    def block(self, parts: Sequence[Part]) -> Floats:
+    def block(self, parts: Sequence[MappedNodes]) -> Floats:
         """See `ring_compliance.Compliance.block`."""
         dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
         rows = [[part.map(other.map(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]

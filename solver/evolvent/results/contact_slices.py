@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from evolvent.fem.material import Material, contact_modulus
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 
 FEWEST_POINTS = 5
@@ -95,7 +95,7 @@ def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: floa
     p, w = c.pressure[here], c.weights[here]
     width = float(ends[1] - ends[0])
     load = float(np.sum(p * w)) / (width / np.cos(pair.pinion.base_helix_angle))
-    ξ = float(np.average(c.ξ[here], weights=p * np.abs(w)))
+    ξ = float(np.average(c.roll_distance[here], weights=p * np.abs(w)))
     edge = bool(np.any(c.edge[here]))
     ρ = float(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
     peak, half = (np.nan, np.nan) if edge else fitted_peak(c.across[here], p, w, load)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, ArchiveError, GearShape
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, wanted_errors
 from evolvent.results.contact_slices import Slices, ToothSummary, slices, tooth_summaries

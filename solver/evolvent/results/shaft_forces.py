@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.gears.kinematics import turn
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.contact_slices import Slices
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member

@@ -17,7 +17,7 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 from evolvent.results.archive.archive import gear_shape
 from evolvent.results.archive.error_bar_data import kept_errors
@@ -94,7 +94,7 @@ def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunD
     Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite, OutOfMemory, on all ranks.
     """
     model, frictions = prepare_model(gear_problem(scene), comm, mesh).model, scene.contact.friction
-    swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), comm))
+    swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
 
     def assembled() -> RunData:
         shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]

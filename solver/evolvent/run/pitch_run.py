@@ -9,7 +9,7 @@ from functools import partial
 
 from evolvent.gears.gear_model import Preparation
 from evolvent.gears.solution.certificates import PitchImbalance, balance_error, certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import Archive, Meshes
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
@@ -82,7 +82,7 @@ class ScenePitch:
         gears, frictions = self._prepared(), self.scene.contact.friction[group]
         self.run.progress.stage(POSITIONS, len(self.pitch.angles), len(self.completed))
         state = initial_state(frictions) if self.resume is None else self.resume.state
-        for position in sweep_closed(gears.model, self.pitch, frictions, state, self.run.comm, self.completed):
+        for position in sweep_until_periodic(gears.model, self.pitch, frictions, state, self.run.comm, self.completed):
             certify(position.results)
             yield position
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from evolvent.gears.gear_model import Preparation, prepare_model
 from evolvent.gears.meshing.sector_meshes import sector_meshes
-from evolvent.gears.sweep.periodic_pitch import errors_of
+from evolvent.gears.sweep.periodic_pitch import transmission_errors
 from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
 from evolvent.results.archive.run_cost import Timings
@@ -25,7 +25,7 @@ class ResumePoint:
     """The last position that an earlier run has completed."""
 
     errors: tuple[Floats, ...]
-    """Transmission errors of the completed positions (`errors_of`), (frictions,) [mm] each."""
+    """Transmission errors of the completed positions (`transmission_errors`), (frictions,) [mm] each."""
     is_end: bool
     """Whether no position is left to be solved."""
     state: SweepState
@@ -39,7 +39,7 @@ def resume_point(scene: Scene, archive: Archive, resume: bool) -> ResumePoint | 
     if state is None:
         return None
     swept = archive.read_sweep(pair)
-    errors = tuple(errors_of(position, scene.contact.friction) for position in swept)
+    errors = tuple(transmission_errors(position, scene.contact.friction) for position in swept)
     return ResumePoint(errors, bool(swept) and swept[-1].closes, state)
 
 

@@ -19,7 +19,7 @@ from evolvent.gears.full_gear import WholeGear
 from evolvent.gears.meshing.sector_meshes import sector_meshes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch
-from evolvent.gears.sweep.position import shared_position
+from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.archive.archive import fingerprint
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
@@ -112,7 +112,7 @@ def test_every_skip_is_tested_and_measured() -> None:
 
 def contact_nodes(scene: Scene) -> int:
     """Pinion flank nodes whose jump is an unknown at φ = 0."""
-    return len(shared_position(model_of(scene), 0.0, (0.0, 0.0), (0.0,), None).contact.node)
+    return len(shared_position(model_of(scene), 0.0, (0.0, 0.0), (0.0,), None).contact.geometry.node)
 
 
 def components(scene: Scene) -> int:
@@ -121,11 +121,11 @@ def components(scene: Scene) -> int:
     return shared_position(model, 0.0, (0.0, 0.0), scene.contact.friction, None).system.k
 
 
-def memories(scene: Scene) -> int:
-    """How many friction coefficients are remembered after the first position."""
+def histories(scene: Scene) -> int:
+    """How many friction coefficients have a history after the first position."""
     frictions = scene.contact.friction
     swept = next(sweep_pitch(model_of(scene), pitch_of(scene), frictions, initial_state(frictions)))
-    return sum(memory is not None for memory in swept.state.memories)
+    return sum(history is not None for history in swept.state.histories)
 
 
 COUNTED: dict[SkipName, tuple[tuple[str, ...], Callable[[Scene], int], int, int]] = {
@@ -145,9 +145,9 @@ def test_the_switch_switches(name: SkipName) -> None:
 
 
 def test_friction_terms_are_kept() -> None:
-    """Without the skip μ = 0 has tangential components and a memory, as μ = 0.3 has."""
+    """Without the skip μ = 0 has tangential components and a history, as μ = 0.3 has."""
     case = Case("friction-terms", (*SPUR, SMOOTH))
-    assert [(components(case.scene(off)), memories(case.scene(off))) for off in (False, True)] == [(1, 0), (2, 1)]
+    assert [(components(case.scene(off)), histories(case.scene(off))) for off in (False, True)] == [(1, 0), (2, 1)]
 
 
 def test_the_whole_flank_is_searched() -> None:

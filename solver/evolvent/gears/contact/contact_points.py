@@ -7,26 +7,34 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from evolvent.gears.contact.pair_contact import GearContact, relative_velocity
+from evolvent.gears.contact.contact_geometry import ContactGeometry, relative_velocity
 from evolvent.gears.kinematics import line_of_action
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
 class ContactPoints:
-    """The contact of a position at its q quadrature points on the pinion's flanks.
+    """The contact of a position at its q quadrature points under pressure, on the pinion's flanks.
 
-    tooth (q,). z: height [mm]. ξ: roll distance of the point's slice [mm]. across: signed distance from the nominal
-    contact line on the pinion, opposite: on the wheel [mm of profile arc, positive towards each gear's tip]. weights
-    [mm²; mm in 2D]. traction: (q, d) λ, τ in local frames [MPa]. rate: (q, d) relative velocity of pinion over wheel
-    per radian of pinion rotation, local [mm/rad]; sliding: (q,) its part along e_z × n of `line_of_action`, between
-    flanks as searched; in a wear study with what deflection adds (elastic_sliding.py). sticks, edge: (q,) bool;
-    edge: in the last row of facets before a tip edge.
+    tooth: (q,), tooth pair.
+    z: (q,), height [mm].
+    roll_distance: (q,), ξ of the point's slice [mm].
+    across: (q,), signed distance from the nominal contact line on the pinion [mm of profile arc], positive towards its
+        tip.
+    opposite: (q,), the same on the wheel, positive towards the wheel's tip.
+    weights: (q,), of the quadrature [mm²; mm in 2D].
+    traction: (q, d), λ, τ in local frames [MPa].
+    rate: (q, d), relative velocity of pinion over wheel per radian of pinion rotation, local [mm/rad].
+    sliding: (q,), its part along e_z × n of `line_of_action`, between flanks as searched; in a wear study with what
+        deflection adds (elastic_sliding.py) [mm/rad].
+    sticks: (q,) bool, tangential traction below the friction bound.
+    edge: (q,) bool, in the last row of facets before a tip edge.
     """
 
     tooth: Ints
     z: Floats
-    ξ: Floats
+    roll_distance: Floats
     across: Floats
     opposite: Floats
     weights: Floats
@@ -40,7 +48,7 @@ class ContactPoints:
     def joined(positions: Sequence[ContactPoints]) -> ContactPoints:
         """All points of one or more positions, in their order."""
         names = [field.name for field in fields(ContactPoints)]
-        return ContactPoints(*(np.concatenate([getattr(own, name) for own in positions]) for name in names))
+        return ContactPoints(*(np.concatenate([getattr(points, name) for points in positions]) for name in names))
 
     @property
     def pressure(self) -> Floats:
@@ -49,28 +57,29 @@ class ContactPoints:
 
 
 def contact_points(
-    contact: GearContact, traction: Floats, friction: float, extra: tuple[float, float]
+    geometry: ContactGeometry, traction: Floats, friction: float, extra: tuple[float, float]
 ) -> ContactPoints:  # fmt: skip
-    """Of tractions (q, k): what is kept of the points, those under pressure. extra: the rotations [rad] beyond the
-    nominal ones with which they were found, near those of the search."""
-    radius, searched = contact.stand.pair.pinion.base_radius, contact.stand.extra
+    """The points under pressure, from tractions (q, k) [MPa] at all points. extra: the rotations [rad] beyond the
+    nominal ones in this equilibrium, near those of the search."""
+    pair, searched, operator = geometry.stand.pair, geometry.stand.extra, geometry.operator
+    radius = pair.pinion.base_radius
     shift = radius * (extra[0] - searched[0]) - radius * (extra[1] - searched[1])  # r_b2/u is r_b1
-    rate, along = relative_velocity(contact), line_of_action(contact.stand.pair, contact.d)[1]
-    sliding = np.einsum("ji,jia,a->j", rate, contact.operator.frames, along)
+    rate, along = relative_velocity(geometry), line_of_action(pair, geometry.d)[1]
+    sliding = np.einsum("ji,jia,a->j", rate, operator.frames, along)
     pressed = np.flatnonzero(traction[:, 0] > 0.0)
-    shape, t = contact.operator.shape[pressed], traction[pressed]
+    shape, t = operator.shape[pressed], traction[pressed]
     bound = friction * t[:, 0]
     size = np.linalg.norm(t[:, 1:], axis=1)
     return ContactPoints(
-        tooth=contact.point_tooth[pressed],
-        z=shape @ contact.bodies[0].z[contact.node],
-        ξ=shape @ contact.ξ,
-        across=contact.across[pressed],
-        opposite=contact.opposite[pressed],
-        weights=contact.operator.weights[pressed],
+        tooth=geometry.point_tooth[pressed],
+        z=shape @ geometry.bodies[Member.PINION].z[geometry.node],
+        roll_distance=shape @ geometry.roll_distance,
+        across=geometry.across[pressed],
+        opposite=geometry.opposite[pressed],
+        weights=operator.weights[pressed],
         traction=t,
         rate=shape @ rate,
         sliding=shape @ sliding + shift,
         sticks=size < bound * (1.0 - 1e-9),
-        edge=contact.at_edge[pressed],
+        edge=geometry.at_tip_edge[pressed],
     )

@@ -1,4 +1,4 @@
-"""Along which normals the flanks of a tooth pair press.
+"""Normals along which the pressure between the flanks of a tooth pair acts.
 
 Where conjugate flanks touch, the pinion's normal n_1 and the wheel's n_2 are opposite, and either may carry the
 pressure. Where a tip's corner bears off the path of contact they are degrees apart, and the corner has no normal at
@@ -19,11 +19,13 @@ from evolvent.gears.kinematics import Stand
 from evolvent_meshes.arrays import Floats
 
 
-def pressing_normals(
+def pressure_normals(
     operator: ContactOperator, pinion: GearBody, wheel_flank: Surface, stand: Stand, tooth: int
 ) -> Floats:
-    """(n, d) unit normals at the nodes of a tooth pair's contact, whose frames are the pinion's. wheel_flank: in the
-    common frame."""
+    """(n, d) unit normals at the nodes of a tooth pair's contact.
+
+    operator: with the pinion's normals in its frames. wheel_flank: in the common frame.
+    """
     start, end = stand.pair.path_of_contact
     ξ = stand.roll_distance(tooth, pinion.z[operator.nodes])
     share = np.clip((ξ - start) / (end - start), 0.0, 1.0)[:, None]

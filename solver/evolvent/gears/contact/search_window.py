@@ -1,4 +1,4 @@
-"""Which part of the flanks a search looks at: a window about each contact line, where that is within reach."""
+"""The part of the flanks that is searched: a window about each contact line on the path of contact or near it."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from evolvent.gears.kinematics import Stand
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 
-EXTENSION = 0.5  # how far [module of ξ] beyond the path of contact deflection is given a chance to keep edges touching
+EXTENSION = 0.5  # [module of ξ] beyond the path of contact, where deflection may keep tip edges in contact
 
 
 def arc_distance(pinion: GearBody, stand: Stand, tooth: Ints | int, node: Ints) -> Floats:
-    """How far [mm of profile arc] pinion flank nodes lie from their slice's contact line; where that has left the
+    """Distance [mm of profile arc] of pinion flank nodes from their slice's contact line; where that has left the
     flank, from the flank's end on that side."""
     pair, base = stand.pair, pinion.gear.base_radius
     ρ = pinion.roll_length
-    ρ_line = pair.pitch_point_roll_lengths[0] + pair.roll_distance(stand.angle, tooth, pinion.z[node])
+    ρ_line = pair.pitch_point_roll_lengths[Member.PINION] + pair.roll_distance(stand.angle, tooth, pinion.z[node])
     start, end = pair.path_of_contact
-    low, high = (pair.pitch_point_roll_lengths[0] + end_ for end_ in (start, end))
+    low, high = (pair.pitch_point_roll_lengths[Member.PINION] + ξ for ξ in (start, end))
     return np.abs(ρ[node] ** 2 - np.clip(ρ_line, low, high) ** 2) / (2.0 * base)
 
 
 def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tuple[Surface, Surface]:
     """The flanks of a tooth pair, pinion's and wheel's, in the common frame."""
-    d = bodies[0].d
+    d = bodies[Member.PINION].d
     first, second = (
         body.flank.moved(stand.rotation(gear, d, tooth), stand.centre(gear, d)) for gear, body in zip(Member, bodies)
     )
@@ -40,7 +40,7 @@ def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: flo
 
 
 def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
-    """(n,) bool: the flank nodes within the window; all where it has no end."""
+    """(n,) bool: the flank nodes within the window; all where its half-width is infinite."""
     every = np.arange(len(pinion.flank.points))
     if np.isinf(half_width):
         return np.ones(len(every), dtype=bool)
@@ -48,7 +48,7 @@ def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) ->
 
 
 def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:
-    """Which flank nodes lie in slices whose contact line is on the path of contact, or near enough its ends that
+    """(n,) bool: the flank nodes in slices whose contact line is on the path of contact, or near enough its ends that
     deflection can bring the tip's edge into contact."""
     pair = stand.pair
     start, end = pair.path_of_contact

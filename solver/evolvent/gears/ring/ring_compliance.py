@@ -1,17 +1,17 @@
-"""The compliance of a gear's flanks, the gear being made of equal sectors.
+"""The compliance of the flanks of a gear that is made of equal sectors.
 
-A gear is N sectors, sector s = one sector turned by 2πs/z, held at the bore. The sector is condensed once
-(`condense.SectorSystem`), the interfaces between the sectors are eliminated exactly (`interfaces`). With v_s the
-displacement of the low face of sector s in its own frame and R the turn by one pitch, the high face of sector s moves
-by R v_{s+1}, and
+A gear is N sectors held at the bore; sector s is one sector turned by 2πs/z. The sector is condensed once
+(`schur_complement.SectorSystem`), the interfaces between the sectors are eliminated exactly (`sector_interfaces`). With
+v_s the displacement of the low face of sector s in its own frame and R the turn by one pitch, the high face of sector s
+moves by R v_{s+1}, and
 
     y_s = C f_s + T [v_s; v_{s+1}],   A v = Σ_s E_sᵀ Tᵀ f_s,
 
-so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from the flank), and what a pair of teeth needs of
-all the rest is one small matrix between a few modes (`coupling`).
+so that y_s = C f_s + Σ_t T G_st Tᵀ f_t. T is smooth (the cut is away from the flank), so the coupling of a pair of
+teeth through all other sectors is one small matrix between a few modes (`ring_modes`).
 
-The ring is closed by default. A few teeth with free outer cuts are a wedge that is held at a narrow bore and leans
-over. Error of the deflection of two or three touching teeth under a tangential load, against the closed ring:
+The ring is closed by default. A few teeth with free outer cuts are a wedge held at a narrow bore, which tilts. Error of
+the deflection of two or three touching teeth under a tangential load, against the closed ring:
 
     teeth more on each side                 1       2       3       4
     spur, 50 teeth × 3 mm, bore 70 mm     600 %   220 %   110 %    63 %
@@ -19,7 +19,7 @@ over. Error of the deflection of two or three touching teeth under a tangential 
     helical, 17 × 2.1 mm, bore 20          24 %   7.6 %   2.8 %
     helical, 60 × 2.1 mm, bore 60         860 %   370 %   200 %
 
-What condensing and the ring cost is measured in docs/benchmark.md.
+The cost of condensing and of the ring is measured in docs/benchmark.md.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ import scipy.sparse as sp
 
 from evolvent.fem.condensation.schur_complement import SectorCondensation
 from evolvent.gears.ring.ring_modes import coupling
-from evolvent.gears.ring.sector_interfaces import Interfaces, OpenChain, Ring
+from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
 from evolvent_meshes.arrays import Floats, Ints
 
 Map = Callable[[Floats], Floats]
@@ -44,9 +44,13 @@ def _unchanged(displacements: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Part:
-    """Some nodes of one tooth's surface, (k,), and a linear map from columns of their displacements (d·k, c) to what is
-    wanted of them, (m, c)."""
+class MappedNodes:
+    """Nodes of one tooth's flank and linear functionals of their displacements.
+
+    tooth: number of the tooth.
+    nodes: (k,), of its flank.
+    map: from columns of their displacements (d·k, c) to the functionals (m, c); by default the displacements.
+    """
 
     tooth: int
     nodes: Ints
@@ -54,16 +58,16 @@ class Part:
 
 
 class Compliance(Protocol):
-    """What contact needs of a gear: displacements of its flanks' nodes under forces on them, d components a node."""
+    """Compliance of a gear: displacements of its flanks' nodes under forces on them, d components a node."""
 
-    def block(self, parts: Sequence[Part]) -> Floats:
-        """E C Eᵀ (mm/N where E = 1) of the parts, in their order; each tooth at most once."""
+    def block(self, parts: Sequence[MappedNodes]) -> Floats:
+        """E C Eᵀ (mm/N where E = 1) of the parts' maps E, in their order; each tooth at most once."""
         ...
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
         """Displacements (..., k_out, d; mm) of `rows_out` under `forces` (..., k_in, d; N) on `rows_in`.
 
-        Rows are (k × 2) integers, tooth and surface node; vectors are in the frame of the whole gear. Leading axes are
+        Rows are (k × 2) integers, tooth and flank node; vectors are in the frame of the whole gear. Leading axes are
         for several loads on the same rows: reading the compliance costs more than multiplying with it.
         """
         ...
@@ -73,10 +77,15 @@ class Compliance(Protocol):
 class ChainSettings:
     """The teeth that rows may name, and how the sectors are joined.
 
-    `first` is the number of the lowest tooth (tooth s is tooth 0 turned by +s pitches), `count` how many there are.
-    `ends`: "closed" joins all 2π/`pitch` sectors of the gear, whatever `count`; "free" and "clamped" model only the
-    `count` sectors, and leave the two outermost cut faces free or hold them.
-    `tolerance` is the relative error (Frobenius) of the coupling T G Tᵀ: 1e-13 is rounding.
+    pitch: angle of a sector [rad].
+    count: number of teeth.
+    first: number of the lowest tooth; tooth s is tooth 0 turned by +s pitches.
+    dimension: of space, d.
+    tolerance: relative error (Frobenius) of the coupling T G Tᵀ; 1e-13 is rounding.
+    ends: "closed" joins all 2π/pitch sectors of the gear, whatever the count; "free" and "clamped" model only `count`
+        sectors, and leave the two outermost cut faces free or hold them.
+
+    Raises ValueError where the sectors cannot be closed.
     """
 
     pitch: float
@@ -90,14 +99,14 @@ class ChainSettings:
         sectors = 2 * np.pi / self.pitch
         if self.ends == "closed" and (abs(sectors - round(sectors)) > 1e-9 * sectors or self.count > round(sectors)):
             raise ValueError(
-                f"a closed gear wants a pitch that divides the circle and no more teeth than it has, found a pitch of "
-                f"{self.pitch} rad ({sectors:.6f} to the circle) and {self.count} teeth: correct them or leave the "
-                'ends "free"'
+                f"closed ring of sectors: wanted a pitch that divides the circle and no more teeth than it has, found "
+                f"a pitch of {self.pitch} rad ({sectors:.6f} to the circle) and {self.count} teeth; correct them or "
+                'leave the ends "free"'
             )
 
 
 class ChainedCompliance:
-    """Compliance of a gear of equal sectors: one sector's C, shared by all, and the coupling through the interfaces."""
+    """Compliance of a gear of equal sectors: one sector's C, which all share, and the coupling through interfaces."""
 
     def __init__(self, sector: SectorCondensation, settings: ChainSettings) -> None:
         self.dimension = settings.dimension
@@ -110,8 +119,8 @@ class ChainedCompliance:
         self._coupling = coupling(sector, self._frames, self._joined, settings.tolerance)
         self._modes = self._coupling.modes
 
-    def block(self, parts: Sequence[Part]) -> Floats:
-        """See `Compliance.block`. The maps see the few modes in which teeth feel each other, and whole compliances of
+    def block(self, parts: Sequence[MappedNodes]) -> Floats:
+        """See `Compliance.block`. The maps are applied to the few modes of the coupling, and to the whole compliance of
         their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
         modes = [part.map(self._turned(part.tooth, self._modes[_dofs(part.nodes, self.dimension)])) for part in parts]
@@ -151,10 +160,10 @@ class ChainedCompliance:
         # a closed ring has more sectors than the named teeth
         return {tooth: (self._frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
 
-    def _joined(self, stiffness: Floats) -> Interfaces:
+    def _joined(self, stiffness: Floats) -> JoinedSectors:
         settings = self._settings
         if settings.ends == "closed":
-            return Ring(stiffness, round(2 * np.pi / settings.pitch), settings.count)
+            return ClosedRing(stiffness, round(2 * np.pi / settings.pitch), settings.count)
         return OpenChain(stiffness, settings.count, settings.ends == "clamped")
 
     def _loads(self, rows: Ints, forces: Floats) -> dict[int, tuple[Ints, Floats, Floats]]:
@@ -180,8 +189,8 @@ class ChainedCompliance:
         if bad.any():
             tooth, node = rows[np.argmax(bad)]
             raise IndexError(
-                f"rows (tooth, node) with teeth {self.teeth.start} to {self.teeth.stop - 1} and nodes 0 to "
-                f"{self.node_count - 1} are wanted, found ({tooth}, {node}): model more teeth or correct the number"
+                f"rows of a gear: wanted (tooth, node) with teeth {self.teeth.start} to {self.teeth.stop - 1} and "
+                f"nodes 0 to {self.node_count - 1}, found ({tooth}, {node}); model more teeth or correct the number"
             )
 
     def _place(self, tooth: int) -> int:
@@ -196,14 +205,14 @@ class ChainedCompliance:
     def _turned(self, tooth: int, matrix: Floats) -> Floats:
         return matrix if tooth == 0 else _turn_rows(self._turn(tooth), matrix)
 
-    def _turned_sector(self, part: Part) -> Floats:
+    def _turned_sector(self, part: MappedNodes) -> Floats:
         dofs = _dofs(part.nodes, self.dimension)
         local = self._sector.compliance[np.ix_(dofs, dofs)]
         return self._turned(part.tooth, self._turned(part.tooth, local).T)
 
 
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
-    """From face displacements (2c = `size`: low; high in the frame of the next sector) to those in the own frame."""
+    """From face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's own."""
     turn = _turn_by(settings.pitch, settings.dimension)
     low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), turn)
     return sp.csr_array(sp.block_diag([low, high]))
@@ -228,7 +237,7 @@ def _dofs(nodes: Ints, dimension: int) -> Ints:
 def _node_count(compliance: Floats, dimension: int) -> int:
     if compliance.shape[0] != compliance.shape[1] or len(compliance) % dimension:
         raise ValueError(
-            f"a square compliance with {dimension} rows a node is wanted, found shape {compliance.shape}: "
+            f"sector: wanted a square compliance with {dimension} rows a node, found shape {compliance.shape}; "
             "give the functionals node by node"
         )
     return len(compliance) // dimension

@@ -1,9 +1,9 @@
-"""The few modes in which the teeth of a gear feel each other through the cut faces of their sectors.
+"""The coupling of a gear's teeth through the cut faces of their sectors, between a few modes.
 
-With T the transfer from the cut faces of a sector to its flank and A the stiffness of the joined faces (`interfaces`),
-tooth i moves by K_ij f_j under forces on tooth j, K_ij = T (A⁻¹)_ij Tᵀ. What goes in and out through the faces is far
-smoother than what either T or A can do, and half of the digits are enough for the parts of which it is made, since
-their errors enter multiplied with one another:
+With T the transfer from the cut faces of a sector to its flank and A the stiffness of the joined faces
+(`sector_interfaces`), tooth i moves by K_ij f_j under forces on tooth j, K_ij = T (A⁻¹)_ij Tᵀ. The displacements and
+forces of the faces are far smoother than the range of either T or A, and half of the digits are enough for the factors
+of K_ij, since their errors enter multiplied with one another:
 
 - T ≈ U B: T A⁻¹ Tᵀ = T A⁻¹ (UB)ᵀ + UB A⁻¹ Tᵀ − UB A⁻¹ (UB)ᵀ + (T − UB) A⁻¹ (T − UB)ᵀ, of which the last is left out.
 - The faces move as V x only (Galerkin): the error of T A⁻¹ Tᵀ is the squared distance, in energy, of A⁻¹Tᵀ from V.
@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from scipy.linalg import block_diag, cholesky, eigh, solve_triangular, svd
 
 from evolvent.fem.condensation.schur_complement import SectorCondensation
-from evolvent.gears.ring.sector_interfaces import Interfaces
+from evolvent.gears.ring.sector_interfaces import JoinedSectors
 from evolvent_meshes.arrays import Floats, Ints
 
 # A ring gives way up to 6,000 times more than a face between held ones (60 teeth of 2.1 mm, bore 20 mm). Smooth faces
@@ -31,7 +31,9 @@ SOFTNESS = 3.0
 class Coupling:
     """K_ij ≈ modes · blocks[which[i, j]] · modesᵀ.
 
-    modes: (m × r), orthonormal columns. blocks: (n, r, r) the different ones [mm/N]. which: (count × count).
+    modes: (m, r), orthonormal columns.
+    blocks: (n, r, r), the different ones [mm/N].
+    which: (count, count), the block of each pair of sectors.
     """
 
     modes: Floats
@@ -44,28 +46,29 @@ class Coupling:
 
 
 def coupling(
-    sector: SectorCondensation, frames: sp.csr_array, joined: Callable[[Floats], Interfaces], tolerance: float
+    sector: SectorCondensation, frames: sp.csr_array, joined: Callable[[Floats], JoinedSectors], tolerance: float
 ) -> Coupling:
-    """Coupling of sectors through their faces, which `joined` makes of the stiffness (2q × 2q) of a sector's faces.
+    """Coupling of sectors through their faces.
 
-    `frames` (2c × 2c): the own frame from frames in which the faces of neighbours agree. `tolerance`: error of a K_ij
-    relative to the largest of them (Frobenius), about.
+    frames: (2c × 2c), to the sector's own frame from frames in which the faces of neighbours agree.
+    joined: makes the joined sectors from the stiffness (2q × 2q) of a sector's faces.
+    tolerance: error of a K_ij relative to the largest of them (Frobenius), about.
     """
     transfer, half = sector.transfer, np.sqrt(tolerance)
     stiffness = frames.T @ sector.stiffness @ frames
     basis, reduced = compressed(transfer, half)
     faces = smooth_faces(stiffness, reduced @ frames, half / SOFTNESS)
     pair = frames @ block_diag(faces, faces)
-    answers, which = joined(_between(faces, stiffness)).answers((reduced @ pair).T)
-    modes = _range_of_answers(transfer, pair, answers, tolerance)
-    blocks = _blocks(modes.T @ basis, modes.T @ transfer @ pair, reduced @ pair, answers, which)
+    responses, which = joined(_between(faces, stiffness)).responses((reduced @ pair).T)
+    modes = _range_of_responses(transfer, pair, responses, tolerance)
+    blocks = _blocks(modes.T @ basis, modes.T @ transfer @ pair, reduced @ pair, responses, which)
     kept = _leading(blocks, tolerance)
     return Coupling(modes @ kept, kept.T @ blocks @ kept, which)
 
 
 def compressed(matrix: Floats, tolerance: float, step: int = 64) -> tuple[Floats, Floats]:
     """U (m × r, orthonormal columns), B = Uᵀ matrix with ‖matrix − U B‖ ≤ tolerance ‖matrix‖; see `range_of`."""
-    random = np.random.default_rng(0)  # a run can be repeated
+    random = np.random.default_rng(0)  # so that a run can be repeated
     step = min(step, *matrix.shape)
     basis = range_of(lambda width: matrix @ random.standard_normal((matrix.shape[1], width)), tolerance, step)
     return basis, basis.T @ matrix
@@ -74,8 +77,8 @@ def compressed(matrix: Floats, tolerance: float, step: int = 64) -> tuple[Floats
 def range_of(sample: Callable[[int], Floats], tolerance: float, step: int) -> Floats:
     """Orthonormal columns U with ‖M − U Uᵀ M‖ ≤ tolerance ‖M‖ (Frobenius) for a matrix M known by samples M Ω.
 
-    `sample(k)`: M times k new random columns, independent and normal. A block of them that U misses by less than the
-    tolerance ends the search: E ‖M Ω‖² = k ‖M‖². Source: Halko, Martinsson and Tropp 2011, doi 10.1137/090771806,
+    `sample(k)`: M times k new random columns, independent and normal. A block of them that U reproduces within
+    the tolerance ends the search: E ‖M Ω‖² = k ‖M‖². Source: Halko, Martinsson and Tropp 2011, doi 10.1137/090771806,
     sections 4.3 and 4.4, by blocks as in Martinsson and Voronin 2016, doi 10.1137/15M1026080.
     """
     block = sample(step)
@@ -92,7 +95,7 @@ def range_of(sample: Callable[[int], Floats], tolerance: float, step: int) -> Fl
 
 
 def smooth_faces(stiffness: Floats, reduced: Floats, tolerance: float) -> Floats:
-    """V (c × p): displacements that a cut face takes under the forces Bᵀ (2c × r) of sectors and by its neighbours.
+    """V (c × p): displacements of a cut face under the forces Bᵀ (2c × r) of sectors and by its neighbours.
 
     With D = S_ll + S_hh = L Lᵀ, the stiffness of a face between two held ones, A⁻¹ f = D⁻¹ f − D⁻¹ E A⁻¹ f where E
     holds S_lh and its transpose: V spans L⁻ᵀ times the range of L⁻¹ [B_lᵀ, B_hᵀ] and of L⁻¹ S_lh L⁻ᵀ and its transpose,
@@ -111,9 +114,9 @@ def smooth_faces(stiffness: Floats, reduced: Floats, tolerance: float) -> Floats
     return solve_triangular(factor, vectors[:, missed > tolerance**2 * missed[-1]], lower=True, trans="T")
 
 
-def _range_of_answers(transfer: Floats, pair: Floats, answers: list[Floats], tolerance: float) -> Floats:
-    """Orthonormal columns (m × r): how a tooth moves under loads on all of them."""
-    random, everything = np.random.default_rng(1), np.hstack(answers)
+def _range_of_responses(transfer: Floats, pair: Floats, responses: list[Floats], tolerance: float) -> Floats:
+    """Orthonormal columns (m × r) of the displacements of a tooth under loads on all of them."""
+    random, everything = np.random.default_rng(1), np.hstack(responses)
 
     def sample(width: int) -> Floats:
         return transfer @ (pair @ (everything @ random.standard_normal((everything.shape[1], width))))
@@ -121,12 +124,12 @@ def _range_of_answers(transfer: Floats, pair: Floats, answers: list[Floats], tol
     return range_of(sample, tolerance / 2, step=32)
 
 
-def _blocks(turn: Floats, exact: Floats, rough: Floats, answers: list[Floats], which: Ints) -> Floats:
+def _blocks(turn: Floats, exact: Floats, rough: Floats, responses: list[Floats], which: Ints) -> Floats:
     """QᵀKQ (r × r) of all pairs that differ, to second order in T − U B.
 
-    Q: modes. turn: QᵀU. exact, rough: QᵀT and B on the smooth faces. answers: (2p × columns of U) under Bᵀ.
+    Q: modes. turn: QᵀU. exact, rough: QᵀT and B on the smooth faces. responses: (2p × columns of U) under Bᵀ.
     """
-    sides = [(exact - turn @ rough / 2) @ answer @ turn.T for answer in answers]
+    sides = [(exact - turn @ rough / 2) @ response @ turn.T for response in responses]
     mirrored = dict(zip(which.ravel(), which.T.ravel()))  # K_ijᵀ = K_ji
     return np.array([side + sides[mirrored[i]].T for i, side in enumerate(sides)])
 

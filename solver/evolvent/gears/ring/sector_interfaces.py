@@ -1,4 +1,4 @@
-"""The cut faces of equal sectors joined to a closed ring or an open chain: what moves there under forces on sectors.
+"""The cut faces of equal sectors joined to a closed ring or an open chain: their displacements under forces on them.
 
 Interface i is the low face of sector i, its displacement v_i (c) in that sector's frame. With the sector's stiffness S
 (2c × 2c: low face, high face in the frame of the next sector) the joined stiffness A is block tridiagonal; for a closed
@@ -18,12 +18,12 @@ from evolvent_meshes.arrays import Floats, Ints
 Complexes = NDArray[np.complex128]
 
 
-class Interfaces(Protocol):
+class JoinedSectors(Protocol):
     """Joined sectors 0 … n − 1."""
 
-    def answers(self, forces: Floats) -> tuple[list[Floats], Ints]:
-        """Displacements (2c × r: low, high) of the faces of sectors i under face forces (2c × r) of sectors j, all that
-        differ, and which of them belongs to i and j, (n × n)."""
+    def responses(self, forces: Floats) -> tuple[list[Floats], Ints]:
+        """Displacements (2c × r: low, high) of the faces of sectors i under face forces (2c × r) of sectors j, each
+        different one once, and (n × n) which of them belongs to i and j."""
         ...
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
@@ -31,7 +31,7 @@ class Interfaces(Protocol):
         ...
 
 
-class Ring:
+class ClosedRing:
     """`total` sectors closed to a full circle, `count` of them named."""
 
     def __init__(self, stiffness: Floats, total: int, count: int) -> None:
@@ -39,8 +39,8 @@ class Ring:
         self._total = total
         self._count = count
 
-    def answers(self, forces: Floats) -> tuple[list[Floats], Ints]:
-        """See `Interfaces.answers`: what differs are the offsets 1 − n … n − 1."""
+    def responses(self, forces: Floats) -> tuple[list[Floats], Ints]:
+        """See `JoinedSectors.responses`: they differ by the offset 1 − n … n − 1 of the sectors."""
         faces = self.displacements({0: forces})
         offsets = np.arange(1 - self._count, self._count) % self._total
         places = np.arange(self._count)
@@ -48,7 +48,7 @@ class Ring:
         return [np.concatenate(faces[offset : offset + 2]) for offset in offsets], which
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
-        """See `Interfaces.displacements`; factorises every harmonic again, as keeping them all would need gigabytes."""
+        """See `JoinedSectors.displacements`. Factors every harmonic again: keeping them all would need gigabytes."""
         size = len(self._stiffness) // 2
         waves = []
         for harmonic in range(self._total // 2 + 1):
@@ -76,15 +76,15 @@ class OpenChain:
         self._held = (0, count) if clamped else ()
         self._diagonal, self._lower = self._factors(stiffness)
 
-    def answers(self, forces: Floats) -> tuple[list[Floats], Ints]:
-        """See `Interfaces.answers`."""
+    def responses(self, forces: Floats) -> tuple[list[Floats], Ints]:
+        """See `JoinedSectors.responses`."""
         columns = [self.displacements({sector: forces}) for sector in range(self._count)]
         places = range(self._count)
         which = np.arange(self._count**2).reshape(self._count, self._count)
         return [np.concatenate(faces[place : place + 2]) for place in places for faces in columns], which
 
     def displacements(self, sources: dict[int, Floats]) -> list[Floats]:
-        """See `Interfaces.displacements`."""
+        """See `JoinedSectors.displacements`."""
         sample = next(iter(sources.values()))
         right = [np.zeros((self._size, *sample.shape[1:])) for _ in range(self._count + 1)]
         for sector, force in sources.items():

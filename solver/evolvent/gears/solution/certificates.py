@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.errors import ResultError
 
 BALANCE_LIMIT = 1e-2

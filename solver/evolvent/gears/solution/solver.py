@@ -17,9 +17,9 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.load_limits import check_load
 from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import is_index, number, refuse
 
@@ -130,7 +130,7 @@ def solve_pitches(
     check_frictions(frictions)
     check_positions(positions)
     pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
-    swept = one_pitch(list(sweep_closed(gears, pitch, list(frictions), initial_state(frictions), comm)))
+    swept = one_pitch(list(sweep_until_periodic(gears, pitch, list(frictions), initial_state(frictions), comm)))
     for position in swept:
         certify(position.results)
     try:

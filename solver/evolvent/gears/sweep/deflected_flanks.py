@@ -16,92 +16,114 @@ from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, norma
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
 from evolvent.contact.search.pairing import SearchError
-from evolvent.gears.contact.overlap_check import overlap_outside, unwatched
+from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.contact.tooth_contact import Displaced
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.friction_history import Footprint, Memory, recalled
-from evolvent.gears.sweep.position import free_rotation, free_shift, rubbing
-from evolvent_meshes.arrays import Floats
+from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
+from evolvent.gears.sweep.frictional_position import frictional_equilibrium
+from evolvent.gears.sweep.position_search import free_rotation, free_shift
 from evolvent_meshes.gears.member import Member
 
-SETTLED = 5e-4
+CONVERGED = 5e-4
 """Modules by which the free rotation moves the flanks after the last search: the next one would move them by a third of
 it or less."""
 ROUNDS = 12
 
 
 @dataclass(frozen=True)
-class Settled:
-    """The contact of flanks that deflect as its equilibrium says, and that equilibrium, whose iterations are those of
-    all searches; stiffness: of the frictionless mesh as in PositionResult, along these flanks' normals."""
+class DeflectedEquilibrium:
+    """Equilibrium of flanks that were searched as it deflects them.
+
+    contact: of the deflected flanks.
+    equilibrium: with the iterations of all searches.
+    stiffness: of the frictionless mesh along these flanks' normals, as in PositionResult.
+    """
 
     contact: GearContact
-    found: Equilibrium
+    equilibrium: Equilibrium
     stiffness: float
 
 
-def settled(
-    model: GearModel, contact: GearContact, found: Equilibrium, friction: float, before: Memory | None, span: float
-) -> Settled:
-    """From the equilibrium of undeflected flanks. before: what friction remembers, None without; span: Δφ [rad] since
-    then.
+def deflected_equilibrium(
+    model: GearModel, contact: GearContact, equilibrium: Equilibrium, friction: float,
+    history: FrictionHistory | None, span: float,
+) -> DeflectedEquilibrium:  # fmt: skip
+    """Searches and solves in turn until the search moves the flanks no more.
 
-    Raises NotConverged.
+    contact, equilibrium: of undeflected flanks.
+    history: of friction, None without it.
+    span: Δφ since then [rad].
+
+    Raises NotConverged, SearchError.
     """
     for _ in range(ROUNDS):
-        pressed, spent = Footprint.of(contact, found.traction[:, 0]), found.iterations
-        contact = deflected_contact(model, contact, found)
-        found, stiffness = _equilibrium(model, contact, pressed, friction, before, span)
-        found = replace(found, iterations=spent + found.iterations)
-        if contact.reaches_rim(found.traction[:, 0] > 0.0):
-            contact = replace(contact, half_width=1.5 * contact.half_width)
-        elif abs(free_shift(model, found)) <= SETTLED * model.pair.pinion.normal_module:
-            places = unwatched(contact, model.teeth)
-            if overlap_outside(contact, places, found.force, free_rotation(model, found)) == 0.0:
-                return Settled(contact, found, stiffness)
-            contact = replace(contact, half_width=np.inf)
+        patch, spent = ContactPatch.of(contact.geometry, equilibrium.traction[:, 0]), equilibrium.iterations
+        contact = deflected_contact(model, contact, equilibrium)
+        geometry = contact.geometry
+        equilibrium, stiffness = _equilibrium(model, contact, patch, friction, history, span)
+        equilibrium = replace(equilibrium, iterations=spent + equilibrium.iterations)
+        if geometry.reaches_rim(equilibrium.traction[:, 0] > 0.0):
+            contact = _with_window(contact, 1.5 * geometry.half_width)
+        elif abs(free_shift(model, equilibrium)) <= CONVERGED * model.pair.pinion.normal_module:
+            places = unsearched_overlaps(geometry, model.teeth)
+            if overlap_outside(contact, places, equilibrium.force, free_rotation(model, equilibrium)) == 0.0:
+                return DeflectedEquilibrium(contact, equilibrium, stiffness)
+            contact = _with_window(contact, np.inf)
     raise NotConverged(
         f"pinion at {np.degrees(contact.stand.angle):.3f}°, μ = {friction}: wanted deflected flanks that move by less "
-        f"than {1e3 * SETTLED * model.pair.pinion.normal_module:.2f} µm within their window, found them moved by "
-        f"{1e3 * abs(free_shift(model, found)):.2f} µm after {ROUNDS} searches; lower the torque"
+        f"than {1e3 * CONVERGED * model.pair.pinion.normal_module:.2f} µm within their window, found them moved by "
+        f"{1e3 * abs(free_shift(model, equilibrium)):.2f} µm after {ROUNDS} searches; lower the torque"
     )
 
 
-def deflected_contact(model: GearModel, contact: GearContact, found: Equilibrium) -> GearContact:
+def deflected_contact(model: GearModel, contact: GearContact, equilibrium: Equilibrium) -> GearContact:
     """The contact between the flanks as an equilibrium has deflected and turned them. Raises NotConverged."""
-    pushed = contact.pushed(Member.PINION, found.force), contact.pushed(Member.WHEEL, found.force)
-    displaced = {t.tooth: _displaced(contact, pushed, t.tooth) for t in contact.teeth}
-    stand = contact.stand.turned(model.load.on, float(found.motion[0]))
+    displaced = _displaced_flanks(contact.geometry, equilibrium)
+    stand = contact.stand.turned(model.load.on, float(equilibrium.motion[0]))
     where = f"pinion at {np.degrees(stand.angle):.3f}°: wanted deflected flanks that face each other, found"
     try:
-        again = gear_contact(model.bodies, stand, list(displaced), contact.half_width, displaced)
+        deflected = gear_contact(model.bodies, stand, list(displaced), contact.geometry.half_width, displaced)
     except SearchError as error:
         raise NotConverged(f"{where} {error}; or lower the torque") from error
-    if not again.teeth:
+    if not deflected.geometry.teeth:
         raise NotConverged(f"{where} none within reach; lower the torque")
-    return again
+    return deflected
 
 
-def _displaced(contact: GearContact, pushed: tuple[Floats, Floats], tooth: int) -> Displaced:
-    """The whole flanks of a tooth pair, the pinion's as contact sees it (the extended trace of contact_operator.py)."""
-    found = []
-    for gear, body in zip(Member, contact.bodies):
-        every = body.rows(tooth, np.arange(len(body.flank.points)))
-        u = body.chain.apply(contact.rows(gear)[0], pushed[gear], every)
-        found.append(u @ contact.stand.rotation(gear, contact.d).T)
-    return found[0], found[1]
+def _with_window(contact: GearContact, half_width: float) -> GearContact:
+    return replace(contact, geometry=replace(contact.geometry, half_width=half_width))
+
+
+def _displaced_flanks(geometry: ContactGeometry, equilibrium: Equilibrium) -> dict[int, Displaced]:
+    """Tooth pair -> displacements of its whole flanks, the pinion's with the contact's flux (the extended trace of
+    contact_operator.py)."""
+    loads = [(geometry.rows(gear)[0], geometry.flank_forces(gear, equilibrium.force)) for gear in Member]
+
+    def displacements(gear: Member, tooth: int) -> np.ndarray:
+        body, (rows, forces) = geometry.bodies[gear], loads[gear]
+        u = body.chain.apply(rows, forces, body.rows(tooth, np.arange(len(body.flank.points))))
+        return np.asarray(u @ geometry.stand.rotation(gear, geometry.d).T)
+
+    pinion, wheel = Member.PINION, Member.WHEEL
+    return {t.tooth: (displacements(pinion, t.tooth), displacements(wheel, t.tooth)) for t in geometry.teeth}
 
 
 def _equilibrium(
-    model: GearModel, contact: GearContact, pressed: Footprint, friction: float, before: Memory | None, span: float
-) -> tuple[Equilibrium, float]:
-    """And the stiffness of the frictionless state."""
-    system = contact.system(model.load.on, model.load.torque, normal_only=before is None)
+    model: GearModel, contact: GearContact, patch: ContactPatch, friction: float, history: FrictionHistory | None,
+    span: float,
+) -> tuple[Equilibrium, float]:  # fmt: skip
+    """Equilibrium of these flanks, started from a contact patch, and the stiffness without friction. Raises
+    NotConverged."""
+    geometry = contact.geometry
+    system = contact.system(model.load.on, model.load.torque, normal_only=history is None)
     normal = normal_part(system)
-    smooth = frictionless(normal, pressed.at(contact))
+    smooth = frictionless(normal, patch.at(geometry))
     stiffness = tangent_stiffness(normal, smooth)
-    if before is None:
+    if history is None:
         return smooth, stiffness
-    found = rubbing(model, contact, system, friction, smooth, recalled(contact, [before])[0], span)
-    return replace(found, iterations=smooth.iterations + found.iterations), stiffness
+    (before,) = previous_jumps(geometry, [history])
+    rough = frictional_equilibrium(geometry, system, friction, smooth, before, span)
+    return replace(rough, iterations=smooth.iterations + rough.iterations), stiffness

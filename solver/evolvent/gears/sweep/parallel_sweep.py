@@ -1,8 +1,8 @@
 """A pitch of gear positions on several ranks: two prepare a position each, then all solve friction.
 
-Search, compliance and the frictionless equilibrium are most of a position and ask for nothing that friction made of the
-one before, and where their search starts makes no difference. Friction follows position by position, the coefficients
-divided among the ranks, which read what was prepared from the same memory.
+Search, compliance and the frictionless equilibrium are most of a position. They do not depend on the friction of the
+position before, and where their search starts makes no difference. Friction follows position by position, the
+coefficients divided among the ranks, which read the prepared positions from the same memory.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from itertools import pairwise
 from mpi4py import MPI
 
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import SharedBroadcast, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, joined, sweep_pitch
-from evolvent.gears.sweep.position import SharedPosition, shared_position
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 
 PREPARING = 2  # ranks: from further away a search takes longer
 
@@ -33,83 +34,85 @@ def sweep_on_ranks(
     if comm.size == 1:
         yield from sweep_pitch(model, pitch, frictions, state, begin)
         return
-    boards = tuple(SharedBroadcast(comm, root) for root in range(PREPARING))
-    # not closed where something failed: who is alone with it would wait for the others
+    broadcasts = tuple(SharedBroadcast(comm, root) for root in range(PREPARING))
+    # not closed where something failed: a rank alone with the failure would wait for the others
     with suppress(GeneratorExit):
-        yield from _Crew(model, pitch, frictions, comm, Cores(comm), boards).swept(state, begin)
-    for board in boards:
-        board.close()
+        yield from _RankedSweep(model, pitch, frictions, comm, Cores(comm), broadcasts).swept(state, begin)
+    for broadcast in broadcasts:
+        broadcast.close()
 
 
-def at_once(comm: MPI.Comm) -> int:
-    """How many positions are solved before the first of them is handed out."""
+def positions_at_once(comm: MPI.Comm) -> int:
+    """Number of positions that are solved before the first of them is yielded."""
     return min(comm.size, PREPARING)
 
 
 def division(count: int, ranks: int) -> list[slice]:
-    """Which of `count` friction coefficients each rank solves: neighbours together, as one helps to solve the next, and
-    of the small ones more, as these take fewer iterations."""
+    """The friction coefficients of `count` that each rank solves: neighbours together, as one helps to solve the next,
+    and more of the small ones, as these take fewer iterations."""
     ends = [-(-count * rank // ranks) for rank in range(ranks + 1)]
     return [slice(a, b) for a, b in pairwise(ends)]
 
 
 @dataclass(frozen=True)
-class _Crew:
-    """Several ranks at work on a pitch."""
+class _RankedSweep:
+    """A sweep by several ranks.
+
+    broadcasts: of the compliance, one for each rank that prepares a position.
+    """
 
     model: GearModel
     pitch: Pitch
     frictions: Sequence[float]
     comm: MPI.Comm
     cores: Cores
-    boards: tuple[SharedBroadcast, ...]
+    broadcasts: tuple[SharedBroadcast, ...]
 
     def swept(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
         """All positions from number `begin` on."""
         while begin < len(self.pitch.angles):
             numbers = range(begin, min(begin + PREPARING, len(self.pitch.angles)))
-            own = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
-            prepared = [self._handed_over(own, root) for root in range(len(numbers))]
-            del own  # a compliance that was handed over is not needed twice
-            mine = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
-            parts = [part for part in self.comm.allgather(mine) if part]
+            mine = together(self.comm, partial(self._prepared, numbers, state), self.cores.lent)
+            prepared = [self._broadcast(mine, root) for root in range(len(numbers))]
+            del mine  # its compliance is in the shared memory
+            solved = together(self.comm, partial(self._solved, numbers, state, prepared), self.cores.lent)
+            parts = [part for part in self.comm.allgather(solved) if part]
             for position in map(joined, zip(*parts, strict=True)):
                 state = position.state
                 yield position
             begin = numbers.stop
 
     def _prepared(self, numbers: range, state: SweepState) -> SharedPosition | None:
-        """What all need of the position that this rank prepares; None if it has none, and where it is not found."""
+        """The position that this rank prepares; None where it has none to prepare, or finds no solution."""
         if self.comm.rank >= len(numbers):
             return None
         angle = self.pitch.angles[numbers[self.comm.rank]]
         try:
-            return shared_position(self.model, angle, state.extra, self.frictions, state.footprint, self.cores.used)
-        except NotConverged:  # smaller steps may lead there
+            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, self.cores.used)
+        except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 
     def _solved(
         self, numbers: range, state: SweepState, prepared: list[SharedPosition | None]
     ) -> list[SweptPosition]:
-        """These positions with this rank's own friction coefficients, none if it has none. prepared: what all need of
-        them, None where that was not found: then each rank goes there by itself."""
+        """These positions with the friction coefficients of this rank, none if it has none. prepared: the positions
+        without friction, None where there was no solution: then each rank searches by itself."""
         own = division(len(self.frictions), self.comm.size)[self.comm.rank]
-        mine, swept = replace(state, memories=state.memories[own]), []
+        mine, swept = replace(state, histories=state.histories[own]), []
         for k, common in zip(numbers, prepared) if self.frictions[own] else ():
             swept.append(next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common)))
             mine = swept[-1].state
         return swept
 
-    def _handed_over(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
-        """Rank `root`'s on all ranks: the gears, which all have, stay where they are, the compliance is shared."""
+    def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
+        """Rank `root`'s position on all ranks: without the gears, which all have, its compliance in shared memory."""
         bare, matrix = None, None
         if prepared is not None:
-            contact = replace(prepared.contact, bodies=())
             matrix = prepared.system.compliance
-            bare = replace(prepared, contact=contact, system=replace(prepared.system, compliance=matrix[:0]))
-        found = self.comm.bcast(bare, root)
-        if found is None:
+            system = replace(prepared.system, compliance=matrix[:0])
+            bare = replace(prepared, contact=prepared.contact.without_bodies(), system=system)
+        received = self.comm.bcast(bare, root)
+        if received is None:
             return None
-        compliance = self.boards[root].send(matrix)
-        system = replace(found.system, compliance=compliance)
-        return replace(found, contact=replace(found.contact, bodies=self.model.bodies), system=system)
+        system = replace(received.system, compliance=self.broadcasts[root].send(matrix))
+        return replace(received, contact=received.contact.with_bodies(self.model.bodies), system=system)

@@ -10,55 +10,61 @@ import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import compress, cycle
+from itertools import compress
 
 import numpy as np
 
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.deflected_flanks import settled
-from evolvent.gears.sweep.friction_history import Footprint, Memory, Past, recalled, remembered
-from evolvent.gears.sweep.position import (
-    PositionResult,
-    SharedPosition,
-    Solved,
-    position_result,
-    shared_position,
-    solve_position,
-)
+from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
+from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_jumps
+from evolvent.gears.sweep.frictional_position import Solved, solve_position
+from evolvent.gears.sweep.position_result import PositionResult, position_result
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 
 HALVINGS = 4
 LOG = logging.getLogger("evolvent")
+Histories = tuple[FrictionHistory | None, ...]
+"""Of each friction coefficient; None before the first position, and without friction."""
 
 
 @dataclass(frozen=True)
 class SweepState:
-    """Where a sweep stands: everything that the next position needs.
+    """What the next position of a sweep depends on.
 
-    extra: rotations [rad] to start the next search from. memories: of each friction coefficient that was solved with
-    (None: no past).
-    footprint: where the flanks were pressed. Without extra and footprint the next position is the same, but takes more
-    searches and iterations.
+    extra: rotations of pinion and wheel beyond the nominal ones, from which the next search starts [rad].
+    histories: friction history of each coefficient that was solved with.
+    patch: the last contact patch, None where it is not known.
+
+    Without extra and patch the next position is the same, but takes more searches and iterations.
     """
 
     extra: tuple[float, float]
-    memories: tuple[Memory | None, ...]
-    footprint: Footprint | None = None
+    histories: Histories
+    patch: ContactPatch | None = None
 
     def of(self, coefficients: np.ndarray) -> SweepState:
         """The same for some of its friction coefficients, (frictions,) bool."""
-        return replace(self, memories=tuple(compress(self.memories, coefficients)))
+        return replace(self, histories=tuple(compress(self.histories, coefficients)))
 
     def earlier(self, pitches: int) -> SweepState:
         """The same so many base pitches earlier."""
-        memories = tuple(None if memory is None else memory.earlier(pitches) for memory in self.memories)
-        return replace(self, memories=memories)
+        histories = tuple(None if history is None else history.earlier(pitches) for history in self.histories)
+        return replace(self, histories=histories)
 
 
 @dataclass(frozen=True)
 class SweptPosition:
-    """One angle's results, one per friction coefficient that was solved with, and the state to go on from. again: the
-    angle was solved before; closes: with it the sweep is complete."""
+    """One position of a sweep.
+
+    angle: of the pinion [rad].
+    results: one for each friction coefficient that was solved with.
+    state: to go on from.
+    again: whether the angle was solved before.
+    closes: whether the sweep is complete with it.
+    """
 
     angle: float
     results: tuple[PositionResult, ...]
@@ -74,14 +80,17 @@ class SweptPosition:
 def joined(parts: Sequence[SweptPosition]) -> SweptPosition:
     """A position of which each part has some friction coefficients."""
     results = tuple(result for part in parts for result in part.results)
-    memories = tuple(memory for part in parts for memory in part.state.memories)
-    return replace(parts[0], results=results, state=replace(parts[0].state, memories=memories))
+    histories = tuple(history for part in parts for history in part.state.histories)
+    return replace(parts[0], results=results, state=replace(parts[0].state, histories=histories))
 
 
 @dataclass(frozen=True)
 class Pitch:
-    """Which pinion rotations [rad] to solve. pitches: how many base pitches they are, where they are equal steps of
-    some."""
+    """The positions to solve.
+
+    angles: pinion rotations [rad].
+    pitches: number of base pitches that they cover, where they are equal steps of some.
+    """
 
     angles: tuple[float, ...]
     pitches: int = 1
@@ -104,79 +113,80 @@ def sweep_pitch(
 ) -> Iterator[SweptPosition]:  # fmt: skip
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
 
-    common: what the coefficients share of the first position, if it is there already.
+    common: what the coefficients share of the first position, None where it is to be searched.
 
     Raises NotConverged, with the angle and the friction coefficient.
     """
     span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
     for k in range(begin, len(pitch.angles)):
-        position = _advance(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
+        position = _advanced(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
         state, common = position.state, None
         yield position
 
 
-def _advance(
+def _advanced(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int,
     common: SharedPosition | None = None,
 ) -> SweptPosition:  # fmt: skip
+    """The position at an angle, reached in up to 2^halvings steps. Raises NotConverged."""
     try:
         return _position(model, frictions, state, angle, span, common)
-    except NotConverged as failure:
-        last = next((m.stand.angle for m in state.memories if m is not None), angle - span)
+    except (NotConverged, SearchError) as failure:
+        last = next((history.stand.angle for history in state.histories if history is not None), angle - span)
         if halvings == 0:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°, also after {HALVINGS} halvings of the step: {failure}"
             ) from failure
         LOG.info("the step to %.4f° is halved: %s", np.degrees(angle), failure)
-        middle = _advance(model, frictions, state, 0.5 * (last + angle), 0.5 * span, halvings - 1)
-        return _advance(model, frictions, middle.state, angle, 0.5 * span, halvings - 1)
+        middle = _advanced(model, frictions, state, 0.5 * (last + angle), 0.5 * span, halvings - 1)
+        return _advanced(model, frictions, middle.state, angle, 0.5 * span, halvings - 1)
 
 
 def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
     shared: SharedPosition | None,
 ) -> SweptPosition:  # fmt: skip
+    """The position at an angle, in one step. Raises NotConverged, SearchError."""
     begin = time.perf_counter()
     if shared is None:
-        shared = shared_position(model, angle, state.extra, frictions, state.footprint)
-    before, span = _remembered(model, shared, frictions, state, span)
-    pasts = iter(_pasts(shared, before))
+        shared = shared_position(model, angle, state.extra, frictions, state.patch)
+    histories, span = _histories(model, shared, frictions, state, span)
+    jumps = _previous_jumps(shared, histories)
     spent = time.perf_counter() - begin
     results: list[PositionResult] = []
-    memories: list[Memory | None] = []
+    updated: list[FrictionHistory | None] = []
     solved: list[Solved] = []
-    for μ, memory in zip(frictions, before):
+    for μ, history, jump in zip(frictions, histories, jumps, strict=True):
         begin = time.perf_counter()
-        result, found = solve_position(model, shared, μ, next(pasts) if memory is not None else None, span, solved)
-        solved.append(found)
-        contact, equilibrium = shared.contact, found.state
+        result, state_at_μ = solve_position(model, shared, μ, jump, span, solved)
+        solved.append(state_at_μ)
+        contact, equilibrium = shared.contact, state_at_μ.equilibrium
         if model.deflected:
-            bent = settled(model, contact, equilibrium, μ, memory, span)
-            contact, equilibrium = bent.contact, bent.found
-            result = position_result(model, contact, equilibrium, μ, bent.stiffness, shared.smooth.iterations)
-        memories.append(remembered(model, contact, equilibrium) if memory is not None else None)
+            deflected = deflected_equilibrium(model, contact, equilibrium, μ, history, span)
+            contact, equilibrium = deflected.contact, deflected.equilibrium
+            result = position_result(model, contact, equilibrium, μ, deflected.stiffness, shared.smooth.iterations)
+        updated.append(FrictionHistory.of(model, contact, equilibrium) if history is not None else None)
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
-    after = SweepState(shared.contact.stand.extra, tuple(memories), shared.footprint)
+    after = SweepState(shared.contact.stand.extra, tuple(updated), shared.patch)
     return SweptPosition(angle, tuple(results), after)
 
 
-def _remembered(
+def _histories(
     model: GearModel, shared: SharedPosition, frictions: Sequence[float], state: SweepState, span: float
-) -> tuple[tuple[Memory | None, ...], float]:
-    """The memory of each friction coefficient (None for μ = 0) and the step [rad] since then. Where nothing is
-    remembered, the flanks are taken to have moved by `span` in the state without friction."""
-    kept = next((memory for memory in state.memories if memory is not None), None)
+) -> tuple[Histories, float]:
+    """The history of each friction coefficient (None for μ = 0) and the step [rad] since then. Where there is none yet,
+    the flanks are taken to have moved by `span` in the state without friction."""
+    kept = next((history for history in state.histories if history is not None), None)
     if kept is not None:
-        return state.memories, shared.contact.stand.angle - kept.stand.angle
+        return state.histories, shared.contact.stand.angle - kept.stand.angle
     rough = [model.has_friction_terms(μ) for μ in frictions]
-    fresh = remembered(model, shared.contact, shared.smooth) if any(rough) else None
-    return tuple(fresh if slips else None for slips in rough), span
+    fresh = FrictionHistory.of(model, shared.contact, shared.smooth) if any(rough) else None
+    return tuple(fresh if rubs else None for rubs in rough), span
 
 
-def _pasts(shared: SharedPosition, memories: Sequence[Memory | None]) -> Iterator[Past]:
-    """What each memory tells; the same one is asked once."""
-    known = [memory for memory in memories if memory is not None]
-    if len(known) > 1 and all(memory is known[0] for memory in known):
-        return cycle(recalled(shared.contact, known[:1]))
-    return iter(recalled(shared.contact, known))
+def _previous_jumps(shared: SharedPosition, histories: Histories) -> list[PreviousJump | None]:
+    """Interpolates each friction history, shared ones once; None where there is none."""
+    different = list({id(history): history for history in histories if history is not None}.values())
+    jumps = dict(zip(map(id, different), previous_jumps(shared.contact.geometry, different)))
+    return [jumps.get(id(history)) for history in histories]

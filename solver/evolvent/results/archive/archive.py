@@ -23,10 +23,10 @@ import numpy as np
 from evolvent.fem.surface import surface_of
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
-from evolvent.gears.sweep.friction_history import Memory
+from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.periodic_pitch import one_pitch
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.differences import charts, differences, essence
 from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
@@ -38,6 +38,8 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 
 Meshes = tuple[MeshData, MeshData]
 """Sector meshes of pinion and wheel."""
+CONTACT_KEYS = {"roll_distance": "ξ"}
+"""Fields of ContactPoints that archives have by another name."""
 
 
 class ArchiveError(InputError):
@@ -129,11 +131,11 @@ class Archive:
         if not (self.folder / "state.npz").exists():
             return None
         arrays = self._state()
-        memories = tuple(
-            _memory(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
+        histories = tuple(
+            _history(arrays, f"{i}/", pair) if f"{i}/angle" in arrays else None for i in range(int(arrays["memories"]))
         )
         extra = arrays["extra"]
-        return SweepState((float(extra[0]), float(extra[1])), memories)
+        return SweepState((float(extra[0]), float(extra[1])), histories)
 
     def _state(self) -> dict[str, Any]:
         arrays = read_arrays(self.folder / "state.npz")
@@ -168,15 +170,15 @@ class Archive:
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
         arrays: dict[str, Any] = {
             "fingerprint": self.fingerprint, "complete": complete, "extra": np.array(state.extra),
-            "memories": len(state.memories),
+            "memories": len(state.histories),
         }  # fmt: skip
-        for i, memory in enumerate(state.memories):
-            if memory is not None:
+        for i, history in enumerate(state.histories):
+            if history is not None:
                 arrays |= {
-                    f"{i}/angle": memory.stand.angle, f"{i}/extra": np.array(memory.stand.extra),
-                    f"{i}/pinion_rows": memory.rows[0], f"{i}/wheel_rows": memory.rows[1],
-                    f"{i}/pinion_forces": memory.forces[0], f"{i}/wheel_forces": memory.forces[1],
-                    f"{i}/flux": memory.flux,
+                    f"{i}/angle": history.stand.angle, f"{i}/extra": np.array(history.stand.extra),
+                    f"{i}/pinion_rows": history.rows[0], f"{i}/wheel_rows": history.rows[1],
+                    f"{i}/pinion_forces": history.forces[0], f"{i}/wheel_forces": history.forces[1],
+                    f"{i}/flux": history.flux,
                 }  # fmt: skip
         return arrays
 
@@ -229,23 +231,28 @@ def _shape(arrays: dict[str, Any], name: str) -> GearShape:
 
 def _result_arrays(result: PositionResult) -> dict[str, Any]:
     arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name not in ("stand", "contact")}
-    arrays |= {f"contact/{f.name}": getattr(result.contact, f.name) for f in fields(ContactPoints)}
+    arrays |= {_contact_key(f.name): getattr(result.contact, f.name) for f in fields(ContactPoints)}
     return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
+
+
+def _contact_key(field: str) -> str:
+    """Where a field of ContactPoints is kept."""
+    return f"contact/{CONTACT_KEYS.get(field, field)}"
 
 
 def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
     own = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
     stand = Stand(pair, float(own.pop("angle")), (float(own["extra"][0]), float(own.pop("extra")[1])))
-    contact = ContactPoints(**{f.name: own.pop(f"contact/{f.name}") for f in fields(ContactPoints)})
+    contact = ContactPoints(**{f.name: own.pop(_contact_key(f.name)) for f in fields(ContactPoints)})
     own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
     scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
     values = own | scalars | {"stand": stand, "contact": contact}
     return PositionResult(**{f.name: values[f.name] for f in fields(PositionResult)})
 
 
-def _memory(arrays: dict[str, Any], start: str, pair: GearPair) -> Memory:
+def _history(arrays: dict[str, Any], start: str, pair: GearPair) -> FrictionHistory:
     extra = arrays[start + "extra"]
     stand = Stand(pair, float(arrays[start + "angle"]), (float(extra[0]), float(extra[1])))
     rows = arrays[start + "pinion_rows"], arrays[start + "wheel_rows"]
     forces = arrays[start + "pinion_forces"], arrays[start + "wheel_forces"]
-    return Memory(stand, rows, forces, arrays[start + "flux"])
+    return FrictionHistory(stand, rows, forces, arrays[start + "flux"])

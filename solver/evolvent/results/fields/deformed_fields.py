@@ -21,7 +21,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from evolvent.fem.stress import von_mises
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.fields.deformation import Deformation, DeformedTooth
 from evolvent.results.run_data import RunData

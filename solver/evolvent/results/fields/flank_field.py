@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.fields.polygons import Polygons
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats

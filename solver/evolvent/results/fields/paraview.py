@@ -22,7 +22,7 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.fields.flank_field import flank_field, line_distance

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.drawing.style import FAINT, OVER, PINION_BODY, PRESSURE_MAP, WHEEL_BODY
 from evolvent.results.fields.flank_field import Patch, flank_field, flank_patch
 from evolvent.results.fields.paraview import poly_data

@@ -107,8 +107,8 @@ class PitchDeflection:
         added to the sliding of undeflected flanks."""
         if not points:
             return []
-        counts, joined = [len(each.ξ) for each in points], ContactPoints.joined(points)
-        k, tooth, ξ = np.repeat(numbers, counts), joined.tooth, joined.ξ
+        counts, joined = [len(each.roll_distance) for each in points], ContactPoints.joined(points)
+        k, tooth, ξ = np.repeat(numbers, counts), joined.tooth, joined.roll_distance
         rows = self._rows(k - 1, tooth), self._rows(k, tooth), self._rows(k + 1, tooth)
         total = np.zeros(len(k))
         for gear, s in zip(Member, (joined.across, joined.opposite)):

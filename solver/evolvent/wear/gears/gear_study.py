@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.gears.sweep.position import SearchedAt
+from evolvent.gears.sweep.position_search import SearchedAt
 from evolvent.wear.block_stepping import (
     Block,
     BlockSettings,

@@ -21,14 +21,9 @@ from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import Pitch
-from evolvent.gears.sweep.position import (
-    PositionResult,
-    SearchedAt,
-    SharedPosition,
-    searched_at,
-    shared_position,
-    worn_on,
-)
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at, shared_position
+from evolvent.gears.sweep.worn_position import worn_on
 from evolvent.wear.archard import Archard, certify_volume
 from evolvent.wear.block_stepping import RETRIED_ERRORS, CycleEvaluation
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
@@ -150,7 +145,7 @@ class GearWear:
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
         """Where the contact of each position was searched, of all ranks."""
-        mine = [SearchedAt(s.contact.stand.angle, s.contact.stand.extra, s.contact.half_width) for s in state.shared]
+        mine = [shared.searched for shared in state.shared]
         return [search for part in self._comm.allgather(mine) for search in part]
 
     def implicit_block(self, depth: Floats, start: PitchState, length: float) -> tuple[Floats, PitchState]:
@@ -210,8 +205,8 @@ class GearWear:
             if shared is None:
                 near = old or (positions[-1] if positions else None)
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
-                footprint = None if near is None else near.footprint
-                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], footprint)
+                patch = None if near is None else near.patch
+                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], patch)
                 searched += 1
             positions.append(shared)
         return positions, searched
@@ -267,5 +262,5 @@ class GearWear:
             return sp.csr_matrix((0, len(self.areas)))
         points = ContactPoints.joined(positions)
         places = zip(Member, (points.across, points.opposite))
-        arcs = [line_arc(self.model.pair, gear, points.ξ) + s for gear, s in places]
+        arcs = [line_arc(self.model.pair, gear, points.roll_distance) + s for gear, s in places]
         return sp.hstack([grid.hats(u, points.z) for grid, u in zip(self.grids, arcs)]).tocsr()

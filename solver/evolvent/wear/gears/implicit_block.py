@@ -21,7 +21,7 @@ from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
-from evolvent.gears.sweep.position import SharedPosition
+from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 GMRES_TOLERANCE = 1e-6  # residual of a block's equations over their right-hand side

@@ -71,7 +71,7 @@ def mesh_passage(
     swept = _sliding_shares(pair, points.sliding / (1.0 + 1.0 / pair.ratio), η, step) * points.weights[:, None]
     depths = []
     for gear, s in zip(Member, (points.across, points.opposite)):
-        u = line_arc(pair, gear, points.ξ[:, None] + η) + s[:, None]
+        u = line_arc(pair, gear, points.roll_distance[:, None] + η) + s[:, None]
         depths.append(grids[gear].depths_from_volumes(u, points.z, swept))
     return MeshPassage((depths[0], depths[1]), swept.sum(axis=1), points.pressure)
 

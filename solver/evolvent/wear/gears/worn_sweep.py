@@ -11,9 +11,10 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints, contact_points
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.periodic_pitch import ROUNDS, errors_of, is_closed, never_closed
+from evolvent.gears.sweep.periodic_pitch import ROUNDS, is_periodic, never_periodic, transmission_errors
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, initial_state, sweep_pitch
-from evolvent.gears.sweep.position import PositionResult, SharedPosition
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent.wear.gears.elastic_sliding import Deflection, Grids, PitchDeflection
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -94,7 +95,7 @@ class WornSweep:
                 if progress.closed:
                     return [mine[k] for k in self.numbers]
             progress = replace(progress, state=progress.state.earlier(1))
-        raise never_closed(progress.errors, self.pitch)
+        raise never_periodic(progress.errors, self.pitch)
 
     def _in_turn(
         self, model: GearModel, searched: Mapping[int, SharedPosition], progress: SweepProgress
@@ -102,20 +103,20 @@ class WornSweep:
         """Solves the positions of one rank, until the friction state is periodic."""
         for k, common in searched.items():
             swept = next(sweep_pitch(model, self.pitch, [self.friction], progress.state, k, common))
-            errors = (*progress.errors, errors_of(swept, [self.friction]))
-            closed = progress.again and is_closed(errors, self.pitch)
-            state = replace(swept.state, footprint=None)
+            errors = (*progress.errors, transmission_errors(swept, [self.friction]))
+            closed = progress.again and is_periodic(errors, self.pitch)
+            state = replace(swept.state, patch=None)
             progress = SweepProgress(state, progress.again, errors, closed, {**progress.positions, k: swept})
             if closed:
                 break
         return progress
 
     def _deflection(self, model: GearModel, swept: SweptPosition, common: SharedPosition) -> Deflection:
-        memory, stand = swept.state.memories[0], swept.results[0].stand
-        if memory is not None:
-            return Deflection.of(model.bodies, stand, memory.rows, memory.forces, self.grids)
-        contact, force = common.contact, common.smooth.force
-        pinion, wheel = ((contact.rows(gear)[0], contact.pushed(gear, force)) for gear in Member)
+        history, stand = swept.state.histories[0], swept.results[0].stand
+        if history is not None:
+            return Deflection.of(model.bodies, stand, history.rows, history.forces, self.grids)
+        geometry, force = common.contact.geometry, common.smooth.force
+        pinion, wheel = ((geometry.rows(gear)[0], geometry.flank_forces(gear, force)) for gear in Member)
         rows, forces = (pinion[0], wheel[0]), (pinion[1], wheel[1])
         return Deflection.of(model.bodies, stand, rows, forces, self.grids)
 
@@ -144,7 +145,7 @@ class WornSweep:
 
     def _smooth_points(self, model: GearModel, shared: SharedPosition) -> ContactPoints:
         stand = shared.contact.stand.turned(model.load.on, float(shared.smooth.motion[0]))
-        return contact_points(shared.contact, shared.smooth.traction, 0.0, stand.extra)
+        return contact_points(shared.contact.geometry, shared.smooth.traction, 0.0, stand.extra)
 
     def _with_elastic_sliding(
         self, points: Sequence[ContactPoints], pitch: PitchDeflection

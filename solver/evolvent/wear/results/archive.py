@@ -15,7 +15,8 @@ import numpy as np
 
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
-from evolvent.gears.sweep.position import PositionResult, SearchedAt
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import SearchedAt
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes, read_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import keep_scene

@@ -52,14 +52,14 @@ def test_outcomes_tell_refusals_from_crashes(monkeypatch: pytest.MonkeyPatch) ->
 
     assert raising(NotConverged("no")) is Verdict.REFUSED
     assert raising(ZeroDivisionError("no")) is Verdict.CRASHED
-    original = scene_outcomes.sweep_closed
+    original = scene_outcomes.sweep_until_periodic
 
     def wrong(*arguments: object):  # type: ignore[no-untyped-def]
         for position in original(*arguments):
             results = tuple(replace(r, torques=(r.torques[0], 1.02 * r.torques[1])) for r in position.results)
             yield replace(position, results=results)
 
-    monkeypatch.setattr(scene_outcomes, "sweep_closed", wrong)
+    monkeypatch.setattr(scene_outcomes, "sweep_until_periodic", wrong)
     assert outcome_of(scene, 41).verdict is Verdict.UNBALANCED
 
 

@@ -10,7 +10,7 @@ import pytest
 from evolvent import NotConverged
 from evolvent.contact.newton.equilibrium import frictionless
 from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
-from evolvent.gears.sweep.position import shared_position
+from evolvent.gears.sweep.position_search import shared_position
 from tests.support.gear_cases import model_of, spur_scene
 
 STEP = 1e-7  # mm

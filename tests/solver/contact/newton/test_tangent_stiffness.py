@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.gears.sweep.position import SearchedAt, searched_at, shared_position
+from evolvent.gears.sweep.position_search import SearchedAt, searched_at, shared_position
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
 from evolvent.run.coarse_run import solved_run
@@ -41,7 +41,7 @@ def test_tangent_stiffness_is_the_difference_quotient_of_two_torques(share: floa
     torques over base radius by that of rotations times base radius, as long as no quadrature point opens or closes."""
     angle, load = share * 2.0 * np.pi / model.pair.pinion.z, model.load
     here = shared_position(model, angle, (0.0, 0.0), [0.0], None)
-    place = SearchedAt(angle, here.contact.stand.extra, here.contact.half_width)
+    place = SearchedAt(angle, here.contact.stand.extra, here.contact.geometry.half_width)
     radius = model.pair.gears[load.on].base_radius
     low, high = (
         searched_at(with_load(model, factor * load.torque, load.on), place, [0.0]).smooth.motion[0]

@@ -1,4 +1,4 @@
-"""Contact where the window does not look is found: a tip's edge that deep deflection brings against the other flank."""
+"""Contact outside the searched window is found: a tip's edge that deep deflection brings against the other flank."""
 
 from __future__ import annotations
 
@@ -10,16 +10,15 @@ import pytest
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact import pair_contact, tooth_contact
-from evolvent.gears.contact.overlap_check import overlap_outside, unwatched
+from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
-from evolvent.gears.sweep import position
-from evolvent.gears.sweep.position import SharedPosition, shared_position
+from evolvent.gears.sweep import position_search
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from tests.support.gear_cases import helical_scene, model_of
 
 DEEP = 277  # the seed of a plane pair whose next tooth pair touches far before its contact line reaches the flank
-
 TIMES = 5.0  # its torque, so that the teeth give way by a quarter of a module
 
 
@@ -43,43 +42,44 @@ def test_contact_outside_the_window_is_found(deep: GearModel, monkeypatch: pytes
     wanted = approach(solved(replace(deep, half_width=np.inf)))
     found = solved(deep)
     assert approach(found) == pytest.approx(wanted, rel=1e-4)
-    monkeypatch.setattr(position, "overlap_outside", lambda *_: 0.0)
+    monkeypatch.setattr(position_search, "overlap_outside", lambda *_: 0.0)
     overlooked = solved(deep)
     assert abs(approach(overlooked)) > 1.1 * abs(wanted)
     assert overlooked.smooth.residual < 1e-9 * overlooked.system.scale
     for shared, low, high in ((overlooked, 0.05, np.inf), (found, 0.0, 0.0)):
-        depth = overlap_outside(shared.contact, shared.unwatched, shared.smooth.force, (0.0, 0.0))
+        depth = overlap_outside(shared.contact, shared.unsearched, shared.smooth.force, (0.0, 0.0))
         assert low <= depth <= high
 
 
-def test_nominal_contact_has_nothing_outside() -> None:
-    """A pair at nominal load: the window has all contact, so that it stays as narrow as it was."""
+def test_nominal_contact_is_all_inside_the_window() -> None:
+    """Problem: a pair at nominal load. Exact: all contact is in the window, which keeps its width."""
     model = model_of(helical_scene("contact.friction=0", "mesh.order=2"))
     found = shared_position(model, 0.0, (0.0, 0.0), [0.0], None)
-    assert found.contact.half_width == model.half_width
+    assert found.contact.geometry.half_width == model.half_width
 
 
-def test_depth_of_an_overlap(deep: GearModel) -> None:
+def depth_outside(model: GearModel, extra: tuple[float, float], rotation: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Overlap [mm] of undeflected flanks outside half the window, searched at these rotations, then turned on [rad]."""
+    stand = Stand(model.pair, 0.0, extra)
+    contact = pair_contact.gear_contact(model.bodies, stand, list(model.teeth), 0.5 * model.half_width)
+    nothing = np.zeros((len(contact.geometry.node), 1))
+    return overlap_outside(contact, unsearched_overlaps(contact.geometry, model.teeth), nothing, rotation)
+
+
+def test_depth_of_an_overlap_of_rotated_flanks(deep: GearModel) -> None:
     """Undeflected flanks (no force) turned into each other by δ: they overlap by up to r_b·δ, the same at every point
     of an involute's line of action; off the path of contact by no more. Turned on by ε without another search the
     overlap grows as it does with one, within 5 % (other points are the deepest)."""
-    base, δ = deep.bodies[0].gear.base_radius, 2e-3
-    stand = Stand(deep.pair, 0.0, (δ, 0.0))
-    contact = pair_contact.gear_contact(deep.bodies, stand, list(deep.teeth), 0.5 * deep.half_width)
-    places, nothing = unwatched(contact, deep.teeth), np.zeros((len(contact.node), 1))
-    depth = overlap_outside(contact, places, nothing, (0.0, 0.0))
+    base, δ, ε = deep.bodies[0].gear.base_radius, 2e-3, 1e-4
+    depth = depth_outside(deep, (δ, 0.0))
     assert 0.0 < depth <= base * δ * (1.0 + 1e-3)
-    ε = 1e-4
     for rotation in ((ε, 0.0), (0.0, ε)):
-        turned = overlap_outside(contact, places, nothing, rotation)
-        further = pair_contact.gear_contact(
-            deep.bodies, Stand(deep.pair, 0.0, (δ + rotation[0], rotation[1])), list(deep.teeth), 0.5 * deep.half_width
-        )
-        anew = overlap_outside(further, unwatched(further, deep.teeth), np.zeros((len(further.node), 1)), (0.0, 0.0))
+        turned = depth_outside(deep, (δ, 0.0), rotation)
+        anew = depth_outside(deep, (δ + rotation[0], rotation[1]))
         assert turned > depth and turned - depth == pytest.approx(anew - depth, rel=0.05)
 
 
-def test_deep_overlap_is_not_left_out(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_overlap_as_deep_as_the_deflection_is_searched(deep: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
     """Problem: undeflected flanks overlap by a quarter of a module, so far do the teeth give way. Exact: how deep the
     search looks does not matter as long as it is deeper; looking 0.2 modules deep loses the contact altogether.
     More than half a module is refused."""

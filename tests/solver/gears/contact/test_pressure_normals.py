@@ -14,7 +14,7 @@ from evolvent.contact.search.pairing import pair_surfaces
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.fem.surface import Surface
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.position import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene, swept
@@ -64,7 +64,7 @@ def _cross(a: Floats, b: Floats) -> float:
 
 
 @pytest.mark.parametrize("gear", Member)
-def test_corner_on_a_smooth_flank(spur: GearModel, gear: Member) -> None:
+def test_force_of_a_tip_corner_is_normal_to_the_smooth_flank(spur: GearModel, gear: Member) -> None:
     """Problem: a gear's tip corner bears on the other gear's flank off the path of contact, under hardly any load.
     Exact: without friction the force is normal to the involute on which the corner lies, so that it touches that base
     circle; T_1/T_2 are the arms of that line. The corner's own normal gives a ratio more than 1 % away."""
@@ -85,7 +85,7 @@ def line(ends: tuple[Floats, Floats], cells: int) -> Surface:
     return Surface.from_arrays(points, facets, "interval", 2)
 
 
-def test_gap_along_another_normal() -> None:
+def test_gap_along_turned_normals_is_the_distance_along_them() -> None:
     """Problem: a straight surface before another one at 5°, pressed along the other's normal. Exact: the gap is the
     distance from that surface, and the frames are its normal and tangent."""
     slope = np.radians(5.0)
@@ -102,7 +102,7 @@ def test_gap_along_another_normal() -> None:
 
 
 @pytest.mark.parametrize("seed", [344, 482])
-def test_energy_balances_at_tip_edges(seed: int) -> None:
+def test_energy_balances_with_loaded_tip_edges(seed: int) -> None:
     """Problem: helical pairs whose tip edges carry much. Exact: over a pitch no energy is missing; along the pinion's
     normals alone 1.0e-2 was."""
     outcome = outcome_of(random_scene(seed), seed)

@@ -13,7 +13,7 @@ from evolvent.fem.condensation.schur_complement import (
     SectorSystem,
     compliance,
 )
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Part
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, MappedNodes
 from tests.support.q1_elasticity import Ring, ring
 
 PITCH = 2 * np.pi / 17
@@ -64,13 +64,13 @@ def all_rows(body: ChainedCompliance) -> np.ndarray:
     return np.array([(tooth, node) for tooth in body.teeth for node in range(body.node_count)])
 
 
-def parts(rows: np.ndarray) -> list[Part]:
+def parts(rows: np.ndarray) -> list[MappedNodes]:
     """Rows (tooth, node), sorted by tooth, as a block wants them."""
-    return [Part(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
+    return [MappedNodes(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_equal_to_merged_model(shape: str) -> None:
+def test_chained_compliance_equals_the_merged_model(shape: str) -> None:
     """Compliance of all teeth of four chained sectors = that of one mesh of four sectors, to 1e-12."""
     _, exact = merged(shape)
     gear = chained(shape)
@@ -82,7 +82,7 @@ def test_equal_to_merged_model(shape: str) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_apply_equals_block(shape: str) -> None:
+def test_displacements_under_forces_equal_the_merged_model(shape: str) -> None:
     """Displacements of any rows under forces on others, in any order, = the same entries of the merged compliance."""
     _, exact = merged(shape)
     gear, d = chained(shape), len(SHAPES[shape])
@@ -102,20 +102,20 @@ def test_apply_equals_block(shape: str) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_mapped_block(shape: str) -> None:
+def test_mapped_compliance_equals_the_merged_model(shape: str) -> None:
     """E C Eᵀ with a random linear map on each tooth, teeth in any order, = the same from the merged compliance."""
     _, exact = merged(shape)
     gear, random = chained(shape), np.random.default_rng(3)
     size = gear.node_count * len(SHAPES[shape])
     maps = {tooth: random.normal(size=(4, size)) for tooth in (1, -1, 0)}
-    found = gear.block([Part(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
+    found = gear.block([MappedNodes(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
     E = np.zeros((12, len(exact)))
     for i, (tooth, own) in enumerate(maps.items()):
         E[4 * i : 4 * i + 4, (tooth - FIRST) * size : (tooth - FIRST + 1) * size] = own
     assert np.abs(found - E @ exact @ E.T).max() < 1e-12 * np.abs(E @ exact @ E.T).max()
 
 
-def test_field_recovery() -> None:
+def test_fields_of_sectors_equal_the_merged_model() -> None:
     """Field of every sector from cut-face displacements and forces = the merged model's field, turned back."""
     shape, d = "3D", 3
     model, _ = merged(shape)
@@ -147,7 +147,7 @@ def test_closed_ring_equals_merged_ring(shape: str, sectors: int) -> None:
 
 
 @pytest.mark.parametrize("sectors", [7, 6])
-def test_cut_faces_of_a_closed_ring(sectors: int) -> None:
+def test_cut_faces_of_a_closed_ring_equal_the_merged_ring(sectors: int) -> None:
     """Displacements of both cut faces of every tooth of a loaded ring = those of one mesh of the ring."""
     pitch, first = 2 * np.pi / sectors, -2
     radial, angular = SHAPES["2D"]
@@ -168,7 +168,7 @@ def test_cut_faces_of_a_closed_ring(sectors: int) -> None:
 
 
 @pytest.mark.parametrize("ends", ["closed", "free"])
-def test_cut_faces_under_several_loads(ends: str) -> None:
+def test_cut_faces_under_several_loads_move_as_under_each(ends: str) -> None:
     """Two loads at once on the same rows move the cut faces as each of them alone."""
     pitch = 2 * np.pi / 7
     gear = ChainedCompliance(sector_of("2D", pitch), ChainSettings(pitch, 4, -2, dimension=2, ends=ends))
@@ -179,7 +179,7 @@ def test_cut_faces_under_several_loads(ends: str) -> None:
             np.testing.assert_allclose(together[tooth][i], cut, rtol=0, atol=1e-13 * np.abs(cut).max())
 
 
-def test_window_of_a_ring() -> None:
+def test_naming_fewer_teeth_of_a_ring_changes_nothing() -> None:
     """Naming three of the seven teeth gives the same compliance as naming all: the others are still there."""
     pitch = 2 * np.pi / 7
     sector = sector_of("2D", pitch)
@@ -190,7 +190,7 @@ def test_window_of_a_ring() -> None:
     assert np.abs(window.block(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()
 
 
-def test_pitch_must_divide_the_circle() -> None:
+def test_pitch_of_a_closed_ring_must_divide_the_circle() -> None:
     """17.5 sectors, or 18 teeth of 17, cannot be closed."""
     with pytest.raises(ValueError, match=r"17\.500000 to the circle"):
         ChainSettings(2 * np.pi / 17.5, 3)
@@ -198,7 +198,7 @@ def test_pitch_must_divide_the_circle() -> None:
         ChainSettings(PITCH, 18)
 
 
-def test_clamped_ends() -> None:
+def test_clamped_chain_equals_the_merged_model_with_fixed_ends() -> None:
     """A chain with its outermost cut faces clamped = the merged model with them fixed."""
     model = ring(SHAPES["2D"], TEETH, PITCH, FIRST)
     free = np.setdiff1d(model.free, np.concatenate([model.low, model.high]))
@@ -209,7 +209,7 @@ def test_clamped_ends() -> None:
     assert np.abs(gear.block(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
-def test_one_tooth_is_a_free_sector() -> None:
+def test_chain_of_one_sector_is_the_free_sector() -> None:
     """A chain of one sector = that sector alone with free cut faces, and turns with it."""
     sector = sector_of("2D")
     restricted, functionals, *_ = sector_parts("2D")
@@ -228,7 +228,7 @@ def test_one_tooth_is_a_free_sector() -> None:
     np.testing.assert_allclose(third.apply(there, forces @ turn.T, there[:2]), moved @ turn.T, rtol=1e-11)
 
 
-def test_unknown_rows_are_refused() -> None:
+def test_rows_of_teeth_that_are_not_modelled_are_refused() -> None:
     """A tooth that is not modelled is an error, not a wrapped index."""
     gear = chained("2D")
     with pytest.raises(IndexError, match=r"teeth -1 to 2 .* found \(3, 0\)"):

@@ -11,13 +11,13 @@ from scipy.linalg import block_diag
 
 from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
 from evolvent.gears.ring.ring_modes import Coupling, compressed, coupling, smooth_faces
-from evolvent.gears.ring.sector_interfaces import Interfaces, OpenChain, Ring
+from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
 from tests.support.q1_elasticity import ring
 
 TEETH, NAMED = 40, 3
 TOLERANCES = [1e-4, 1e-6, 1e-8]
-JOINED: dict[str, Callable[[np.ndarray], Interfaces]] = {
-    "ring": lambda stiffness: Ring(stiffness, TEETH, NAMED),
+JOINED: dict[str, Callable[[np.ndarray], JoinedSectors]] = {
+    "ring": lambda stiffness: ClosedRing(stiffness, TEETH, NAMED),
     "chain": lambda stiffness: OpenChain(stiffness, NAMED, clamped=True),
 }
 
@@ -54,8 +54,8 @@ def coupled(sector: SectorCondensation, kind: str, tolerance: float) -> Coupling
 def test_coupling_within_tolerance(sector: SectorCondensation, kind: str, tolerance: float) -> None:
     """K_ij of every two teeth = T times the faces' displacements under Tᵀ on all of the faces, within the tolerance of
     the largest K_ij; with fewer modes than the surface has displacements, or nothing would be tested."""
-    answers, which = JOINED[kind](sector.stiffness).answers(sector.transfer.T)
-    exact = {(i, j): sector.transfer @ answers[which[i, j]] for i, j in np.ndindex(NAMED, NAMED)}
+    responses, which = JOINED[kind](sector.stiffness).responses(sector.transfer.T)
+    exact = {(i, j): sector.transfer @ responses[which[i, j]] for i, j in np.ndindex(NAMED, NAMED)}
     found = coupled(sector, kind, tolerance)
     largest = max(np.linalg.norm(K) for K in exact.values())
     for (i, j), K in exact.items():
@@ -65,7 +65,7 @@ def test_coupling_within_tolerance(sector: SectorCondensation, kind: str, tolera
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
-def test_second_order(sector: SectorCondensation, tolerance: float) -> None:
+def test_error_of_smooth_faces_is_of_second_order(sector: SectorCondensation, tolerance: float) -> None:
     """Faces that are smooth to half of the digits (fewer than there are) give T A⁻¹ Tᵀ to all of them."""
     c, half = len(sector.stiffness) // 2, np.sqrt(tolerance)
     faces = smooth_faces(sector.stiffness, sector.transfer, half)
@@ -75,13 +75,13 @@ def test_second_order(sector: SectorCondensation, tolerance: float) -> None:
     pair = block_diag(faces, faces)
     transfer, stiffness = sector.transfer @ pair, pair.T @ sector.stiffness @ pair
     exact, found = (
-        T @ JOINED["ring"](S).answers(T.T)[0][NAMED - 1]
+        T @ JOINED["ring"](S).responses(T.T)[0][NAMED - 1]
         for T, S in ((sector.transfer, sector.stiffness), (transfer, stiffness))
     )
     assert np.linalg.norm(found - exact) < tolerance * np.linalg.norm(exact)
 
 
-def test_frames(sector: SectorCondensation) -> None:
+def test_ring_coupling_rotates_with_the_tooth_frame(sector: SectorCondensation) -> None:
     """Faces in the sector's own frame, turned by `frames`, couple the teeth as faces do that are turned already."""
     turn = frames(sector)
     own = SectorCondensation(turn @ sector.stiffness @ turn.T, sector.transfer @ turn.T, sector.compliance)
@@ -91,7 +91,7 @@ def test_frames(sector: SectorCondensation) -> None:
         np.testing.assert_allclose(found.modes @ found.between(i, j) @ found.modes.T, K, atol=1e-8 * np.linalg.norm(K))
 
 
-def test_compression_error() -> None:
+def test_compressed_matrix_is_within_the_tolerance() -> None:
     """A matrix with singular values 10^-k is met to the asked tolerance with few columns, U orthonormal."""
     random = np.random.default_rng(0)
     left, right = (np.linalg.qr(random.normal(size=(n, 60)))[0] for n in (200, 150))
@@ -103,7 +103,7 @@ def test_compression_error() -> None:
 
 
 @pytest.mark.parametrize("shape", [(7, 30), (30, 7), (8, 8)])
-def test_range_of_full_rank(shape: tuple[int, int]) -> None:
+def test_range_of_a_matrix_of_full_rank_has_its_rank(shape: tuple[int, int]) -> None:
     """A matrix of full rank, smaller than a block: all of its range and no column more."""
     matrix = np.random.default_rng(0).normal(size=shape)
     basis, reduced = compressed(matrix, 1e-13, step=16)

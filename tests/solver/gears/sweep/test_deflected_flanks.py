@@ -1,4 +1,4 @@
-"""Positions on deflected flanks: what a second search finds, that energy is kept, and when a run comes to it."""
+"""Positions on deflected flanks: what a second search gives, that energy is kept, and when a run needs them."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.solution.certificates import pitch_imbalance
 from evolvent.gears.sweep import deflected_flanks
-from evolvent.gears.sweep.deflected_flanks import settled
-from evolvent.gears.sweep.friction_history import recalled, remembered
-from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_closed
+from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
+from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch, uniform_pitch
-from evolvent.gears.sweep.position import shared_position
+from evolvent.gears.sweep.position_search import shared_position
 from evolvent_meshes.gears.member import Member
 from tests.conftest import Run
 from tests.support.gear_cases import model_of, spur_scene
@@ -33,7 +33,7 @@ from tests.support.gear_cases import model_of, spur_scene
 BENT = 344
 """A seed of a helical steel pair under a tenth of a module of deflection, small enough for a second a pitch."""
 LOST = 2e-3
-"""Of the input: what it loses over a pitch is more before deflection, less after it."""
+"""Of the input: the loss over a pitch is larger with normals before deflection, smaller with those after it."""
 
 
 @pytest.fixture(scope="module")
@@ -43,28 +43,28 @@ def bent() -> GearModel:
 
 
 def lost(model: GearModel, friction: float) -> float:
-    """Of the input over a pitch of six positions."""
+    """Energy lost over a pitch of six positions, over the input."""
     pitch = uniform_pitch(model.pair.pinion.z, 6)
-    swept = sweep_closed(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF)
+    swept = sweep_until_periodic(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF)
     return pitch_imbalance([position.results[0] for position in one_pitch(list(swept))])
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])
-def test_energy_is_kept(friction: float, bent: GearModel) -> None:
-    """Problem: a pitch of teeth that bend by a tenth of a module. Exact: what goes in comes out or is rubbed away;
-    along normals before deflection 3e-3 of it does not, along those after it a quarter of that at most is missing."""
+def test_energy_is_kept_on_deflected_flanks(friction: float, bent: GearModel) -> None:
+    """Problem: a pitch of teeth that bend by a tenth of a module. Exact: input is output and friction work;
+    along normals before deflection 3e-3 of it is missing, along those after it a quarter of that at most."""
     before, after = (lost(replace(bent, deflected=deflected), friction) for deflected in (False, True))
     assert before > 2.5e-3
     assert after < 0.25 * before + 1e-4
 
 
-def test_normals_matter(bent: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same without friction where deflected flanks keep the normals from before: seen to fail."""
+def test_energy_is_lost_along_normals_before_deflection(bent: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same without friction where deflected flanks keep the normals from before: energy is lost."""
     monkeypatch.setattr(Surface, "displaced", lambda flank, u: replace(flank, points=flank.points + u))
     assert lost(replace(bent, deflected=True), 0.0) > LOST
 
 
-def test_flanks_displaced_as_if_turned() -> None:
+def test_flanks_displaced_as_by_a_rotation_are_those_of_the_rotated_gear() -> None:
     """Problem: a spur pair whose wheel flanks are displaced as if the wheel had turned by 1e-4. Exact: frames, weights,
     levers are those of the wheel turned; the gap along the normals is the one between the points as they were."""
     model = model_of(spur_scene("mesh.level=quick"))
@@ -75,12 +75,12 @@ def test_flanks_displaced_as_if_turned() -> None:
         (_, was), (first, now) = (placed_flanks(model.bodies, where, tooth) for where in (stand, turned))
         displaced[tooth] = np.zeros_like(first.points), now.points - was.points
     wanted = gear_contact(model.bodies, turned, teeth, model.half_width)
-    found = gear_contact(model.bodies, stand, teeth, model.half_width, displaced)
-    assert found.tooth.tolist() == wanted.tooth.tolist()
+    moved = gear_contact(model.bodies, stand, teeth, model.half_width, displaced)
+    assert moved.geometry.tooth.tolist() == wanted.geometry.tooth.tolist()
     for name in ("frames", "weights", "points"):
-        assert np.allclose(getattr(found.operator, name), getattr(wanted.operator, name), rtol=0.0, atol=1e-10), name
-    assert np.allclose(found.spins, wanted.spins, rtol=0.0, atol=1e-9)
-    for own in found.teeth:
+        assert np.allclose(getattr(moved.operator, name), getattr(wanted.operator, name), rtol=0.0, atol=1e-10), name
+    assert np.allclose(moved.geometry.spins, wanted.geometry.spins, rtol=0.0, atol=1e-9)
+    for own in moved.geometry.teeth:
         first, second = placed_flanks(model.bodies, stand, own.tooth)
         x1 = first.positions(own.pairing.facet1, own.pairing.xi1[:, None])[:, 0]
         x2 = second.positions(own.pairing.facet2, own.pairing.xi2[:, None])[:, 0]
@@ -89,42 +89,49 @@ def test_flanks_displaced_as_if_turned() -> None:
         assert np.allclose(own.operator.gap, apart, rtol=0.0, atol=1e-6 * model.pair.pinion.normal_module)
 
 
-def test_a_settled_state_stays(bent: GearModel) -> None:
-    """Problem: deflected flanks that have settled, searched once more. Exact: the same torque of the pinion but for
-    what the tolerance leaves, a hundredth of what the first searches changed; the rotation moves by half at most."""
+def test_a_converged_search_of_deflected_flanks_stays(bent: GearModel) -> None:
+    """Problem: deflected flanks whose search has converged, searched once more. Exact: the same torque of the pinion
+    within the tolerance, a hundredth of what the first searches changed; the rotation moves by half at most."""
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.0], None)
-    first = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
-    again = settled(bent, first.contact, first.found, 0.0, None, 0.01)
-    cases = (shared.contact, shared.smooth), (first.contact, first.found), (again.contact, again.found)
-    before, settled_, after = (float(np.sum(c.spins[0][:, 0] * state.force[:, 0])) for c, state in cases)
-    assert abs(after - settled_) < 0.01 * abs(settled_ - before)
-    assert abs(float(again.found.motion[0])) < 0.5 * abs(float(first.found.motion[0]))
+    first = deflected_equilibrium(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
+    again = deflected_equilibrium(bent, first.contact, first.equilibrium, 0.0, None, 0.01)
+    before, once, twice = (
+        float(np.sum(contact.geometry.spins[0][:, 0] * state.force[:, 0]))
+        for contact, state in (
+            (shared.contact, shared.smooth), (first.contact, first.equilibrium), (again.contact, again.equilibrium),
+        )
+    )  # fmt: skip
+    assert abs(twice - once) < 0.01 * abs(once - before)
+    assert abs(float(again.equilibrium.motion[0])) < 0.5 * abs(float(first.equilibrium.motion[0]))
 
 
-def test_unsettled_flanks_are_said(bent: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the searches do not settle the position has no result, and the message says by how much they moved."""
+def test_a_search_of_deflected_flanks_that_does_not_converge_is_an_error(
+    bent: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the searches do not converge the position has no result, and the message says by how much they moved."""
     monkeypatch.setattr(deflected_flanks, "ROUNDS", 1)
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.0], None)
     with pytest.raises(NotConverged, match=r"move by less than 14.20 µm within their window, found them moved by \d"):
-        settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
+        deflected_equilibrium(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
 
 
-def test_displacements_turn_with_their_gears(bent: GearModel) -> None:
+def test_displacements_of_deflected_flanks_turn_with_their_gears(bent: GearModel) -> None:
     """Problem: flanks that carry the same forces before and after both gears have turned. Exact: displacements are the
     same on each gear, so that nothing slips beside the velocity of deflected points; between flanks as made that
-    velocity has no part of the displacement, and what is remembered turns with the wheel alone."""
+    velocity has no part of the displacement, and the history turns with the wheel alone."""
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.1], None)
-    first = settled(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
-    for own, state, stays in ((first.contact, first.found, True), (shared.contact, shared.smooth, False)):
-        memory = remembered(bent, own, state)
-        turned = replace(memory, stand=replace(memory.stand, angle=memory.stand.angle - 0.02))
-        now, then = (recalled(own, [each])[0].jump for each in (replace(memory, stand=own.stand), turned))
+    first = deflected_equilibrium(bent, shared.contact, shared.smooth, 0.0, None, 0.01)
+    for own, state, stays in ((first.contact, first.equilibrium, True), (shared.contact, shared.smooth, False)):
+        history = FrictionHistory.of(bent, own, state)
+        turned = replace(history, stand=replace(history.stand, angle=history.stand.angle - 0.02))
+        both = replace(history, stand=own.stand), turned
+        now, then = (previous_jumps(own.geometry, [each])[0].jump for each in both)
         assert (np.abs(now - then).max() < 1e-9 * np.abs(now).max()) == stays
 
 
-def test_coefficients_do_not_mix(bent: GearModel) -> None:
+def test_coefficients_on_deflected_flanks_are_independent(bent: GearModel) -> None:
     """Problem: two friction coefficients, whose flanks deflect differently and are searched apart. Exact: each alone;
-    memories on windows of another width are told apart too."""
+    histories on windows of different width are interpolated apart too."""
     deflected = replace(bent, deflected=True)
     both, *alone = (_swept(deflected, frictions) for frictions in ([0.1, 0.3], [0.1], [0.3]))
     for i, own in enumerate(alone):
@@ -132,10 +139,11 @@ def test_coefficients_do_not_mix(bent: GearModel) -> None:
             assert one.results[i].torques == pytest.approx(other.results[0].torques, rel=1e-7)
     shared = shared_position(bent, 0.1, (0.0, 0.0), [0.1], None)
     further = shared_position(replace(bent, half_width=1.5 * bent.half_width), 0.1, (0.0, 0.0), [0.1], None)
-    memories = [remembered(bent, own.contact, own.smooth) for own in (shared, further)]
-    pasts = [recalled(shared.contact, each)[i].jump for each, i in ((memories, 1), (memories[1:], 0))]
-    assert len(memories[0].rows[0]) != len(memories[1].rows[0])
-    assert np.array_equal(*pasts)
+    histories = [FrictionHistory.of(bent, own.contact, own.smooth) for own in (shared, further)]
+    geometry = shared.contact.geometry
+    jumps = [previous_jumps(geometry, each)[i].jump for each, i in ((histories, 1), (histories[1:], 0))]
+    assert len(histories[0].rows[0]) != len(histories[1].rows[0])
+    assert np.array_equal(*jumps)
 
 
 def _swept(model: GearModel, frictions: list[float]) -> list[SweptPosition]:
@@ -169,7 +177,7 @@ def asked(scene: Path, run_script: Run, tmp_path_factory: pytest.TempPathFactory
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_a_pitch_out_of_balance_is_solved_again(
+def test_a_pitch_out_of_balance_is_solved_again_on_deflected_flanks(
     ranks: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
 ) -> None:
     """A run that loses more than is allowed becomes the one that asks for deflected flanks, on any number of ranks; the
@@ -185,7 +193,7 @@ def test_a_pitch_out_of_balance_is_solved_again(
 
 
 @pytest.mark.parametrize(("number", "complete"), [(9, 3), (17, 7), (22, 1)])
-def test_killed_and_resumed(
+def test_a_run_killed_on_deflected_flanks_is_resumed(
     number: int, complete: int, scene: Path, asked: dict[str, Any], run_script: Run, tmp_path: Path
 ) -> None:
     """kill -9 while the last position of the pitch before deflection, the one that closes it, or the second after

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import cast
 
 import pytest
+from mpi4py import MPI
 
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.fem.parallel.cores import Cores
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep import parallel_sweep
 from evolvent.gears.sweep.parallel_sweep import division
+from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 20])
@@ -18,3 +26,25 @@ def test_every_coefficient_is_solved_once(count: int, ranks: int) -> None:
     assert all(a.stop == b.start and a.start <= a.stop for a, b in pairwise(slices))
     sizes = [s.stop - s.start for s in slices]
     assert max(sizes) - min(sizes) <= 1
+
+
+@pytest.mark.parametrize("error", [NotConverged, SearchError])
+def test_a_position_that_cannot_be_prepared_is_left_to_each_rank(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Problem: a position whose search fails where a rank prepares it for all. Exact: nothing is prepared, so that each
+    rank approaches it in smaller steps; another error is none of this."""
+
+    def failing(*_: object) -> None:
+        raise raised("as the test wants")
+
+    monkeypatch.setattr(parallel_sweep, "shared_position", failing)
+    comm, frictions = MPI.COMM_SELF, [0.1]
+    sweep = parallel_sweep._RankedSweep(
+        cast(GearModel, None), Pitch((0.0,)), frictions, comm, Cores(comm), broadcasts=()
+    )
+    raised: type[Exception] = error
+    assert sweep._prepared(range(1), initial_state(frictions)) is None
+    raised = ArithmeticError
+    with pytest.raises(ArithmeticError):
+        sweep._prepared(range(1), initial_state(frictions))

@@ -1,4 +1,4 @@
-"""A pitch with friction comes out the same wherever its sweep began, and only as far as it needs is solved again."""
+"""A pitch with friction is the same wherever its sweep began, and positions are solved again only until it is."""
 
 from __future__ import annotations
 
@@ -14,10 +14,16 @@ from evidence.robustness.campaigns.scene_outcomes import some_positions
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import friction_history, periodic_pitch
-from evolvent.gears.sweep.friction_history import Past, recalled
-from evolvent.gears.sweep.periodic_pitch import FORGOTTEN, errors_of, is_closed, one_pitch, sweep_closed
+from evolvent.gears.sweep.friction_history import PreviousJump, previous_jumps
+from evolvent.gears.sweep.periodic_pitch import (
+    TOLERANCE,
+    is_periodic,
+    one_pitch,
+    sweep_until_periodic,
+    transmission_errors,
+)
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
-from evolvent.gears.sweep.position import shared_position
+from evolvent.gears.sweep.position_search import shared_position
 from tests.support.gear_cases import helical_scene, model_of
 
 POSITIONS = 6
@@ -33,7 +39,7 @@ def helical() -> GearModel:
 
 @pytest.fixture(scope="module")
 def cold(helical: GearModel) -> list[SweptPosition]:
-    """A sweep that begins at the pitch's own first position, without any past."""
+    """A sweep that begins at the pitch's own first position, without a friction history."""
     return solved(helical, STRONG)
 
 
@@ -47,7 +53,7 @@ def later(helical: GearModel) -> list[SweptPosition]:
 def solved(model: GearModel, friction: float) -> list[SweptPosition]:
     """In the order in which they were solved."""
     pitch = uniform_pitch(model.pair.pinion.z, POSITIONS)
-    return list(sweep_closed(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF))
+    return list(sweep_until_periodic(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF))
 
 
 def errors(swept: list[SweptPosition]) -> np.ndarray:
@@ -55,16 +61,20 @@ def errors(swept: list[SweptPosition]) -> np.ndarray:
     return np.array([position.results[0].transmission_error for position in swept])
 
 
-def test_where_a_sweep_begins_is_forgotten(cold: list[SweptPosition], later: list[SweptPosition]) -> None:
-    """Problem: a pitch with friction begun at its own first position, without any past, or a pitch before. Exact: the
-    same, as nothing in it is the first. Within what may be left of the beginning; as first solved, its first is five
-    times further from it."""
-    allowed = FORGOTTEN * np.ptp(errors(later))
+def test_periodic_pitch_does_not_depend_on_where_its_sweep_began(
+    cold: list[SweptPosition], later: list[SweptPosition]
+) -> None:
+    """Problem: a pitch with friction begun at its own first position, without a history, or a pitch before. Exact: the
+    same, as all positions have a history. Within the tolerance; as first solved, its first is five times further off.
+    """
+    allowed = TOLERANCE * np.ptp(errors(later))
     assert np.abs(errors(one_pitch(cold)) - errors(later)).max() < allowed
     assert np.abs(errors(cold[:POSITIONS]) - errors(later)).max() > 5.0 * allowed
 
 
-def test_it_goes_on_as_the_next_pitch_would(cold: list[SweptPosition], later: list[SweptPosition]) -> None:
+def test_positions_solved_again_are_those_of_the_next_pitch(
+    cold: list[SweptPosition], later: list[SweptPosition]
+) -> None:
     """Problem: positions solved again, against those of one sweep over two pitches. Exact: the same, all teeth being
     alike."""
     again = [position for position in cold if position.again]
@@ -73,50 +83,50 @@ def test_it_goes_on_as_the_next_pitch_would(cold: list[SweptPosition], later: li
     assert [p.results[0].torques[1] for p in again] == pytest.approx([p.results[0].torques[1] for p in later], rel=1e-7)
 
 
-def test_order(cold: list[SweptPosition]) -> None:
-    """The pitch, some of it again, the last of which closes it; what is left is each once, in order."""
+def test_order_of_positions_solved_again(cold: list[SweptPosition]) -> None:
+    """The pitch, some of it again, the last of which closes it; `one_pitch` has each once, in order."""
     again = len(cold) - POSITIONS
     assert [position.again for position in cold] == [False] * POSITIONS + [True] * again
     assert [position.closes for position in cold] == [False] * (len(cold) - 1) + [True]
-    found = one_pitch(cold)
-    assert len(found) == POSITIONS and all(a.angle < b.angle for a, b in pairwise(found))
-    renewed = [position.results[0] for position in found[:again]]
+    pitch = one_pitch(cold)
+    assert len(pitch) == POSITIONS and all(a.angle < b.angle for a, b in pairwise(pitch))
+    renewed = [position.results[0] for position in pitch[:again]]
     assert all(a is b.results[0] for a, b in zip(renewed, cold[POSITIONS:], strict=True))
 
 
 def test_nothing_is_solved_again_without_friction(helical: GearModel) -> None:
-    """There is no past."""
+    """There is no history that it depends on."""
     assert [position.closes for position in solved(helical, 0.0)] == [False] * (POSITIONS - 1) + [True]
 
 
 @pytest.mark.parametrize("done", [3, POSITIONS, POSITIONS + 1])
-def test_gone_on_with(done: int, helical: GearModel, cold: list[SweptPosition]) -> None:
-    """Left after some positions, of the pitch or of those solved again: what follows is as if it had not been left."""
+def test_a_resumed_pitch_is_the_same(done: int, helical: GearModel, cold: list[SweptPosition]) -> None:
+    """Stopped after some positions, of the pitch or of those solved again: the rest is as if never stopped."""
     pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
-    state = replace(cold[done - 1].state, footprint=None)
-    before = [errors_of(position, [STRONG]) for position in cold[:done]]
-    rest = list(sweep_closed(helical, pitch, [STRONG], state, MPI.COMM_SELF, before))
+    state = replace(cold[done - 1].state, patch=None)
+    before = [transmission_errors(position, [STRONG]) for position in cold[:done]]
+    rest = list(sweep_until_periodic(helical, pitch, [STRONG], state, MPI.COMM_SELF, before))
     assert [position.angle for position in rest] == [position.angle for position in cold[done:]]
     assert errors(rest) == pytest.approx(errors(cold[done:]), rel=1e-8)
     assert rest[-1].closes
 
 
-def test_what_is_never_forgotten_is_an_error(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where even rounding counts as a past no pitch closes: NotConverged, by how much."""
-    monkeypatch.setattr(periodic_pitch, "FORGOTTEN", 1e-20)
-    monkeypatch.setattr(periodic_pitch, "SAME", 1e-20)
+def test_a_pitch_that_is_never_periodic_is_an_error(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a tolerance below rounding no pitch closes: NotConverged, with the error that is left."""
+    monkeypatch.setattr(periodic_pitch, "TOLERANCE", 1e-20)
+    monkeypatch.setattr(periodic_pitch, "ROUNDING", 1e-20)
     monkeypatch.setattr(periodic_pitch, "ROUNDS", 3)
     with pytest.raises(NotConverged, match="friction after 3 more pitches: wanted transmission errors that are"):
         solved(helical, STRONG)
 
 
-def test_several_pitches(helical: GearModel, cold: list[SweptPosition]) -> None:
+def test_several_pitches_are_each_the_one_pitch(helical: GearModel, cold: list[SweptPosition]) -> None:
     """Problem: two pitches swept in place of one. Exact: each is the one pitch; the first is solved again until it is,
     not only until the second has come out alike."""
     pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS, 2)
-    found = errors(one_pitch(list(sweep_closed(helical, pitch, [STRONG], initial_state([STRONG]), MPI.COMM_SELF))))
-    wanted = errors(one_pitch(cold))
-    assert np.abs(found.reshape(2, POSITIONS) - wanted).max() < FORGOTTEN * np.ptp(wanted)
+    swept = list(sweep_until_periodic(helical, pitch, [STRONG], initial_state([STRONG]), MPI.COMM_SELF))
+    two, one = errors(one_pitch(swept)), errors(one_pitch(cold))
+    assert np.abs(two.reshape(2, POSITIONS) - one).max() < TOLERANCE * np.ptp(one)
 
 
 MIXED = [0.0, 0.05, STRONG]
@@ -126,21 +136,21 @@ MIXED = [0.0, 0.05, STRONG]
 def mixed(helical: GearModel) -> list[SweptPosition]:
     """Without friction, with weak friction, and with strong friction, for which most positions are solved again."""
     pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
-    return list(sweep_closed(helical, pitch, MIXED, initial_state(MIXED), MPI.COMM_SELF))
+    return list(sweep_until_periodic(helical, pitch, MIXED, initial_state(MIXED), MPI.COMM_SELF))
 
 
-def test_only_what_is_open_is_solved_again(mixed: list[SweptPosition]) -> None:
+def test_only_coefficients_not_yet_periodic_are_solved_again(mixed: list[SweptPosition]) -> None:
     """Positions again: without friction none, each other coefficient until it has closed the pitch."""
     again = [[result.friction for result in position.results] for position in mixed[POSITIONS:]]
     weak = sum(0.05 in frictions for frictions in again)
     assert again == [[0.05, STRONG]] * weak + [[STRONG]] * (len(again) - weak)
     assert 0 < weak < len(again)
-    assert all(len(position.results) == len(position.state.memories) for position in mixed)
+    assert all(len(position.results) == len(position.state.histories) for position in mixed)
     assert [[result.friction for result in position.results] for position in one_pitch(mixed)] == [MIXED] * POSITIONS
 
 
 @pytest.mark.parametrize(("friction", "i"), [(0.05, 1), (STRONG, 2)])
-def test_coefficients_do_not_see_each_other(
+def test_coefficients_are_independent_of_each_other(
     friction: float, i: int, helical: GearModel, mixed: list[SweptPosition]
 ) -> None:
     """Problem: a friction coefficient alone, and beside others. Exact: the same results."""
@@ -149,66 +159,66 @@ def test_coefficients_do_not_see_each_other(
     assert beside == pytest.approx(alone, rel=1e-8)
 
 
-def test_gone_on_with_what_is_open(helical: GearModel, mixed: list[SweptPosition]) -> None:
-    """Left after any of the positions that are solved again: what follows is as if it had not been left."""
+def test_a_pitch_resumed_with_some_coefficients_is_the_same(helical: GearModel, mixed: list[SweptPosition]) -> None:
+    """Stopped after any of the positions that are solved again: the rest is as if it had not been stopped."""
     pitch = uniform_pitch(helical.pair.pinion.z, POSITIONS)
     for done in range(POSITIONS, len(mixed)):
-        before = [errors_of(position, MIXED) for position in mixed[:done]]
-        state = replace(mixed[done - 1].state, footprint=None)
-        rest = list(sweep_closed(helical, pitch, MIXED, state, MPI.COMM_SELF, before))
-        found = [errors_of(position, MIXED) for position in rest]
-        wanted = [errors_of(position, MIXED) for position in mixed[done:]]
+        before = [transmission_errors(position, MIXED) for position in mixed[:done]]
+        state = replace(mixed[done - 1].state, patch=None)
+        rest = list(sweep_until_periodic(helical, pitch, MIXED, state, MPI.COMM_SELF, before))
+        found = [transmission_errors(position, MIXED) for position in rest]
+        wanted = [transmission_errors(position, MIXED) for position in mixed[done:]]
         assert np.array(found) == pytest.approx(np.array(wanted), rel=1e-8, nan_ok=True)
 
 
 @pytest.mark.parametrize(("begin", "ratio"), [(1.0, 0.7), (0.08, 0.9), (0.5, 0.2)])
-def test_what_is_left_of_a_past(begin: float, ratio: float) -> None:
-    """Problem: transmission errors of which a share is left after each pitch. Exact: what a position a pitch before is
-    off, its change over 1 − that share, has to be small enough, not the change; the fall from one position to the next
-    tells the share before there are two changes."""
+def test_error_estimate_of_a_geometric_decay(begin: float, ratio: float) -> None:
+    """Problem: transmission errors whose deviation falls by a constant ratio each pitch. Exact: a position's error a
+    pitch before, its change over 1 − that ratio, has to be small enough, not the change; the fall from one position to
+    the next gives the ratio before there are two changes."""
     pitch, shape = uniform_pitch(20, 4), np.array([5.0, 6.0, 7.0, 6.0])
     off = [begin * ratio ** (k / 4.0) for k in range(200)]
     swept = [np.array([shape[k % 4] + off[k]]) for k in range(200)]
-    first = next(k for k in range(6, 200) if is_closed(swept[:k], pitch))
-    small = FORGOTTEN * np.ptp(shape)
+    first = next(k for k in range(6, 200) if is_periodic(swept[:k], pitch))
+    small = TOLERANCE * np.ptp(shape)
     assert off[first - 5] < 1.1 * small  # the last one's, a pitch before
     assert first == 6 or off[first - 6] > 0.9 * small
 
 
-def test_teeth_that_leave_the_window_are_no_past() -> None:
+def test_history_a_pitch_earlier_has_no_teeth_without_load() -> None:
     """Problem: a spur pair at whose pitch's end a tooth faces another, without load, that would be one too many at its
-    beginning. Exact: the memory a pitch earlier knows teeth only that are looked at then; every gear's chain has
-    them, and the pitch closes."""
+    beginning. Exact: the history a pitch earlier has only teeth that the gears' compliances have, and the pitch
+    closes."""
     scene = random_scene(403)
     model, pitch = model_of(scene), some_positions(scene, 403)
     frictions = scene.contact.friction
-    swept = list(sweep_closed(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF))
+    swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), MPI.COMM_SELF))
     assert swept[-1].closes
-    memory = swept[len(pitch.angles) - 1].state.memories[0]
-    assert memory is not None
-    assert memory.rows[0][:, 0].max() + 1 not in model.bodies[0].chain.teeth
-    assert set(memory.earlier(1).rows[0][:, 0]) <= set(model.bodies[0].chain.teeth)
+    history = swept[len(pitch.angles) - 1].state.histories[0]
+    assert history is not None
+    assert history.rows[0][:, 0].max() + 1 not in model.bodies[0].chain.teeth
+    assert set(history.earlier(1).rows[0][:, 0]) <= set(model.bodies[0].chain.teeth)
 
 
 def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:
-    """(n, d) jumps that a memory tells one position, and the same a pitch earlier, where its teeth have other
+    """(n, d) jumps that a history gives at one position, and the same a pitch earlier, where its teeth have other
     numbers."""
     pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 2)
     swept = [position for position, _ in zip(sweep_pitch(model, pitch, [0.3], initial_state([0.3])), range(7))]
-    memory = swept[-1].state.memories[0]
-    assert memory is not None
+    history = swept[-1].state.histories[0]
+    assert history is not None
     step, turn = 2.0 * np.pi / model.pair.pinion.z / POSITIONS, 2.0 * np.pi / model.pair.pinion.z
-    angle = memory.stand.angle + step
-    found: list[Past] = []
-    for at, known in ((angle, memory), (angle - turn, memory.earlier(1))):
-        contact = shared_position(model, at, memory.stand.extra, [0.3], None).contact
-        found += recalled(contact, [known])
-    return found[0].jump, found[1].jump
+    angle = history.stand.angle + step
+    jumps: list[PreviousJump] = []
+    for at, known in ((angle, history), (angle - turn, history.earlier(1))):
+        contact = shared_position(model, at, history.stand.extra, [0.3], None).contact
+        jumps += previous_jumps(contact.geometry, [known])
+    return jumps[0].jump, jumps[1].jump
 
 
-def test_a_memory_a_pitch_earlier(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Problem: what flanks remember, told to a position and, moved by a pitch, to the position a pitch earlier. Exact:
-    the same jumps. Where the forces do not turn with their teeth it is seen to fail."""
+def test_history_a_pitch_earlier_gives_the_same_jumps(helical: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: a friction history interpolated to a position and, moved by a pitch, to the position a pitch earlier.
+    Exact: the same jumps. Where the forces do not turn with their teeth it is seen to fail."""
     later, sooner = earlier_jumps(helical)
     size = np.abs(later).max()
     assert size > 1e-4

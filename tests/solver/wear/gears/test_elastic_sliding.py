@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.contact_points import ContactPoints
-from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand, line_of_action
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.gears.sweep.position import PositionResult, SharedPosition, shared_position
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.elastic_sliding import Deflection, Grids, PitchDeflection
@@ -48,17 +49,17 @@ def stand_of(model: GearModel, found: SharedPosition) -> Stand:
     return found.contact.stand.turned(model.load.on, float(found.smooth.motion[0]))
 
 
-def apart(model: GearModel, here: GearContact, found: SharedPosition) -> Floats:
+def apart(model: GearModel, here: ContactGeometry, found: SharedPosition) -> Floats:
     """(q, d) from the wheel's to the pinion's material points that the contact `here` pairs, in another solution."""
     stand, d, places = stand_of(model, found), here.d, []
+    then, force = found.contact.geometry, found.smooth.force
     for gear, body in zip(Member, model.bodies):
         rows, teeth = here.rows(gear)
-        then = found.contact.rows(gear)[0]
-        u = body.chain.apply(then, found.contact.pushed(gear, found.smooth.force), rows) @ stand.rotation(gear, d).T
+        u = body.chain.apply(then.rows(gear)[0], then.flank_forces(gear, force), rows) @ stand.rotation(gear, d).T
         own = []
         for each, part in zip(here.teeth, teeth):
             pairing, field = each.pairing, np.zeros((len(body.flank.points), d))
-            field[each.touched(gear)] = u[part]
+            field[each.coupled_nodes(gear)] = u[part]
             facets, xi = (pairing.facet1, pairing.xi1) if gear == 0 else (pairing.facet2, pairing.xi2)
             X = body.flank.positions(facets, xi[:, None])[:, 0] @ stand.rotation(gear, d, each.tooth).T
             own.append(stand.centre(gear, d) + X + body.flank.hat_matrix(facets, xi) @ field)
@@ -79,12 +80,12 @@ def test_elastic_sliding_of_followed_material_points(kind: str, tolerance: float
     state = gears.evaluate(gears.begin)
     found, wanted = [], []
     for k in range(0, positions, positions // (3 if kind == "helical" else 6)):
-        here, contact = state.shared[k].contact, state.positions[k].contact
+        here, contact = state.shared[k].contact.geometry, state.positions[k].contact
         angles = [gears.pitch.angles[k] + turn for turn in (-TURN, TURN)]
         sides = [shared_position(model, angle, here.stand.extra, [0.0], None) for angle in angles]
         moved = (apart(model, here, sides[1]) - apart(model, here, sides[0])) / (2.0 * TURN)
         pressed = state.shared[k].smooth.traction[:, 0] > 0.0
-        nominal = (1.0 + 1.0 / model.pair.ratio) * contact.ξ
+        nominal = (1.0 + 1.0 / model.pair.ratio) * contact.roll_distance
         sliding = moved[pressed] @ line_of_action(model.pair, here.d)[1]
         for tooth in np.unique(contact.tooth[~contact.edge]):
             own = (contact.tooth == tooth) & ~contact.edge
@@ -114,7 +115,7 @@ def test_sliding_changes_as_worn_flanks_shift_the_contact(on: Member) -> None:
 def mean_sliding(position: PositionResult) -> float:
     """Weighed by the pressure, beyond the nominal one."""
     c, growth = position.contact, 1.0 + 1.0 / position.stand.pair.ratio
-    return float(np.average(c.sliding - growth * c.ξ, weights=c.weights * c.pressure))
+    return float(np.average(c.sliding - growth * c.roll_distance, weights=c.weights * c.pressure))
 
 
 def given(pair: GearPair, gear: Member, arc: Floats, z: Floats, φ: Floats) -> tuple[Floats, Floats]:

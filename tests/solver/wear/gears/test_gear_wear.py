@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.gears.sweep.periodic_pitch import FORGOTTEN
+from evolvent.gears.sweep.periodic_pitch import TOLERANCE
 from evolvent.gears.sweep.pitch_sweep import Pitch, uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear
@@ -37,7 +37,7 @@ def test_friction_history_does_not_depend_on_the_first_position() -> None:
         gears = GearWear(model, Pitch(tuple(step * (k - begin) for k in range(6))), 0.5, Archard(K, K))
         errors = [p.transmission_error for p in gears.evaluate(gears.begin).positions]
         found.append(np.roll(errors, -begin))
-    assert np.abs(found[0] - found[1]).max() < FORGOTTEN * np.ptp(found[1])
+    assert np.abs(found[0] - found[1]).max() < TOLERANCE * np.ptp(found[1])
 
 
 def test_uniform_wear_adds_to_the_transmission_error() -> None:

@@ -90,7 +90,7 @@ def test_passage_of_a_solved_pitch_is_the_line_contact_depth() -> None:
     study, state = solved_pitch(40)
     pair, grid_ = study.model.pair, study.grids[0]
     h = study.by_gear(state.rate)[0][grid_.node[0]]
-    path = np.concatenate([p.contact.ξ for p in state.positions])
+    path = np.concatenate([p.contact.roll_distance for p in state.positions])
     loads = np.concatenate([p.contact.weights * p.contact.pressure for p in state.positions])
     places, which = np.unique(np.round(path, 9), return_inverse=True)
     shares = np.bincount(which.reshape(-1), loads)

@@ -1,0 +1,199 @@
+"""Where the flanks of a gear pair face each other at one position: all that wear does not change.
+
+A search finds it once. The gap of flanks that wear on is `pair_contact`'s.
+"""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import scipy.sparse as sp
+
+from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
+from evolvent.fem.parallel.cores import Threads
+from evolvent.gears.condensed_gear import GearBody
+from evolvent.gears.contact.jump_map import JumpMap
+from evolvent.gears.contact.search_window import arc_distance
+from evolvent.gears.contact.tooth_contact import ToothContact
+from evolvent.gears.kinematics import Stand, spin
+from evolvent.gears.ring.ring_compliance import MappedNodes
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
+
+
+@dataclass(frozen=True)
+class ContactGeometry:
+    """All tooth pairs within reach at a position: n nodes of the pinion's flanks, q quadrature points between them.
+
+    bodies: pinion and wheel without wear; empty while it is sent between ranks.
+    stand: where the gears stood in the search.
+    teeth: the tooth pairs whose flanks face each other.
+    half_width: of the window [mm of profile arc], infinite where the whole flanks were searched.
+    """
+
+    bodies: tuple[GearBody, ...]
+    stand: Stand
+    teeth: tuple[ToothContact, ...]
+    half_width: float
+
+    @property
+    def d(self) -> int:
+        """Space dimension."""
+        return self.bodies[Member.PINION].d
+
+    @property
+    def is_deflected(self) -> bool:
+        """Whether the flanks were searched as they have deflected."""
+        return any(t.displaced is not None for t in self.teeth)
+
+    @cached_property
+    def operator(self) -> ContactOperator:
+        """Contact of all tooth pairs, their nodes in one list, without wear."""
+        return stacked([t.operator for t in self.teeth])
+
+    @cached_property
+    def flank_hats(self) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """(q, flank nodes) of pinion and wheel: hat functions of the flanks' nodes at the points."""
+        pairs, (pinion, wheel) = [t.pairing for t in self.teeth], (body.flank for body in self.bodies)
+        first = sp.vstack([pinion.hat_matrix(p.facet1, p.xi1) for p in pairs]).tocsr()
+        return first, sp.vstack([wheel.hat_matrix(p.facet2, p.xi2) for p in pairs]).tocsr()
+
+    @cached_property
+    def tooth(self) -> Ints:
+        """(n,) tooth pair of each node."""
+        return np.concatenate([np.full(len(t.operator.nodes), t.tooth) for t in self.teeth])
+
+    @cached_property
+    def point_tooth(self) -> Ints:
+        """(q,) tooth pair of each point."""
+        return np.concatenate([np.full(len(t.operator.weights), t.tooth) for t in self.teeth])
+
+    @cached_property
+    def node(self) -> Ints:
+        """(n,) flank node of the pinion's tooth."""
+        return np.concatenate([t.operator.nodes for t in self.teeth])
+
+    @cached_property
+    def roll_distance(self) -> Floats:
+        """(n,) roll distance ξ of the contact line in each node's slice [mm]."""
+        return self.stand.pair.roll_distance(self.stand.angle, self.tooth, self.bodies[Member.PINION].z[self.node])
+
+    @cached_property
+    def points(self) -> tuple[Floats, Floats]:
+        """Positions (n, d) of the pinion's nodes and of the wheel's flank opposite in the common frame, undeflected."""
+        first, second = [], []
+        for t in self.teeth:
+            first.append(t.operator.jump1 @ self._placed_points(Member.PINION, t.tooth))
+            second.append(t.operator.jump2 @ self._placed_points(Member.WHEEL, t.tooth))
+        return np.concatenate(first), np.concatenate(second)
+
+    @cached_property
+    def force_points(self) -> tuple[Floats, Floats]:
+        """Where the forces act: the same, displaced as the flanks were when they were searched."""
+        result = []
+        for gear, points in zip(Member, self.points):
+            result.append(np.concatenate([t.displaced_from(gear, x) for t, x in zip(self.teeth, self._split(points))]))
+        return result[0], result[1]
+
+    @cached_property
+    def spins(self) -> tuple[Floats, Floats]:
+        """Local jumps (n, d) per radian of pinion rotation and of wheel rotation (about +z each)."""
+        result = []
+        for gear in Member:
+            moved = spin(self.force_points[gear], self.stand.centre(gear, self.d), self.stand.axis(gear))
+            result.append(gear.sign * np.einsum("jia,ja->ji", self.operator.frames, moved))
+        return result[0], result[1]
+
+    @cached_property
+    def at_tip_edge(self) -> np.ndarray:
+        """(q,) bool: points in the last row of facets before a tip edge of either gear. Where these carry load the
+        flank ends in a corner and the pressure is singular, a matter of the mesh."""
+        pinion, wheel = self.bodies
+        parts = []
+        for t in self.teeth:
+            first = t.operator.shape @ pinion.tip_zone[t.operator.nodes].astype(float)
+            second = np.abs(t.operator.shape) @ (np.abs(t.operator.jump2) @ wheel.tip_zone)
+            parts.append((np.abs(first) > 1e-9) | (second > 0.05))
+        return np.concatenate(parts)
+
+    @cached_property
+    def across(self) -> Floats:
+        """(q,) signed distance [mm of profile arc] of the points from the nominal contact line, which is the flank's
+        generator and perpendicular to the profile; positive towards the pinion's tip."""
+        pinion = self.bodies[Member.PINION]
+        ρ_line = self.stand.pair.pitch_point_roll_lengths[Member.PINION] + self.roll_distance
+        arc = (pinion.roll_length[self.node] ** 2 - ρ_line**2) / (2.0 * pinion.gear.base_radius)
+        return np.asarray(self.operator.shape @ arc)
+
+    @cached_property
+    def opposite(self) -> Floats:
+        """(q,) the same on the wheel's flank, of what lies opposite the points; positive towards the wheel's tip."""
+        gear, base = Member.WHEEL, self.bodies[Member.WHEEL].gear.base_radius
+        ρ_line = self.stand.pair.pitch_point_roll_lengths[gear] - self.roll_distance
+        axis = self.stand.tilt(gear)[: self.d, : self.d]
+        r = np.linalg.norm(((self.points[gear] - self.stand.centre(gear, self.d)) @ axis)[:, :2], axis=1)
+        return np.asarray(self.operator.shape @ ((r**2 - base**2 - ρ_line**2) / (2.0 * base)))
+
+    @cached_property
+    def window_distance(self) -> Floats:
+        """(q,) distance of the points from their contact lines, in half-widths of the window."""
+        parts = [
+            arc_distance(self.bodies[Member.PINION], self.stand, t.tooth, t.operator.nodes) / self.half_width
+            for t in self.teeth
+        ]
+        return np.asarray(self.operator.hat @ np.concatenate(parts))
+
+    def reaches_rim(self, pressed: np.ndarray) -> bool:
+        """Whether a point in contact (q,) bool lies at the window's rim, where the pressure may have been cut off."""
+        return bool(np.any(pressed & (self.window_distance > 1.0)))
+
+    def rows(self, gear: Member) -> tuple[Ints, list[slice]]:
+        """Rows (m, 2) of a gear's compliance that the jumps depend on, and which of them belong to each tooth pair."""
+        nodes = [t.coupled_nodes(gear) for t in self.teeth]
+        ends = np.cumsum([0] + [len(each) for each in nodes])
+        rows = np.concatenate([self.bodies[gear].rows(t.tooth, each) for t, each in zip(self.teeth, nodes)])
+        return rows, [slice(a, b) for a, b in pairwise(ends)]
+
+    def jump_maps(self, gear: Member, k: int) -> list[JumpMap]:
+        """For each tooth pair, the map from a gear's displacements at its coupled nodes to the first k components of
+        the local jumps."""
+        R = self.stand.rotation(gear, self.d)
+        result = []
+        for t in self.teeth:
+            axes = ((t.operator.frames @ R) * gear.sign)[:, :k]
+            # the pinion's flank has a node where the jump has one
+            result.append(JumpMap(None if gear == Member.PINION else t.projection, axes))
+        return result
+
+    def flank_forces(self, gear: Member, contact_forces: Floats) -> Floats:
+        """Forces (m, d) [N] on the `rows` of a gear, in its own frame, under contact forces (n, k)."""
+        maps = self.jump_maps(gear, contact_forces.shape[1])
+        return np.concatenate([-E.forces(f) for E, f in zip(maps, self._split(contact_forces))])
+
+    def compliance(self, k: int, threads: Threads = nullcontext) -> Floats:
+        """Of the first k components of the local jumps, (n·k, n·k) [mm/N]: the sum over both gears. threads: in which
+        each gear's is put together."""
+        parts = []
+        for gear, body in zip(Member, self.bodies):
+            maps = zip(self.teeth, self.jump_maps(gear, k))
+            wanted = [MappedNodes(gear.sign * t.tooth, t.coupled_nodes(gear), E.jumps) for t, E in maps]
+            with threads():
+                parts.append(body.chain.block(wanted))
+        return np.asarray(sum(parts))
+
+    def _placed_points(self, gear: Member, tooth: int) -> Floats:
+        R = self.stand.rotation(gear, self.d, tooth)
+        return self.bodies[gear].flank.points @ R.T + self.stand.centre(gear, self.d)
+
+    def _split(self, values: Floats) -> list[Floats]:
+        """Values (n, …) of the nodes by tooth pair."""
+        return np.split(values, np.cumsum([len(t.operator.nodes) for t in self.teeth])[:-1])
+
+
+def relative_velocity(geometry: ContactGeometry) -> Floats:
+    """(n, d) velocity of pinion over wheel per radian of pinion rotation, local frames."""
+    return geometry.spins[Member.PINION] - geometry.spins[Member.WHEEL] / geometry.stand.pair.ratio

@@ -1,0 +1,74 @@
+"""Equilibrium of a gear position with friction, for one of several coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, InitialGuess, frictional
+from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep.friction_history import PreviousJump
+from evolvent.gears.sweep.position_result import PositionResult, position_result
+from evolvent.gears.sweep.position_search import SharedPosition
+from evolvent.gears.sweep.slip import slip_direction, slip_increment
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A position solved at one friction coefficient.
+
+    friction: μ.
+    equilibrium: the converged state.
+    """
+
+    friction: float
+    equilibrium: Equilibrium
+
+
+def solve_position(
+    model: GearModel, shared: SharedPosition, friction: float, before: PreviousJump | None, span: float,
+    solved: Sequence[Solved] = (),
+) -> tuple[PositionResult, Solved]:  # fmt: skip
+    """Equilibrium with friction.
+
+    before: friction history at the contact's nodes, None without friction.
+    span: Δφ since then [rad].
+    solved: the same position at other coefficients, to start from; the nearest ones last.
+
+    Raises NotConverged.
+    """
+    contact, equilibrium = shared.contact, shared.smooth
+    if before is not None:
+        guess = extrapolated_guess(friction, [Solved(0.0, shared.smooth), *solved])
+        equilibrium = frictional_equilibrium(
+            contact.geometry, shared.system, friction, shared.smooth, before, span, guess
+        )
+    result = position_result(model, contact, equilibrium, friction, shared.stiffness, shared.smooth.iterations)
+    return result, Solved(friction, equilibrium)
+
+
+def frictional_equilibrium(
+    geometry: ContactGeometry, system: CondensedSystem, friction: float, smooth: Equilibrium,
+    before: PreviousJump, span: float, guess: InitialGuess | None = None,
+) -> Equilibrium:  # fmt: skip
+    """Equilibrium with friction after a step Δφ = span [rad]. smooth: the one without friction; before: friction
+    history at the contact's nodes; guess: of the solution. Raises NotConverged."""
+    slip = slip_increment(geometry, before, span)
+    return frictional(system, friction, slip, slip_direction(geometry), smooth, guess)
+
+
+def extrapolated_guess(friction: float, solved: Sequence[Solved]) -> InitialGuess | None:
+    """Forces and motions on the straight line through the last two coefficients, as sliding friction is nearly linear
+    in them; None where there is but one, or both are the same."""
+    if len(solved) < 2 or solved[-1].friction == solved[-2].friction:
+        return None
+    older, last = solved[-2:]
+    share = (friction - last.friction) / (last.friction - older.friction)
+    earlier = np.zeros_like(last.equilibrium.force)
+    earlier[:, : older.equilibrium.force.shape[1]] = older.equilibrium.force
+    force = last.equilibrium.force + share * (last.equilibrium.force - earlier)
+    motion = last.equilibrium.motion + share * (last.equilibrium.motion - older.equilibrium.motion)
+    return InitialGuess(force, motion)

@@ -1,0 +1,119 @@
+"""What is kept of a converged position at one friction coefficient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import Equilibrium
+from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.contact.contact_points import ContactPoints, contact_points
+from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.kinematics import Stand
+from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.gears.member import Member
+
+
+@dataclass(frozen=True)
+class PositionResult:
+    """A converged position at one friction coefficient.
+
+    stand: where the gears stand, with the free rotation.
+    friction: μ.
+    torques: (pinion, wheel), moments of the contact forces about the axes [N·mm; per mm of width in 2D].
+    contact: the quadrature points under pressure.
+    tooth: (n,), tooth pair of each node of the pinion's flanks within the window.
+    node: (n,), number of that node on its flank.
+    weights: (n,), area m of each node [mm²; mm in 2D].
+    traction: (n, d), λ, τ averaged at the nodes, for pictures [MPa]; Σ m t is the whole force.
+    iterations: Newton's, of all stages.
+    residual: of the forces, relative.
+    stiffness: tangent of the frictionless mesh along the line of action [N/mm; per mm of width in 2D], see
+        tangent_stiffness.py.
+    pinion_rows: (m, 2), rows (tooth, node) of the pinion's compliance that carry load.
+    wheel_rows: (m, 2), of the wheel's.
+    pinion_forces: (m, d), forces on them in the pinion's own frame [N; per mm of width in 2D].
+    wheel_forces: (m, d), in the wheel's.
+    seconds: wall time.
+    """
+
+    stand: Stand
+    friction: float
+    torques: tuple[float, float]
+    contact: ContactPoints
+    tooth: Ints
+    node: Ints
+    weights: Floats
+    traction: Floats
+    iterations: int
+    residual: float
+    stiffness: float
+    pinion_rows: Ints
+    wheel_rows: Ints
+    pinion_forces: Floats
+    wheel_forces: Floats
+    seconds: float = 0.0
+
+    @property
+    def pressure(self) -> Floats:
+        """Averaged λ (n,) [MPa]."""
+        return self.traction[:, 0]
+
+    @property
+    def transmission_error(self) -> float:
+        """r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        pinion, wheel = self.stand.pair.gears
+        return float(pinion.base_radius * self.stand.extra[0] + wheel.base_radius * self.stand.extra[1])
+
+    @property
+    def friction_loss(self) -> float:
+        """Power lost to friction per rad/s of pinion speed [N·mm; per mm of width in 2D]."""
+        c = self.contact
+        k = c.traction.shape[1]
+        return float(np.sum(c.weights[:, None] * c.traction[:, 1:] * c.rate[:, 1:k]))
+
+    @property
+    def stored_power(self) -> float:
+        """Input − output − friction power per rad/s of pinion speed [N·mm; per mm of width in 2D]: what the deflected
+        teeth store, or give back where it is negative. Over a whole pitch it is zero."""
+        return self.torques[0] - self.torques[1] / self.stand.pair.ratio - self.friction_loss
+
+
+def position_result(
+    model: GearModel, contact: GearContact, equilibrium: Equilibrium, friction: float, stiffness: float,
+    frictionless_iterations: int,
+) -> PositionResult:  # fmt: skip
+    """Of a converged state. stiffness: see PositionResult."""
+    geometry, k = contact.geometry, equilibrium.force.shape[1]
+    torques = [float(np.sum(spin[:, :k] * equilibrium.force)) for spin in geometry.spins]
+    weights, traction = contact.operator.averaged(equilibrium.traction)
+    stand = geometry.stand.turned(model.load.on, float(equilibrium.motion[0]))
+    loaded = (_loaded_rows(geometry, gear, equilibrium) for gear in Member)
+    (pinion_rows, pinion_forces), (wheel_rows, wheel_forces) = loaded
+    iterations = equilibrium.iterations + (frictionless_iterations if model.has_friction_terms(friction) else 0)
+    return PositionResult(
+        stand=stand,
+        friction=friction,
+        torques=(torques[0], torques[1]),
+        contact=contact_points(geometry, equilibrium.traction, friction, stand.extra),
+        tooth=geometry.tooth,
+        node=geometry.node,
+        weights=weights,
+        traction=traction,
+        iterations=iterations,
+        residual=equilibrium.residual / float(np.sum(equilibrium.force[:, 0])),
+        stiffness=stiffness,
+        pinion_rows=pinion_rows,
+        wheel_rows=wheel_rows,
+        pinion_forces=pinion_forces,
+        wheel_forces=wheel_forces,
+    )
+
+
+def _loaded_rows(geometry: ContactGeometry, gear: Member, equilibrium: Equilibrium) -> tuple[Ints, Floats]:
+    """Rows (m, 2) of a gear's compliance that carry load, and the forces (m, d) on them."""
+    rows, forces = geometry.rows(gear)[0], geometry.flank_forces(gear, equilibrium.force)
+    loaded = forces.any(axis=1)
+    return rows[loaded], forces[loaded]

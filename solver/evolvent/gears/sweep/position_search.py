@@ -1,0 +1,163 @@
+"""The search of a gear position: where the flanks face each other, with the frictionless equilibrium.
+
+Flanks are searched at given rotations of both gears, and the equilibrium turns one of them on. So the search is made
+again until it was made where the equilibrium is, and in a window that holds all of the contact. All friction
+coefficients share what is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, frictionless, normal_part
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
+from evolvent.fem.parallel.cores import Threads
+from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
+from evolvent.gears.contact.pair_contact import GearContact, gear_contact
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent_meshes.gears.member import Member
+
+RELOCATE = 1.7e-4
+"""A free rotation that moves the flanks further [modules] is made exact and searched again; the gap is linear in a
+smaller one but for its square over the curvature radius, 3e-8 modules. Searches are made at rotations that are whole
+multiples of twice this, at the nearest one to the solution: so that results do not depend on where a search starts."""
+NEAREST = 1.001  # of half a multiple: at its very end two searches could send each other back and forth
+FIRST_CONTACT = 0.25
+"""Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
+ROUNDS = 8
+
+
+@dataclass(frozen=True)
+class SearchedAt:
+    """Where a position was searched.
+
+    angle: of the pinion [rad].
+    extra: rotations of pinion and wheel beyond the nominal ones [rad].
+    half_width: of the window [mm of profile arc].
+    """
+
+    angle: float
+    extra: tuple[float, float]
+    half_width: float
+
+
+@dataclass(frozen=True)
+class SharedPosition:
+    """What all friction coefficients of a position share.
+
+    contact: the flanks that face each other.
+    system: their condensed system.
+    smooth: the frictionless equilibrium.
+    unsearched: where flanks might touch outside the window.
+    stiffness: of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D].
+    """
+
+    contact: GearContact
+    system: CondensedSystem
+    smooth: Equilibrium
+    unsearched: tuple[UnsearchedOverlap, ...]
+    stiffness: float
+
+    @property
+    def patch(self) -> ContactPatch:
+        """The contact patch without friction."""
+        return ContactPatch.of(self.contact.geometry, self.smooth.traction[:, 0])
+
+    @property
+    def searched(self) -> SearchedAt:
+        """Where it was searched."""
+        return SearchedAt(self.contact.stand.angle, self.contact.stand.extra, self.contact.geometry.half_width)
+
+
+def shared_position(
+    model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: ContactPatch | None,
+    threads: Threads = nullcontext,
+) -> SharedPosition:  # fmt: skip
+    """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
+
+    angle: of the pinion [rad].
+    extra: predicted rotations beyond the nominal ones [rad].
+    frictions: the coefficients to come; without one that is not 0 only normal components are condensed.
+    before: the contact patch of the last position, None where there is none.
+    threads: in which compliances are put together.
+
+    The frictionless state is exact also where it is but a start: the search is made where it leaves the gears, which
+    must not depend on which other coefficients there are. Raises NotConverged, SearchError.
+    """
+    normal_only = not any(map(model.has_friction_terms, frictions))
+    stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
+    for _ in range(ROUNDS):
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
+        if not contact.geometry.teeth:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the load "
+                "may bend the teeth further than the search looks: lower the torque"
+            )
+        system = contact.system(model.load.on, model.load.torque, normal_only, threads)
+        normal = normal_part(system)
+        smooth = frictionless(normal, _initially_pressed(contact.geometry, before))
+        shift = free_shift(model, smooth)
+        if contact.too_deep:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that give way by less than half a module, found "
+                "more, too much for small strain: lower the torque"
+            )
+        if contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
+            half_width *= 1.5
+        elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
+            unsearched = unsearched_overlaps(contact.geometry, model.teeth)
+            if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) == 0.0:
+                return SharedPosition(contact, system, smooth, unsearched, tangent_stiffness(normal, smooth))
+            half_width = np.inf
+        stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
+    raise NotConverged(
+        f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
+    )
+
+
+def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float]) -> SharedPosition:
+    """A position searched at a given place, once. Raises NotConverged, SearchError."""
+    stand = Stand(model.pair, place.angle, place.extra)
+    contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
+    normal_only = not any(map(model.has_friction_terms, frictions))
+    system = contact.system(model.load.on, model.load.torque, normal_only)
+    normal = normal_part(system)
+    smooth = frictionless(normal, _initially_pressed(contact.geometry, None))
+    unsearched = unsearched_overlaps(contact.geometry, model.teeth)
+    return SharedPosition(contact, system, smooth, unsearched, tangent_stiffness(normal, smooth))
+
+
+def free_rotation(model: GearModel, equilibrium: Equilibrium) -> tuple[float, float]:
+    """Rotations of pinion and wheel [rad] from the search to the equilibrium."""
+    free = float(equilibrium.motion[0])
+    return (free, 0.0) if model.load.on == Member.PINION else (0.0, free)
+
+
+def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:
+    """Displacement [mm] of the flanks by that rotation."""
+    return float(equilibrium.motion[0]) * model.bodies[model.load.on].gear.base_radius
+
+
+def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
+    """The nearest stand at which searches are made."""
+    on = model.load.on
+    step = 2.0 * RELOCATE * model.pair.pinion.normal_module / model.bodies[on].gear.base_radius
+    return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
+
+
+def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> np.ndarray:
+    """(q,) bool: the points that are taken for pressed at first. Those in the last position's contact patch; without
+    one, or where it has none of them, those near the contact lines."""
+    pressed = None if before is None else before.at(geometry)
+    if pressed is not None and pressed.any():
+        return pressed
+    # on a coarse mesh the contact line may lie between two rows of points: then the nearest ones
+    return geometry.window_distance <= max(FIRST_CONTACT, float(geometry.window_distance.min()))

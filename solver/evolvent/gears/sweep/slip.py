@@ -1,0 +1,45 @@
+"""The slip between the flanks of a gear pair over the step from the previous position."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.gears.contact.contact_geometry import ContactGeometry, relative_velocity
+from evolvent.gears.kinematics import nominal_slip
+from evolvent.gears.sweep.friction_history import PreviousJump
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
+
+NEAR_PITCH = 0.3  # [module of ξ] within which the direction of slip is not taken as known
+
+
+def slip_increment(geometry: ContactGeometry, before: PreviousJump, span: float) -> Floats:
+    """(n, d−1) slip [mm] since the previous position, Δφ = span [rad] before, without the part of the present elastic
+    displacements: nominal slip, change of the free rotations, and minus the elastic jump of then."""
+    pair, rate = geometry.stand.pair, relative_velocity(geometry)
+    ξ, ξ_before = geometry.roll_distance, geometry.roll_distance - pair.pinion.base_radius * span
+    slip = nominal_slip(rate[:, 1:], ξ, ξ_before, slip_growth_direction(geometry), pair.ratio, span)
+    for gear in Member:
+        slip = slip + geometry.spins[gear][:, 1:] * (geometry.stand.extra[gear] - before.stand.extra[gear])
+    return slip - before.jump[:, 1:]
+
+
+def slip_direction(geometry: ContactGeometry) -> Floats:
+    """(q, d−1) unit tangent of the nominal slip where the slice is far enough from the pitch point to know it, else
+    zero."""
+    shape = geometry.operator.shape
+    v = shape @ relative_velocity(geometry)[:, 1:]
+    size = np.linalg.norm(v, axis=1, keepdims=True)
+    module = geometry.stand.pair.pinion.normal_module
+    far = np.abs(shape @ geometry.roll_distance)[:, None] > NEAR_PITCH * module
+    return np.where(far & (size > 0.0), v / np.where(size > 0.0, size, 1.0), 0.0)
+
+
+def slip_growth_direction(geometry: ContactGeometry) -> Floats:
+    """(n, d−1) unit tangent in which the nominal slip grows with ξ: contact travels along the transverse normal n_t,
+    and the pinion turns over the wheel about the pitch point, so this is e_z × n_t, at the pitch point too."""
+    n = geometry.operator.frames[:, 0]
+    along = np.zeros_like(n)
+    along[:, 0], along[:, 1] = -n[:, 1], n[:, 0]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    return np.einsum("jia,ja->ji", geometry.operator.frames, along)[:, 1:]

@@ -1,0 +1,52 @@
+"""A position reused after its flanks have worn on: the search and the compliance stay, the gap is new."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, frictionless, normal_part
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
+from evolvent.gears.contact.overlap_check import NEARLY, overlap_outside
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
+
+STALE = NEARLY
+"""Largest displacement of the flanks [modules] since the search of a position that is reused: He's pair worn by 6 µm in
+20 blocks has then the depths of one that is always searched within 9e-4 (7e-4 at 2e-3) of its volume, and transmission
+errors within 3 nm of 5 µm; 24 searches instead of 400."""
+
+
+def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None = None) -> SharedPosition | None:
+    """The same position with the present wear of the model's flanks.
+
+    pressed: (q,) bool, points to start from, by default those that were pressed before.
+
+    None where the gears have moved so far, or the contact so near to the window's rim, that the position has to be
+    searched again, or where no solution is found.
+    """
+    contact = shared.contact.with_wear(model.bodies)
+    system = replace(shared.system, operator=contact.operator)
+    normal = normal_part(system)
+    smooth = _first_solution(normal, [pressed, shared.smooth.traction[:, 0] > 0.0])
+    if smooth is None:
+        return None
+    near = abs(free_shift(model, smooth)) <= STALE * model.pair.pinion.normal_module
+    inside = near and not contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0)
+    rotation = free_rotation(model, smooth)
+    if not inside or overlap_outside(contact, shared.unsearched, smooth.force, rotation) != 0.0:
+        return None
+    return SharedPosition(contact, system, smooth, shared.unsearched, tangent_stiffness(normal, smooth))
+
+
+def _first_solution(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equilibrium | None:
+    """From the first of the starts, (q,) bool or None, that leads to a solution; None where none does."""
+    for start in (start for start in starts if start is not None):
+        try:
+            return frictionless(system, start if start.any() else None)
+        except NotConverged:
+            continue
+    return None

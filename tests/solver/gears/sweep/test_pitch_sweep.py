@@ -1,0 +1,90 @@
+"""A pitch swept position by position: a step whose position fails is halved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.search.pairing import SearchError
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep import pitch_sweep
+from tests.support.gear_cases import Curves, model_of, spur_scene, swept
+
+STEP = 0.18
+DEGREES = STEP * np.arange(-4, 8)
+FAILING = 0.36, 1.08
+"""Of DEGREES, at the first attempt."""
+
+
+@pytest.fixture(scope="module")
+def spur() -> GearModel:
+    return model_of(spur_scene())
+
+
+@pytest.fixture(scope="module")
+def whole(spur: GearModel) -> Curves:
+    """Swept without halving a step."""
+    return swept(spur, DEGREES, [0.3])[0]
+
+
+def failing_once(function: Callable[..., Any], angle: Callable[..., float], error: Exception) -> Callable[..., Any]:
+    """The function, which raises the error at its first call for each angle [rad] of FAILING."""
+    left = list(FAILING)
+
+    def patched(*arguments: Any) -> Any:
+        degrees = round(float(np.degrees(angle(*arguments))), 6)
+        if degrees in left:
+            left.remove(degrees)
+            raise error
+        return function(*arguments)
+
+    patched.left = left  # type: ignore[attr-defined]
+    return patched
+
+
+FAILURES = {
+    "friction does not converge": ("solve_position", lambda _, shared, *__: shared.contact.stand.angle, NotConverged),
+    "the search does not converge": ("shared_position", lambda _, angle, *__: angle, NotConverged),
+    "the search fails": ("shared_position", lambda _, angle, *__: angle, SearchError),
+}
+"""What fails -> function of the sweep, its angle, the error."""
+
+
+@pytest.mark.parametrize("failure", FAILURES)
+def test_a_position_that_fails_once_is_approached_in_two_halves(
+    failure: str, spur: GearModel, whole: Curves, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Problem: two positions that fail at the whole step and succeed at its half. Exact: the positions of a sweep in
+    which none fails: to rounding where all slides, within 3 % of the friction coefficient's effect right behind the
+    pitch point."""
+    name, angle, error = FAILURES[failure]
+    patched = failing_once(getattr(pitch_sweep, name), angle, error("as the test wants"))
+    monkeypatch.setattr(pitch_sweep, name, patched)
+    halved = swept(spur, DEGREES, [0.3])[0]
+    assert patched.left == []  # type: ignore[attr-defined]
+    assert halved.degrees.tolist() == whole.degrees.tolist()
+    difference = np.abs(halved.of("transmission_error") - whole.of("transmission_error"))
+    assert difference[:6].max() == 0.0
+    assert difference[8:].max() < 1e-9
+    assert difference.max() < 5e-5
+
+
+@pytest.mark.parametrize("error", [NotConverged, SearchError])
+def test_a_position_that_always_fails_ends_the_sweep(
+    error: type[Exception], spur: GearModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Four halvings, then NotConverged with the angle; nothing is yielded."""
+    tried = []
+
+    def failing(model: GearModel, angle: float, *_: Any) -> None:
+        tried.append(angle)
+        raise error("as the test wants")
+
+    monkeypatch.setattr(pitch_sweep, "shared_position", failing)
+    with pytest.raises(NotConverged, match=r"pinion at .*°, also after 4 halvings of the step: as the test wants"):
+        swept(spur, np.array([1.0, 1.2]), [0.1])
+    assert np.diff(np.degrees(tried)) == pytest.approx([-0.1, -0.05, -0.025, -0.0125])

@@ -119,3 +119,9 @@ def members(what: str, value: Any, kinds: tuple[type[T], ...], example: str) -> 
         if not isinstance(each, kinds):
             refuse(what, f"a tuple of {names}", Words(f"{shown(each)} in it"), f"write {example}")
     return objects
+
+
+def one_of(what: str, value: object, allowed: tuple[object, ...]) -> None:
+    """Raises InputError for any other value; True is not 1."""
+    if not any(type(value) is type(each) and value == each for each in allowed):
+        refuse(what, " or ".join(map(repr, allowed)), value, "take one of them")

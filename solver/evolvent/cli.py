@@ -30,6 +30,7 @@ from evolvent.options import (
     given_path,
     usage_message,
 )  # fmt: skip
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.files import require_writable
 
@@ -159,12 +160,12 @@ def mesh(
         _require(overwrite or not (out.exists() or out.is_symlink()), exists)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
         _require_room(loaded, "mesh", force, MPI.COMM_SELF)
+        from evolvent.gears.meshing.sector_meshes import standing_pair
         from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
-        from evolvent.scene.meshing.sector_meshes import standing_pair
         from evolvent_meshes.mesh.gmsh_io import write_msh
         from evolvent_meshes.mesh.quality import scaled_jacobians
 
-        made = standing_pair(loaded)
+        made = standing_pair(gear_problem(loaded))
         write_msh(made, out)
         quality = float(scaled_jacobians(made).min())
         typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.2g}")

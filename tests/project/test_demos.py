@@ -12,7 +12,7 @@ import pytest
 
 from tests.support.running.processes import Done, Run, on_ranks
 
-DEMOS = ("two_blocks", "hertz_cylinder", "hertz_sphere")
+DEMOS = ("two_blocks", "hertz_cylinder", "transmission_error", "hertz_sphere")
 LARGER_CELLS = {"yang2022": 'demo.SMALL += ("mesh.order=1",)'}
 """Of a demo that takes long: what makes its small size smaller, to see that it runs on two ranks too."""
 
@@ -40,7 +40,7 @@ def alone(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Alone:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-@pytest.mark.parametrize("demo", [*DEMOS[:2], pytest.param(DEMOS[2], marks=pytest.mark.slow)])
+@pytest.mark.parametrize("demo", [*DEMOS[:3], pytest.param(DEMOS[3], marks=pytest.mark.slow)])
 def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: int) -> None:
     """Status 0, a table and a picture; the table is printed once, whatever the number of ranks."""
     done, out = alone(demo) if ranks == 1 else (run_script(*started(demo, tmp_path, 2), ranks=2), tmp_path)

@@ -37,16 +37,12 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.solution": (
         "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
     ),
-    "scene.schema": ("meshes",),
-    "scene": ("meshes", "meshes.gears", "fem", "contact", "scene.schema"),
-    "scene.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "scene", "scene.schema"),
-    "scene.checking": (
-        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "scene", "scene.schema", "scene.meshing",
-    ),
+    "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
+    "gears.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "gears.problem"),
     "gears.ring": ("meshes", "fem.condensation"),
     "gears": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "fem.condensation", "contact.nitsche", "scene",
-        "scene.meshing", "gears.ring",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "fem.condensation", "contact.nitsche",
+        "gears.problem", "gears.meshing", "gears.ring",
     ),
     "gears.contact": (
         "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
@@ -55,34 +51,44 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
+    "gears.solution": ("meshes", "fem.backend", "gears.problem", "gears", "gears.sweep"),
+    "scene.schema": ("meshes",),
+    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
+    "scene.checking": (
+        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing", "scene",
+        "scene.schema",
+    ),
     "results.archive": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
     ),
-    "results": ("meshes", "meshes.gears", "fem", "scene", "scene.checking", "gears", "gears.sweep", "results.archive"),
+    "results": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep", "scene", "scene.checking", "results.archive"),
     "results.error_bars": ("meshes", "results.archive", "results"),
-    "results.tables": ("meshes.gears", "scene", "scene.checking", "results.archive", "results", "results.error_bars"),
+    "results.tables": (
+        "meshes.gears", "gears.solution", "scene", "scene.checking", "results.archive", "results", "results.error_bars",
+    ),
     "results.fields": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "scene.schema", "gears.ring", "gears", "gears.sweep",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears", "gears.sweep",
         "results.archive", "results",
     ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
-        "meshes", "meshes.gears", "contact", "scene", "scene.checking", "gears.sweep", "results.archive", "results",
-        "results.tables", "results.fields", "results.drawing",
+        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "scene", "scene.checking",
+        "results.archive", "results", "results.tables", "results.fields", "results.drawing",
     ),
-    "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*", "scene"),
+    "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears",
-        "gears.contact", "gears.sweep", "wear",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
+        "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
-        "meshes", "meshes.gears", "fem", "contact", "scene", "gears.sweep", "results.*", "wear", "wear.gears",
+        "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "scene", "results.*", "wear",
+        "wear.gears",
     ),
     "run": (
-        "meshes.*", "fem.backend", "fem.parallel", "scene", "scene.schema", "scene.meshing", "gears", "gears.sweep",
-        "results.*", "wear.*",
+        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
-    "cli": ("meshes", "meshes.mesh", "fem.backend", "scene.*", "results.tables", "wear", "run"),
+    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run"),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
 FILES, BELOW, LINES = 12, 9, 300

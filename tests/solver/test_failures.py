@@ -17,7 +17,7 @@ from evolvent.contact.search.pairing import SearchError
 from evolvent.failures import reported
 from evolvent.fem.backend.form_compiler import CompileError
 from evolvent.fem.condensation.mumps import NotPositiveDefinite, OutOfMemory
-from evolvent.run.certificates import BalanceError, PitchImbalance
+from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
 from evolvent_meshes.errors import EvolventError, InputError, ResultError
 from evolvent_meshes.mesh.mesh_data import MeshError
 

@@ -11,6 +11,7 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import shared_position
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -55,7 +56,7 @@ def helical_scene(*settings: str) -> Scene:
 
 def model_of(scene: Scene) -> GearModel:
     """Condensed on this rank alone."""
-    return prepare_model(scene, MPI.COMM_SELF).model
+    return prepare_model(gear_problem(scene), MPI.COMM_SELF).model
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.run_data import RunData
-from evolvent.scene.flank_deviations import FlankChart
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
@@ -35,12 +36,12 @@ def wear_scene(kind: str, *settings: str) -> Scene:
 
 def condenser(scene: Scene) -> Callable[[Callable[[Member], MeshData]], GearModel]:
     """See GearMeshMotion."""
-    return lambda mesh: prepare_model(scene, MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
+    return lambda mesh: prepare_model(gear_problem(scene), MPI.COMM_SELF, lambda _, gear: mesh(gear)).model
 
 
 def wearing_gears(scene: Scene, positions: int = 4, refresh: float = np.inf) -> GearWear:
     """Both gears wear alike."""
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     pitch, following = uniform_pitch(model.pair.pinion.z, positions), GearMeshMotion(refresh, condenser(scene))
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 

@@ -19,13 +19,13 @@ from evolvent.contact.hertz import line_half_width, line_peak_pressure, line_pre
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
+from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import GearShape, gear_shape
 from evolvent.results.run_data import RunData, SolvedPosition, run_data
-from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
-from evolvent.scene.skips import is_plane
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.pair import GearPair
@@ -66,10 +66,10 @@ def _with_loaded_edges(solved: SolvedPosition) -> SolvedPosition:
 
 def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface]:
     """Both gears' surfaces, and the pinion's flank."""
-    shape = "quadrilateral" if is_plane(scene) else "hexahedron"
+    shape = "quadrilateral" if gear_problem(scene).is_plane else "hexahedron"
     meshes: list[MeshData] = [
         sector_mesh(gear, resolution, shape)
-        for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(scene))
+        for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(gear_problem(scene)))
     ]
     first, second = (surface_of(mesh, "flank") for mesh in meshes)
     return (gear_shape(meshes[0], first.nodes), gear_shape(meshes[1], second.nodes)), first

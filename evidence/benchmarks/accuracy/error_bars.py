@@ -6,7 +6,7 @@ does not depend on them. Its own error is estimated by the same mesh before the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
@@ -14,13 +14,15 @@ from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.subdivision import halved
 from evidence.checkout import DEMOS
+from evolvent.gears.gear_model import Mesher
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.coarse_run import companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -133,7 +135,7 @@ def _rows(
     ]
 
 
-def solved(scene: Scene, mesh: Callable[[Scene, Member], MeshData] = gear_mesh) -> RunData:
+def solved(scene: Scene, mesh: Mesher = gear_mesh) -> RunData:
     """A run on this rank alone. mesh: of a gear's sector."""
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
     assert run is not None
@@ -141,8 +143,8 @@ def solved(scene: Scene, mesh: Callable[[Scene, Member], MeshData] = gear_mesh) 
 
 
 def _reference(problem: BarProblem, halvings: int) -> RunData:
-    def mesh(scene: Scene, member: Member) -> MeshData:
-        fine = gear_mesh(scene, member, adapted=_finer_body) if problem.fine_body else gear_mesh(scene, member)
+    def mesh(gears: GearProblem, member: Member) -> MeshData:
+        fine = gear_mesh(gears, member, adapted=_finer_body) if problem.fine_body else gear_mesh(gears, member)
         for _ in range(halvings):
             fine = halved(fine)
         return fine

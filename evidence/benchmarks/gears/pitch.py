@@ -27,11 +27,12 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
 from evolvent.run.context import peak_memory_MB
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 
@@ -102,7 +103,7 @@ def read_facts(path: Path) -> PitchFacts:
 def solved(scene: Scene) -> PitchFacts:
     """The pitch of a scene, solved in this process."""
     comm, start = MPI.COMM_WORLD, time.process_time()
-    preparation = prepare_model(scene, comm)
+    preparation = prepare_model(gear_problem(scene), comm)
     pitch, state = pitch_of(scene), initial_state(scene.contact.friction)
     seconds: list[float] = []
     swept: list[SweptPosition] = []
@@ -131,7 +132,7 @@ def solved(scene: Scene) -> PitchFacts:
 def factored(scene: Scene) -> PitchFacts:
     """Both sectors assembled and factored once, in this process."""
     start, began = time.process_time(), time.perf_counter()
-    meshes = [gear_mesh(scene, member) for member in Member]
+    meshes = [gear_mesh(gear_problem(scene), member) for member in Member]
     meshing = time.perf_counter() - began
     assembling = factoring = 0.0
     for mesh, material in zip(meshes, scene.materials()):

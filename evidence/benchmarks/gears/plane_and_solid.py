@@ -21,12 +21,12 @@ import numpy as np
 from evidence.scenes import spur_pair
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.condensed_gear import condensed_gear
-from evolvent.gears.gear_model import GearLoad, GearModel, window_half_width
+from evolvent.gears.gear_model import GearLoad, GearModel
+from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.run.context import peak_memory_MB
-from evolvent.scene.meshing.element_sizes import sector_resolutions
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import contact_teeth
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.sector import sector_mesh
 
@@ -110,7 +110,7 @@ def rows(planes: tuple[SpurMesh, ...] = PLANES, volumes: tuple[SpurMesh, ...] = 
 def _size(mesh: SpurMesh) -> int:
     """Nodes of the pinion's sector."""
     scene = mesh.scene()
-    section = sector_mesh(scene.gear_pair().pinion, sector_resolutions(scene)[0], "quadrilateral")
+    section = sector_mesh(scene.gear_pair().pinion, sector_resolutions(gear_problem(scene))[0], "quadrilateral")
     return len(section.points) * (2 * mesh.layers + 1)
 
 
@@ -133,12 +133,13 @@ def _solve(mesh: SpurMesh) -> Solved:
 def _model(mesh: SpurMesh) -> GearModel:
     """As `prepare_model` makes it, but for the number of layers."""
     scene = mesh.scene()
-    pair, teeth = scene.gear_pair(), contact_teeth(scene)
+    pair, teeth = scene.gear_pair(), gear_problem(scene).contact_teeth
     bodies = []
-    for member, resolution in zip(Member, sector_resolutions(scene)):
+    for member, resolution in zip(Member, sector_resolutions(gear_problem(scene))):
         layered = replace(resolution, face_elements=max(mesh.layers, 1))
         cells = sector_mesh(pair.gears[member], layered, "hexahedron" if mesh.layers else "quadrilateral")
         material, carries = scene.materials()[member], member == Member.PINION
         bodies.append(condensed_gear(pair.gears[member], cells, material, teeth, member, carries_pressure=carries))
     torque = 1e3 * scene.load.torque_Nm / (1.0 if mesh.layers else pair.face_width)
-    return GearModel(pair, (bodies[0], bodies[1]), tuple(teeth), GearLoad(torque), window_half_width(scene))
+    window = gear_problem(scene).window_half_width
+    return GearModel(pair, (bodies[0], bodies[1]), teeth, GearLoad(torque), window)

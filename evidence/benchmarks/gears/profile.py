@@ -23,6 +23,7 @@ from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state
 from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.gear_problem import gear_problem
 
 FULL, SMALL = (1.7, 20), (1.0, 4)
 """Elements across the contact width, and positions."""
@@ -72,7 +73,7 @@ def profiled(elements: float, positions: int, frictions: str) -> list[ProfileRow
     scene = pair_scene(elements, f"contact.friction=[{frictions}]", f"sweep.positions={positions}")
     profiler = cProfile.Profile()
     profiler.enable()
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     μ = scene.contact.friction
     list(sweep_until_periodic(model, pitch_of(scene), μ, initial_state(μ), MPI.COMM_SELF))
     profiler.disable()

@@ -12,8 +12,9 @@ import numpy as np
 from evidence.benchmarks.comparison.task import Task, Turn
 from evidence.scenes import helical_pair
 from evolvent.gears.kinematics import turn
-from evolvent.scene.meshing.element_sizes import sector_resolutions
-from evolvent.scene.meshing.sector_meshes import linear
+from evolvent.gears.meshing.element_sizes import sector_resolutions
+from evolvent.gears.meshing.sector_meshes import linear
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.flank import nominal_angles
@@ -37,7 +38,7 @@ def three_teeth(elements: float, rotation: float = 0.0, order: int = 1, shape: s
     """Three teeth of each gear at a pinion rotation φ [rad], standing in space as they mesh; order 1 or 2."""
     scene = pair_scene(elements)
     pair, bodies = scene.gear_pair(), []
-    for member, gear, resolution in zip(Member, pair.gears, sector_resolutions(scene)):
+    for member, gear, resolution in zip(Member, pair.gears, sector_resolutions(gear_problem(scene))):
         mesh = sector_mesh(gear, resolution, shape)
         mesh = mesh if order == 2 else linear(mesh)
         angle = float(nominal_angles(pair, rotation)[member])

@@ -18,6 +18,7 @@ from evidence.scenes import HELICAL, QUIET, SPUR, model_dofs
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
@@ -102,7 +103,7 @@ def cost_rows(cases: Sequence[WearCase] = CASES) -> Iterator[WearCostRow]:
     dolfinx_compat.silence_logs()
     for case in cases:
         begin = time.process_time()
-        model = prepare_model(case.load(), MPI.COMM_SELF).model
+        model = prepare_model(gear_problem(case.load()), MPI.COMM_SELF).model
         ready = time.process_time()
         sweep = float(np.median([_sweep_seconds(model, case) for _ in range(SWEEPS)]))
         study = float(np.median([_study_seconds(model, case) for _ in range(case.studies)]))
@@ -112,7 +113,7 @@ def cost_rows(cases: Sequence[WearCase] = CASES) -> Iterator[WearCostRow]:
 def precision_rows(case: WearCase = PRECISION, tolerances: Sequence[float] = TOLERANCES) -> Iterator[WearPrecisionRow]:
     """Implicit and explicit blocks at each tolerance."""
     dolfinx_compat.silence_logs()
-    gears = _gears(prepare_model(case.load(), MPI.COMM_SELF).model, case)
+    gears = _gears(prepare_model(gear_problem(case.load()), MPI.COMM_SELF).model, case)
     known = _study(gears, case, 0.1 * min(tolerances), True)[0]
     for implicit in (True, False):
         for tolerance in tolerances:

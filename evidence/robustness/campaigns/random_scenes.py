@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from evolvent.scene.checking.problem_size import sector_sizes
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, SceneError, scene_from_values
-from evolvent.scene.skips import is_plane
 
 Table = dict[str, Any]
 
@@ -156,5 +156,5 @@ def _is_stout(scene: Scene) -> bool:
 
 
 def _is_small(scene: Scene) -> bool:
-    dofs, rows = LARGEST[is_plane(scene)]
+    dofs, rows = LARGEST[gear_problem(scene).is_plane]
     return all(size.dofs <= dofs and size.flank + size.cuts <= rows for size in sector_sizes(scene))

@@ -16,7 +16,7 @@ from evolvent import Contact, Placement, Problem, Step
 from evolvent.contact.hertz import contact_modulus
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import Material
-from evolvent.scene.flank_deviations import DEEPEST
+from evolvent.gears.problem.flank_deviations import DEEPEST
 from evolvent.scene.scene import Scene, scene_from_values
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings

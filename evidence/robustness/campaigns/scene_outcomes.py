@@ -13,10 +13,10 @@ from mpi4py import MPI
 
 from evidence.scenes import model_dofs
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.solution.certificates import BalanceError, PitchImbalance, certify, certify_pitch, pitch_imbalance
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
-from evolvent.results.contact_slices import pitch_imbalance
-from evolvent.run.certificates import BalanceError, PitchImbalance, certify, certify_pitch
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.errors import EvolventError
 
@@ -81,7 +81,7 @@ def last_line(message: str) -> str:
 
 def _solved(scene: Scene, seed: int) -> Outcome:
     """Again on deflected flanks where the pitch alone is out of balance."""
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     outcome, pitch_refused = _swept(model, scene, seed)
     return _swept(replace(model, deflected=True), scene, seed)[0] if pitch_refused else outcome
 

@@ -11,7 +11,7 @@ from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.robustness.campaigns.scene_outcomes import Outcome, Verdict
 from evidence.robustness.campaigns.wear_outcomes import BLOCKS, WearOutcome, WearVerdict
 from evidence.tables import Column, Table, markdown
-from evolvent.scene.skips import is_plane
+from evolvent.scene.gear_problem import gear_problem
 
 SCENES = Table(
     Outcome,
@@ -44,7 +44,7 @@ def scene_summary(outcomes: Sequence[Outcome]) -> str:
     solved = [outcome for outcome in outcomes if outcome.verdict is Verdict.CONVERGED]
     words = f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}."
     if solved:
-        plane = [outcome for outcome in solved if is_plane(random_scene(outcome.seed))]
+        plane = [outcome for outcome in solved if gear_problem(random_scene(outcome.seed)).is_plane]
         means = [float(np.mean([o.iterations for o in some])) if some else 0.0 for some in (solved, plane)]
         balances = [outcome.balance for outcome in solved]
         words += (

@@ -23,6 +23,7 @@ from evidence.robustness.campaigns.scene_outcomes import last_line
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.wear_run import certify_positions, law_of, settings_of
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import WearState
 from evolvent.wear.body_study import CycleState, WearStudy
@@ -209,7 +210,7 @@ def gear_states(scene: Scene) -> Iterator[Accepted]:
     """The states of a gear pair, certified as a run does. Raises what a run does."""
     wear = scene.wear
     assert wear is not None
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     gears = GearWear(model, pitch, scene.contact.friction[0], law_of(wear))
     before: WearState[PitchState] | None = None

@@ -8,8 +8,9 @@ from mpi4py import MPI
 from evidence.robustness.settings.sheets import Cell, Sheet, sheet_of
 from evidence.scenes import spur_pair
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.solution.certificates import balance_error
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
-from evolvent.results.contact_slices import balance_error
+from evolvent.scene.gear_problem import gear_problem
 
 STEPS, LAST, COUNT = (0.01, 0.05, 0.2, 1.0, 5.0), 3.0, 4  # degrees, degrees, positions
 FRICTIONS = (0.05, 0.1, 0.3, 0.6, 1.0)
@@ -17,7 +18,7 @@ FRICTIONS = (0.05, 0.1, 0.3, 0.6, 1.0)
 
 def spur_pair_at_steps() -> Sheet:
     """Step × μ: four positions, the last one always the same."""
-    model = prepare_model(spur_pair("mesh.level=quick"), MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(spur_pair("mesh.level=quick")), MPI.COMM_SELF).model
     return sheet_of(
         ("position_step", "A spur pair (He, quick), position steps from 0.01° to 5°", "worst balance error"),
         ("μ", FRICTIONS),

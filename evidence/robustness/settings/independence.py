@@ -24,6 +24,7 @@ from evolvent.gears.condensed_gear import condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.results.contact_slices import slices
+from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
 
 SAFETIES = (1.1, 1.25, 2.0, 5.0, 20.0, 50.0)
@@ -76,7 +77,7 @@ def gear_figures(safety: float, friction: float = 0.1, level: str = LEVELS[0]) -
 def _model(safety: float, level: str) -> GearModel:
     """He's pair, frictionless or not, with another γ on the pinion."""
     scene = spur_pair(f"mesh.level={level}")
-    model = prepare_model(scene, MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
     pinion, wheel = model.bodies
     material, teeth = scene.materials()[Member.PINION], list(model.teeth)
     other = condensed_gear(pinion.gear, pinion.mesh, material, teeth, Member.PINION, True, safety)

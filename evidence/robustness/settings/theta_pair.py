@@ -19,8 +19,9 @@ from evolvent.gears.condensed_gear import matching_cuts
 from evolvent.gears.contact.tooth_contact import GAP
 from evolvent.gears.full_gear import whole_mesh
 from evolvent.gears.kinematics import Stand
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.contact_slices import fitted_peak
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -79,7 +80,7 @@ class ThetaPair:
 
 def _whole_gear(scene: Scene, gear: Member) -> MeshData:
     """All teeth; "flank" holds those of `TEETH` only: what cannot touch costs nothing."""
-    sector, count = gear_mesh(scene, gear), scene.gear_pair().gears[gear].z
+    sector, count = gear_mesh(gear_problem(scene), gear), scene.gear_pair().gears[gear].z
     mesh = whole_mesh(sector, matching_cuts(sector, 2.0 * np.pi / count), count)
     flanks = mesh.facets["flank"].reshape(count, -1, mesh.facets["flank"].shape[1])
     chosen = np.concatenate([flanks[(gear.sign * tooth) % count] for tooth in TEETH])

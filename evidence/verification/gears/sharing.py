@@ -15,6 +15,7 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
+from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
@@ -107,7 +108,7 @@ def _carries(model: GearModel, rotation: float) -> bool:
 
 def verify() -> Verification:
     """One pitch at the whole torque; the engagement at the whole and at a thousandth of it."""
-    model = prepare_model(spur_pair(), MPI.COMM_SELF).model
+    model = prepare_model(gear_problem(spur_pair()), MPI.COMM_SELF).model
     light = replace(model, load=replace(model.load, torque=LIGHT * model.load.torque))
     computed = shares(model)
     angles = engagement_degrees(model), engagement_degrees(light)

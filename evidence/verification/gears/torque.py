@@ -16,6 +16,7 @@ from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.drawing.style import PINION, WHEEL, note
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats
 
@@ -63,7 +64,7 @@ def narrow_pair() -> Scene:
 
 def model_of(scene: Scene) -> GearModel:
     """Both gears, condensed on this rank alone."""
-    return prepare_model(scene, MPI.COMM_SELF).model
+    return prepare_model(gear_problem(scene), MPI.COMM_SELF).model
 
 
 def ratios(model: GearModel, positions: int) -> Ratios:

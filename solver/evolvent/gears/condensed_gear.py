@@ -1,8 +1,9 @@
-"""A gear condensed once for all positions: one sector, meshed, condensed, and closed to the ring that the gear is."""
+"""A gear condensed onto its loaded flanks, once for all positions: one sector, closed to the ring of all sectors."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,30 +26,34 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-COUPLING_TOLERANCE = 1e-10  # of the coupling between teeth, which is smooth; relative
+COUPLING_TOLERANCE = 1e-10
+"""Relative error of the coupling between teeth, which is compressed."""
 
 
 @dataclass(frozen=True)
 class GearBody:
-    """One gear, seen through the loaded flanks of its teeth.
-
-    flank: surface of tooth 0 in the gear's own frame, n nodes. traction: Nitsche's, on the gear that carries the
-    pressure, else None. chain: compliance of all modelled teeth, tooth
-    s of it turned by +2πs/z. member: pinion or wheel; tooth pair i has tooth member.sign·i.
-    assemble_seconds, condense_seconds: what it took. worn: (n,) depth [mm] that the flank has lost, of which mesh and
-    chain know nothing.
-    """
+    """One gear, condensed onto the loaded flanks of its teeth; its bore is held in the gear's frame."""
 
     gear: GearParameters
+    """Its geometry."""
     mesh: MeshData
+    """Sector of tooth 0 in the gear's frame."""
     material: Material
+    """Its material."""
     flank: Surface
+    """Loaded flank of tooth 0 in the gear's frame, n nodes."""
     traction: NitscheTraction | None
+    """Recovered traction of Nitsche's method, on the gear that carries the pressure; else None."""
     chain: Compliance
+    """Compliance of the flanks of all teeth in contact, tooth s turned by +2πs/z."""
     member: Member
+    """Pinion or wheel; tooth pair i has tooth member.sign·i."""
     assemble_seconds: float
+    """Wall time of the assembly [s]."""
     condense_seconds: float
+    """Wall time of the condensation [s]."""
     worn: Floats | None = None
+    """Depth (n,) that the flank has lost and that mesh and compliance do not include [mm]."""
 
     def lost(self, facets: Ints, xi: Floats) -> Floats:
         """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""
@@ -85,17 +90,19 @@ def condensed_gear(
     gear: GearParameters,
     mesh: MeshData,
     material: Material,
-    teeth: list[int],
+    teeth: Sequence[int],
     member: Member,
     carries_pressure: bool,
     safety: float = SAFETY,
     whole: bool = False,
     threads: Threads = nullcontext,
 ) -> GearBody:
-    """Assembles and condenses one sector, and closes the ring of all z of them. teeth: the tooth pairs that may touch;
-    whole: assemble and condense all sectors instead; threads: in which the largest products run.
+    """Assembles and condenses one sector of a gear held at its bore, and closes the ring of its z sectors.
 
-    The bore is held in the gear's frame.
+    teeth: tooth pairs that may touch. safety: factor on the stabilisation of Nitsche's method. whole: assemble and
+    condense all sectors instead of one. threads: context in which the largest matrix products run.
+
+    Raises NotPositiveDefinite, OutOfMemory.
     """
     begin = time.perf_counter()
     flank = surface_of(mesh, "flank")
@@ -125,26 +132,31 @@ def sector_body(mesh: MeshData, material: Material, member: Member) -> Body:
 def _sector_system(
     body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
 ) -> SectorSystem:
-    """A function of its own so that the full matrices are gone when the elimination starts."""
+    """Separate from its caller so that the full matrices are freed when the elimination starts."""
     parts = sector_parts(body, flank, traction, pitch)
     return SectorSystem.of(parts.stiffness, parts.functionals, parts.low, parts.high, parts.graph, parts.free)
 
 
 @dataclass(frozen=True)
 class SectorParts:
-    """A sector with Nitsche's constant term, seen through its flank: stiffness (n, n), functionals (m, n), dofs of the
-    low and of the high cut face in matching order, those that are free, and the pattern of the plain stiffness."""
+    """Matrices of a sector with Nitsche's constant term, N degrees of freedom."""
 
     stiffness: sp.csr_matrix
+    """(N, N) [N/mm]."""
     functionals: sp.csr_matrix
+    """(m, N) displacements of the flank that enter the contact."""
     low: Ints
+    """Degrees of freedom of the low cut face that are free."""
     high: Ints
+    """Those of the high cut face, in matching order."""
     free: Ints
+    """All free degrees of freedom."""
     graph: sp.csr_matrix
+    """(N, N) pattern of the stiffness without Nitsche's term."""
 
 
 def sector_parts(body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float) -> SectorParts:
-    """Assembles a sector."""
+    """Assembles a sector. pitch: angle between its cut faces [rad]."""
     assembled = assemble(body)
     K, d = assembled.stiffness, assembled.d
     P = trace_functionals(flank, K.shape[0])
@@ -157,7 +169,7 @@ def sector_parts(body: Body, flank: Surface, traction: NitscheTraction | None, p
 
 
 def matching_cuts(mesh: MeshData, pitch: float) -> tuple[Ints, Ints]:
-    """Nodes of the low and of the high cut face in matching order: high = low turned by the pitch [rad].
+    """Nodes (k,) of the low and of the high cut face in matching order: high = low turned by the pitch [rad].
 
     Raises ValueError where they do not match within 1e-7 mm.
     """

@@ -1,7 +1,6 @@
-"""A gear meshed and factored as a whole: the long way round what `chain` does with one sector of it.
+"""All sectors of a gear meshed and condensed together, as a check of the ring of one condensed sector.
 
-All sectors are one mesh, with Nitsche's constant term on every tooth, as the chained sector has it; the answer is the
-same to rounding.
+Nitsche's constant term is on every tooth, as in the ring; both compliances agree to rounding.
 """
 
 from __future__ import annotations
@@ -28,8 +27,8 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 def whole_mesh(sector: MeshData, cuts: tuple[Ints, Ints], count: int) -> MeshData:
     """All `count` sectors of a gear as one mesh, sector s turned by +2πs/count.
 
-    cuts: the nodes of the low and of the high cut face in matching order. Facet groups: bore, and flank with the facets
-    of tooth 0 first, then of tooth 1, and so on.
+    cuts: nodes (k,) of the low and of the high cut face in matching order. Facet groups: bore, and flank, tooth by
+    tooth from tooth 0 on.
     """
     low, high = cuts
     size = len(sector.points)
@@ -50,11 +49,14 @@ def _everywhere(number: Ints, entities: Ints) -> Ints:
 
 @dataclass(frozen=True)
 class WholeGear:
-    """Compliance of the flanks of some teeth, in one matrix (teeth·n·d)²; see `chain.Compliance`."""
+    """Compliance of the flanks of some teeth, in one matrix; see `ring_compliance.Compliance`."""
 
     matrix: Floats
+    """(teeth·n·d, teeth·n·d) [mm/N]."""
     dimension: int
+    """d."""
     teeth: range
+    """Numbers of the teeth."""
 
     @property
     def node_count(self) -> int:
@@ -62,14 +64,14 @@ class WholeGear:
         return len(self.matrix) // (self.dimension * len(self.teeth))
 
     def block(self, parts: Sequence[MappedNodes]) -> Floats:
-        """See `chain.Compliance.block`."""
+        """See `ring_compliance.Compliance.block`."""
         dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
         rows = [[part.map(other.map(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
                 for part, i in zip(parts, dofs)]  # fmt: skip
         return np.block(rows)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        """See `chain.Compliance.apply`."""
+        """See `ring_compliance.Compliance.apply`."""
         picked = self.matrix[np.ix_(self._dofs(*rows_in.T), self._dofs(*rows_out.T))]
         loads = forces.reshape(*forces.shape[:-2], -1)
         return np.asarray(loads @ picked).reshape(*forces.shape[:-2], -1, self.dimension)
@@ -81,18 +83,23 @@ class WholeGear:
 
 @dataclass(frozen=True)
 class WholeSystem:
-    """Stiffness K (N·d)² on its `free` rows, functionals P of the named teeth's flanks, and K's pattern without
-    Nitsche's term."""
+    """Matrices of a whole gear with Nitsche's constant term, N degrees of freedom."""
 
     stiffness: sp.csr_matrix
+    """(N, N) [N/mm]."""
     functionals: sp.csr_matrix
+    """(m, N) displacements of the flanks that enter the contact."""
     free: Ints
+    """Free degrees of freedom."""
     graph: sp.csr_matrix
+    """(N, N) pattern of the stiffness without Nitsche's term."""
     teeth: range
+    """Numbers of the teeth of these flanks."""
     dimension: int
+    """d."""
 
     def condensed(self, threads: Threads = nullcontext) -> WholeGear:
-        """Onto the flanks. Raises NotPositiveDefinite and OutOfMemory."""
+        """Compliance of the flanks. Raises NotPositiveDefinite, OutOfMemory."""
         with threads():
             dense = compliance(self.stiffness, self.functionals, self.free, graph=self.graph)
         return WholeGear(dense, self.dimension, self.teeth)
@@ -101,8 +108,11 @@ class WholeSystem:
 def whole_system(
     mesh: MeshData, material: Material, count: int, teeth: range, safety: float | None
 ) -> WholeSystem:
-    """Assembles a `whole_mesh` of `count` sectors, held at its bore. teeth: those whose flanks are wanted, −1 is the
-    last one; safety: that of γ, None for a gear that does not carry the pressure."""
+    """Assembles a `whole_mesh` of `count` sectors, held at its bore.
+
+    teeth: numbers of the teeth whose flanks may touch, −1 is the last one. safety: factor on the stabilisation of
+    Nitsche's method, None for the gear that does not carry the pressure.
+    """
     assembled = assemble(Body(mesh, material, supports=(Fixed("bore"),), name="whole gear"))
     K, d = assembled.stiffness.tocsr(), assembled.d
     flanks = surface_of(mesh, "flank")

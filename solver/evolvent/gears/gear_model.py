@@ -1,4 +1,4 @@
-"""What all positions of a gear pair share, and how it comes from a scene: meshes, condensed gears, window.
+"""What all positions of a gear pair share: condensed gears, load and window.
 
 With several ranks each gear is condensed on one.
 """
@@ -9,122 +9,119 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
 from mpi4py import MPI
 
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
-from evolvent.scene.flank_deviations import FlankChart
-from evolvent.scene.meshing.sector_meshes import gear_mesh
-from evolvent.scene.scene import GEARS, Scene
-from evolvent.scene.skips import contact_teeth, is_plane, skips, switched_off
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-WINDOW = 1.6  # half-width of the contact window in largest Hertz half-widths, plus one element
+Mesher = Callable[[GearProblem, Member], MeshData]
+"""Makes the sector mesh of the pinion or the wheel."""
 
 
 @dataclass(frozen=True)
 class GearLoad:
-    """The load: torque [N·mm; per mm of width in 2D] held on gear `on`; the other one is driven."""
+    """A constant torque on one gear; the other one is driven."""
 
     torque: float
+    """[N·mm; per mm of face width in 2D]."""
     on: Member = Member.PINION
+    """The gear with the torque."""
 
 
 @dataclass(frozen=True)
 class GearModel:
-    """All that positions share.
-
-    teeth: tooth pairs that may touch within the pitch. half_width: of the window to start with [mm of arc],
-    infinite where the whole flanks are searched. friction_terms: also keep them where μ = 0. deflected: flanks touch as
-    they have deflected.
-    """
+    """All that positions share."""
 
     pair: GearPair
+    """Both gears and how they stand."""
     bodies: tuple[GearBody, GearBody]
+    """Condensed pinion and wheel."""
     teeth: tuple[int, ...]
+    """Tooth pairs that are searched."""
     load: GearLoad
+    """The torque."""
     half_width: float
+    """Of the contact window to begin with [mm of profile arc]; infinite: the whole flanks are searched."""
     friction_terms: bool = False
+    """Keep tangential components and friction history also at μ = 0."""
     deflected: bool = False
+    """Search contact again on deflected flanks."""
+    pitches: int = 1
+    """Base pitches that a sweep has."""
 
     def has_friction_terms(self, friction: float) -> bool:
-        """Whether tangential components and a memory are kept at this μ."""
+        """Whether tangential components and friction history are kept at this μ."""
         return friction > 0.0 or self.friction_terms
 
 
 @dataclass(frozen=True)
 class Preparation:
-    """A gear model and what it took: wall seconds of meshing and of condensing; its parts are summed over gears."""
+    """A gear model and what it took."""
 
     model: GearModel
+    """Condensed gears, ready for positions."""
     mesh_seconds: float
+    """Wall seconds of meshing."""
     seconds: float
+    """Wall seconds of condensing."""
 
     @property
     def assemble_seconds(self) -> float:
+        """Summed over both gears."""
         return sum(body.assemble_seconds for body in self.model.bodies)
 
     @property
     def condense_seconds(self) -> float:
+        """Summed over both gears."""
         return sum(body.condense_seconds for body in self.model.bodies)
 
 
 def prepare_model(
-    scene: Scene,
-    comm: MPI.Comm,
-    mesh: Callable[[Scene, Member], MeshData] | None = None,
+    problem: GearProblem,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    mesh: Mesher = gear_mesh,
     meshed: Callable[[], None] = lambda: None,
 ) -> Preparation:
-    """Meshes and condenses both gears of a scene. mesh: makes a gear's sector, by default `gear_mesh`. meshed: called
-    when both are meshed.
+    """Meshes and condenses both gears; all ranks of `comm` call it. meshed: called when both are meshed.
 
-    Raises MeshError, NotPositiveDefinite, OutOfMemory.
+    Raises MeshError, TooMuchRelief, NotPositiveDefinite, OutOfMemory.
     """
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
-    meshes = together(comm, lambda: {member: (mesh or gear_mesh)(scene, member) for member in own})
+    meshes = together(comm, lambda: {member: mesh(problem, member) for member in own})
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
-    teeth, pair = contact_teeth(scene), scene.gear_pair()
 
     def condensed(member: Member) -> GearBody:
-        gear, material, whole = pair.gears[member], scene.materials()[member], not skips(scene, "one-sector")
+        gear, material = problem.pair.gears[member], problem.materials[member]
         return condensed_gear(
-            gear, meshes[member], material, teeth, member, member == Member.PINION, whole=whole, threads=cores.used
-        )
+            gear, meshes[member], material, problem.contact_teeth, member, member is Member.PINION,
+            whole=problem.options.whole_gears, threads=cores.used,
+        )  # fmt: skip
 
     built = together(comm, lambda: {member: condensed(member) for member in own}, cores.lent)
     bodies = [shared(comm, built.pop(member, None), member % comm.size) for member in Member]
-    pinion, wheel = (_charted(body, scene.flank_chart(name)) for body, name in zip(bodies, GEARS))
-    load = GearLoad(_torque(scene), Member.named(scene.load.on))
+    pinion, wheel = (_charted(body, chart) for body, chart in zip(bodies, problem.flanks))
     model = GearModel(
-        pair, (pinion, wheel), tuple(teeth), load, window_half_width(scene),
-        friction_terms="friction-terms" in switched_off(scene), deflected="deflected-flanks" in switched_off(scene),
+        problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
+        problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
     )  # fmt: skip
     return Preparation(model, after_meshing - begin, time.perf_counter() - after_meshing)
+
+
+def gear_load(problem: GearProblem) -> GearLoad:
+    """The torque, per mm of face width where the problem is plane."""
+    return GearLoad(problem.torque / (problem.pair.face_width if problem.is_plane else 1.0), problem.torque_on)
 
 
 def _charted(body: GearBody, chart: FlankChart | None) -> GearBody:
     """The gear with its flank as charted."""
     return body if chart is None else replace(body, worn=chart.at(body.gear, body.roll_length, body.z))
-
-
-def _torque(scene: Scene) -> float:
-    """N·mm; per mm of face width where the scene is plane."""
-    return 1e3 * scene.load.torque_Nm / (scene.gear_pair().face_width if is_plane(scene) else 1.0)
-
-
-def window_half_width(scene: Scene) -> float:
-    """Half-width [mm of profile arc] of the window about a contact line: the same everywhere, for what deflection
-    brings into contact beyond the path of contact lies outside a window as narrow as Hertz's contact is there.
-    Infinite where the scene does without a window."""
-    if not skips(scene, "window"):
-        return float(np.inf)
-    estimate = scene.hertz_estimate()
-    ξ = np.linspace(*estimate.pair.path_of_contact, 50)
-    return WINDOW * float(np.max(estimate.half_width(ξ)))

@@ -1,4 +1,4 @@
-"""Two rotating frames: where the gears stand, and how their flanks slip over one another.
+"""Kinematics of a gear pair: the rotating frames of both gears, and the nominal slip of their flanks.
 
 The pinion turns by θ_1 = φ − ψ_1 + extra, the wheel by θ_2 = π − ψ_2 − φ z_1/z_2 + extra, ψ the half angle of the tooth
 on the working pitch circle, so that φ = 0 puts the flanks of tooth pair 0 at the pitch point in the mid-face section.
@@ -18,24 +18,24 @@ from evolvent_meshes.gears.pair import GearPair
 
 E_Z = np.array([0.0, 0.0, 1.0])
 
-ROUNDING = 1e-9  # of a step: a position so near the pitch crossing stands at it
+ROUNDING = 1e-9
+"""Distance from the pitch point, over the step of ξ, below which a position is taken as standing at it."""
 
 
 @dataclass(frozen=True)
 class Stand:
-    """Where both gears stand.
-
-    angle: nominal pinion rotation φ [rad]. extra: rotations [rad, about +z] of pinion and wheel beyond the nominal
-    ones, exact however large.
-    """
+    """The rotations of both gears."""
 
     pair: GearPair
+    """The gears' geometry."""
     angle: float
+    """Nominal pinion rotation φ [rad]."""
     extra: tuple[float, float] = (0.0, 0.0)
+    """Rotations of pinion and wheel beyond the nominal ones, about +z [rad]; finite, not linearised."""
 
     @property
     def turns(self) -> tuple[float, float]:
-        """(θ_1, θ_2) [rad] of the gears' own frames."""
+        """Rotations (θ_1, θ_2) of the gears' frames [rad]."""
         pinion, wheel = self.pair.gears
         d1, d2 = self.pair.working_pitch_diameters
         return (
@@ -44,7 +44,7 @@ class Stand:
         )
 
     def turned(self, gear: Member, δ: float) -> Stand:
-        """With δ [rad] added to the extra rotation of a gear."""
+        """The same with δ [rad] added to the extra rotation of a gear."""
         extra = list(self.extra)
         extra[gear] += δ
         return replace(self, extra=(extra[0], extra[1]))
@@ -54,12 +54,12 @@ class Stand:
         return np.array([self.pair.centre_distance if gear == Member.WHEEL else 0.0, 0.0, 0.0])[:d]
 
     def rotation(self, gear: Member, d: int, tooth: int = 0) -> Floats:
-        """(d, d) from the own frame of a gear's tooth i to the common one: pinion +2πi/z_1, wheel −2πi/z_2."""
+        """Rotation matrix (d, d) from the frame of a gear's tooth i, turned by ±2πi/z, to the common frame."""
         own = turn(self.turns[gear] + gear.sign * 2.0 * np.pi * tooth / self.pair.gears[gear].z, d)
         return own if d == 2 else self.tilt(gear) @ own
 
     def tilt(self, gear: Member) -> Floats:
-        """(3, 3) from a gear's aligned frame to where misalignment puts it; the pinion stays."""
+        """Rotation matrix (3, 3) of a gear's misalignment; that of the pinion is the identity."""
         return Rotation.from_rotvec(misalignment_rotation(self.pair)).as_matrix() if gear == Member.WHEEL else np.eye(3)
 
     def axis(self, gear: Member) -> Floats:
@@ -95,13 +95,16 @@ def spin(points: Floats, centre: Floats, axis: Floats = E_Z) -> Floats:
 
 
 def nominal_slip(rate: Floats, ξ_now: Floats, ξ_before: Floats, along: Floats, ratio: float, span: float) -> Floats:
-    """∫v_s over a step at the nominal ratio, per node (n, d) [mm].
+    """Slip ∫v_s dt over a step at the nominal ratio, per node (n, d) [mm].
 
-    rate: (n, d) relative velocity of 1 over 2 per radian of φ at the present position; ξ: roll distances of the node's
-    contact line (its slice of the pair) now and before; along: (n, d) unit tangent in which the velocity grows with ξ
-    by (1 + 1/u); ratio u; span Δφ. Where ξ changes sign in the step, slip counts from the pitch crossing: before it,
-    the flanks slipped the other way. Deciding that by slice, not by point, keeps a patch of one sign together. At the
-    crossing itself, to rounding, friction still has the old direction.
+    rate: (n, d) velocity of the pinion relative to the wheel per radian of φ at the present position [mm/rad].
+    ξ_now, ξ_before: (n,) roll distance of the contact line in the node's transverse slice [mm].
+    along: (n, d) unit tangent in which the velocity grows with ξ, by 1 + 1/u.
+    ratio: u. span: Δφ of the step [rad].
+
+    Where ξ changes sign within the step, slip counts from the pitch point on, because it reverses there. The sign is
+    that of the slice, not of the point, so that all points of a contact patch reverse together. At the pitch point
+    itself, to rounding, friction keeps its former direction.
     """
     step = ξ_now - ξ_before
     earlier = rate - (1.0 + 1.0 / ratio) * step[:, None] * along

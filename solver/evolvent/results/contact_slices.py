@@ -131,22 +131,3 @@ def tooth_summaries(result: PositionResult, cut: Slices) -> list[ToothSummary]:
         force = float(np.sum(result.contact.pressure[points] * result.contact.weights[points]))
         summaries.append(ToothSummary(int(tooth), force, peak, edge, float(cut.width[here].sum() / cos_b)))
     return summaries
-
-
-def balance_error(result: PositionResult) -> float:
-    """The larger of two ratios at a position: force residual over load, stored power over input power.
-
-    Stored power is no error by itself: deflected flanks are not conjugate, and where a tip edge bears, the strain
-    energy of the teeth changes by up to some hundredths of the input. Over a pitch it must cancel (`pitch_imbalance`).
-    """
-    return max(result.residual, abs(result.stored_power) / abs(result.torques[0]))
-
-
-def pitch_imbalance(results: Sequence[PositionResult]) -> float:
-    """|input − output − friction work| / input over equal steps of a whole pitch, at one friction coefficient.
-
-    After a pitch the teeth are deflected as before it, so no energy is stored. What remains is the error of normals
-    taken before deflection: it falls with the load, not with the mesh (7e-4 where the contact's half-width is 3 % of
-    the radius of curvature and tips bear; a fifteenth of that at a tenth of the load, and on deflected flanks).
-    """
-    return abs(sum(r.stored_power for r in results)) / sum(abs(r.torques[0]) for r in results)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.contact_slices import balance_error, pitch_imbalance
 from evolvent_meshes.errors import ResultError
 
 BALANCE_LIMIT = 1e-2

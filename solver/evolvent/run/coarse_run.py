@@ -9,13 +9,14 @@ coefficients, because each has its own history and its own error; with a shared 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
-from evolvent.gears.gear_model import prepare_model
+from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 from evolvent.results.archive.archive import gear_shape
@@ -23,15 +24,13 @@ from evolvent.results.archive.error_bar_data import kept_errors
 from evolvent.results.run_data import Companion, RunData, run_data
 from evolvent.run.context import RunContext
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.errors import EvolventError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
-Mesher = Callable[[Scene, Member], MeshData]
-"""Makes the sector mesh of a scene's pinion or wheel."""
 COARSENING = 2.0
 """Element size of the companion over that of the run."""
 LEAST_LAYERS = 2
@@ -84,9 +83,9 @@ def coarser(fine: SectorResolution) -> SectorResolution:
     )
 
 
-def companion_mesh(scene: Scene, member: Member) -> MeshData:
+def companion_mesh(problem: GearProblem, member: Member) -> MeshData:
     """The coarse sector of the pinion or the wheel. Raises MeshError."""
-    return gear_mesh(scene, member, adapted=coarser)
+    return gear_mesh(problem, member, adapted=coarser)
 
 
 def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:
@@ -94,7 +93,7 @@ def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunD
 
     Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite, OutOfMemory, on all ranks.
     """
-    model, frictions = prepare_model(scene, comm, mesh).model, scene.contact.friction
+    model, frictions = prepare_model(gear_problem(scene), comm, mesh).model, scene.contact.friction
     swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
 
     def assembled() -> RunData:

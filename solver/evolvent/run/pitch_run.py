@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from evolvent.gears.gear_model import Preparation
+from evolvent.gears.solution.certificates import PitchImbalance, balance_error, certify, certify_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import Archive, Meshes
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
-from evolvent.results.contact_slices import balance_error
-from evolvent.run.certificates import PitchImbalance, certify, certify_pitch
 from evolvent.run.context import RunContext
 from evolvent.run.progress import POSITIONS
 from evolvent.run.start import ResumePoint, checked_meshes, open_archive, prepare_gears, timings_of
+from evolvent.scene.gear_problem import gear_problem, shares_gears
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import pitches, skips, with_deflected_flanks
+from evolvent.scene.skips import with_deflected_flanks
 from evolvent_meshes.arrays import Floats
 
 
@@ -162,8 +162,7 @@ def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> 
 def friction_groups(scene: Scene) -> list[slice]:
     """The friction coefficients that share gears, search and compliance: all in one group, or each in its own."""
     count = len(scene.contact.friction)
-    shared = count == 1 or skips(scene, "reuse")
-    return [slice(0, count)] if shared else [slice(i, i + 1) for i in range(count)]
+    return [slice(0, count)] if shares_gears(scene) else [slice(i, i + 1) for i in range(count)]
 
 
 def _joined_groups(groups: Sequence[list[SweptPosition]]) -> Iterator[SweptPosition]:
@@ -175,7 +174,7 @@ def _joined_groups(groups: Sequence[list[SweptPosition]]) -> Iterator[SweptPosit
 
 def pitch_of(scene: Scene) -> Pitch:
     """The pinion rotations that a scene asks for."""
-    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, pitches(scene))
+    return uniform_pitch(scene.pinion.teeth, scene.sweep.positions, gear_problem(scene).pitches)
 
 
 def _log_line(position: SweptPosition) -> str:

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.meshing.modifications import modification_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -22,7 +23,7 @@ from evolvent.run.pitch_run import sweep_scene
 from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
 from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
 from evolvent.run.wear_run import wear_scene, write_wear
-from evolvent.scene.meshing.modifications import modification_warnings
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, switched_off, wanted_output
 
@@ -68,7 +69,7 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.info("skipped, %s: %s", skip.name, skip.sentence)
     for name in switched_off(scene):
         run.log.info("not skipped: %s", name)
-    for sentence in modification_warnings(scene):
+    for sentence in modification_warnings(gear_problem(scene)):
         run.log.warning(sentence)
 
 

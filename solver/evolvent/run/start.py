@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from evolvent.gears.gear_model import Preparation, prepare_model
+from evolvent.gears.meshing.sector_meshes import sector_meshes
 from evolvent.gears.sweep.periodic_pitch import transmission_errors
 from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
@@ -13,7 +14,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import SCENE_FILES, keep_scene
 from evolvent.run.context import RunContext
 from evolvent.run.progress import CONDENSING, MESHING
-from evolvent.scene.meshing.sector_meshes import sector_meshes
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import with_deflected_flanks
 from evolvent_meshes.arrays import Floats
@@ -67,7 +68,7 @@ def prepare_gears(run: RunContext, scene: Scene) -> Preparation:
         run.progress.stage(CONDENSING)
 
     run.progress.stage(MESHING)
-    preparation = prepare_model(scene, run.comm, meshed=meshed)
+    preparation = prepare_model(gear_problem(scene), run.comm, meshed=meshed)
     run.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     return preparation
 
@@ -80,7 +81,7 @@ def timings_of(preparation: Preparation) -> Timings:
 
 def checked_meshes(scene: Scene, archive: Archive) -> Meshes:
     """The meshes of the scene. Raises ArchiveError where the results in the archive belong to other meshes."""
-    meshes = sector_meshes(scene)
+    meshes = sector_meshes(gear_problem(scene))
     archive.check_gears(gear_shapes(meshes))
     return meshes
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
+from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive, Meshes
 from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
@@ -16,12 +17,12 @@ from evolvent.results.archive.scene_files import keep_scene
 from evolvent.results.drawing.picture_files import draw
 from evolvent.results.run_data import run_data
 from evolvent.results.tables.tables import summary, write_tables
-from evolvent.run.certificates import certify, certify_pitch
 from evolvent.run.context import RunContext
 from evolvent.run.output import facts_of, log_pictures
 from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.progress import CYCLES
 from evolvent.run.start import checked_meshes, clear, prepare_gears, timings_of
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import wanted_output
@@ -30,16 +31,11 @@ from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import StudyCheckpoint, StudyState, checkpoint_of, study_states
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent.wear.gears.pair_geometry import GearMeshMotion
+from evolvent.wear.gears.solver import FIRST_BLOCK, REFRESH
 from evolvent.wear.results.archive import read_checkpoint, worn_folder, write_checkpoint, write_pitch, write_worn
 from evolvent.wear.results.report import read_worn, write_report
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
-
-FIRST_BLOCK = 1e-2
-"""Default length of the first block, over all cycles."""
-REFRESH = 5e-3
-"""Default wear in modules at which the meshes follow. He's pair worn by 6 µm, 2e-3 modules, has the same depths within
-8e-4 of their volume (2.5e-3 with tip relief) whether its meshes follow every 0.5 µm or not at all."""
 
 
 def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
@@ -110,7 +106,7 @@ def mesh_motion_of(run: RunContext, scene: Scene) -> GearMeshMotion:
     given, module = scene.wear.refresh_um, scene.pair.normal_module_mm
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
-        model = prepare_model(scene, run.comm, lambda _, member: mesh(member)).model
+        model = prepare_model(gear_problem(scene), run.comm, lambda _, member: mesh(member)).model
         run.log.info("the meshes have followed the wear; both gears are condensed anew")
         return model
 

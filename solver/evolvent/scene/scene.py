@@ -9,15 +9,15 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 from pydantic import BaseModel, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from evolvent.fem.material import Material
-from evolvent.scene.csv_tables import TableError
-from evolvent.scene.estimates import HertzEstimate
-from evolvent.scene.flank_deviations import DEEPEST, FlankChart
+from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
+from evolvent.gears.problem.load_limits import LARGEST_DEFLECTION, NARROWEST_CONTACT, WIDEST_CONTACT
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
@@ -27,20 +27,13 @@ from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSect
 from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.schema.section import SceneSection, key
 from evolvent.scene.schema.wear import WearSection
+from evolvent_meshes.csv_tables import TableError
+from evolvent_meshes.gears.member import MemberName
 from evolvent_meshes.gears.pair import GearPair
 
 __all__ = ["Scene", "SceneError", "load_scene", "scene_from_text", "scene_from_values"]
 
-GearName = Literal["pinion", "wheel"]
-GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
-WIDEST_CONTACT = 0.2
-"""Largest Hertz half-width over the radius of curvature: beyond it neither Hertz' theory nor small strain holds."""
-NARROWEST_CONTACT = 1e-5
-"""Smallest Hertz half-width [mm]: a hundred times the distance within which a mesh merges points (`section.WELD`), and
-thirty atoms of iron."""
-LARGEST_DEFLECTION = 0.1
-"""Largest deflection of a tooth pair in modules, estimated with the whole load on one pair: of 112 random scenes below
-it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel gears stay far below."""
+GEARS: tuple[MemberName, MemberName] = ("pinion", "wheel")
 
 
 class Scene(SceneSection):
@@ -147,7 +140,7 @@ class Scene(SceneSection):
                 raise validation_error(InputProblem("skip.off", shown(self.skip.off), allowed, f"leave {name} out"))
         return self
 
-    def flank_chart(self, name: GearName) -> FlankChart | None:
+    def flank_chart(self, name: MemberName) -> FlankChart | None:
         """The measured or worn flank of a gear, None where the scene has none. Raises TableError."""
         given: GearSection = getattr(self, name)
         if given.flank_csv is None:

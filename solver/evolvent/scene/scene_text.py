@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from evolvent.scene.schema.errors import InputProblem, SceneError, dotted_part, shown
-from evolvent.scene.text_files import UnreadableText, read_text
+from evolvent_meshes.text_files import UnreadableText, read_text
 
 EXAMPLE = "demos/yang2022.toml is a complete example"
 LARGEST = 1

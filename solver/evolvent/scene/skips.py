@@ -1,7 +1,8 @@
-"""What a scene does not need, and is left out: a registry of skips, each with a name, a sentence and a tolerance.
+"""Parts of the computation that a scene does not need: a registry of skips, each with name, sentence and tolerance.
 
 A skip is automatic where it applies. `--no-skip NAME` (the key skip.off) computes what it leaves out the long way; the
-answer stays the same within the skip's tolerance. The code that skips asks `skips(scene, name)`.
+answer stays the same within the skip's tolerance. The registry is for what `check`, the log and summary.json say; code
+that computes is given options (gear_problem.py, `wanted_output`).
 """
 
 from __future__ import annotations
@@ -10,49 +11,40 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from evolvent.scene.scene import GEARS, Scene
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
 from evolvent.scene.schema.output import OutputSection, SkipName, SkipSection
 
 ROUND_OFF = 1e-8
-"""Of what differs by the order of sums and by what Newton's method leaves (residual 1e-10) only."""
+"""Tolerance where only the order of sums and the remainder of Newton's method (residual 1e-10) differ."""
 REPEATED = 1e-10
-"""Nothing is computed otherwise, but two runs differ by rounding as their arrays lie elsewhere (6e-12 was seen)."""
+"""Tolerance where nothing is computed differently: two runs differ by rounding, as their arrays lie elsewhere in
+memory (6e-12 was seen)."""
 
 
 @dataclass(frozen=True)
 class Skip:
-    """Something left out.
-
-    applies: whether the scene allows it. sentence: what is left out, for `check`, the log and summary.json. tolerance:
-    by how much the answer may differ from the long way's: transmission error, peak pressure, torques, and what is lost
-    of the input power, each over its largest value in the pitch.
-    """
+    """A part of the computation that may be left out."""
 
     name: SkipName
+    """As in docs/scene.md."""
     applies: Callable[[Scene], bool]
+    """Whether a scene can do without."""
     sentence: Callable[[Scene], str]
+    """What is left out, for `check`, the log and summary.json."""
     tolerance: float
+    """Largest difference from the result without the skip: of transmission error, peak pressure, torques and lost share
+    of the input power, each over its largest value in the pitch."""
 
 
 @dataclass(frozen=True)
 class Skipped:
-    """A skip that was made, as summary.json tells it."""
+    """A skip that was made, as in summary.json."""
 
     name: SkipName
     """As in docs/scene.md."""
     sentence: str
     """What is left out, in this scene."""
-
-
-def has_equal_sections(scene: Scene) -> bool:
-    """True if every transverse section is the same: a spur pair of one face width without lead variation."""
-    gears = scene.pinion, scene.wheel
-    charts = [scene.flank_chart(name) for name in GEARS]
-    varies = (
-        scene.pair.helix_angle_deg, scene.pair.misalignment_um, *(gear.lead_crowning_um for gear in gears),
-        *(chart is not None and chart.varies_over_the_face for chart in charts),
-    )  # fmt: skip
-    return not any(varies) and gears[0].face_width_mm == gears[1].face_width_mm
 
 
 def _always(_: Scene) -> bool:
@@ -74,6 +66,10 @@ def _sector_sentence(scene: Scene) -> str:
     return f"One sector of a gear is meshed and factored; it stands for all {count} teeth."
 
 
+def _teeth_sentence(scene: Scene) -> str:
+    return f"Teeth that cannot touch: {len(gear_problem(scene).touching_teeth)} pairs can, and their neighbours."
+
+
 def _reuse_sentence(scene: Scene) -> str:
     count = len(scene.contact.friction)
     return f"The stiffness is factored once a gear and reused for all {count} friction coefficients."
@@ -87,7 +83,7 @@ def _picture_sentence(scene: Scene) -> str:
 SKIPS: tuple[Skip, ...] = (
     Skip(
         "plane",
-        has_equal_sections,
+        lambda scene: gear_problem(scene).has_equal_sections,
         lambda _: "The third dimension: a spur pair without lead variation is solved in 2D plane strain.",
         # plane strain is the limit of a wide gear. The ends of a real face are free: there the teeth are softer by up
         # to ν² = 9 %, over a length of about a tooth's thickness
@@ -106,7 +102,7 @@ SKIPS: tuple[Skip, ...] = (
     Skip(
         "far-teeth",
         _always,
-        lambda scene: f"Teeth that cannot touch: {len(touching_teeth(scene))} pairs can, and their neighbours.",
+        _teeth_sentence,
         tolerance=ROUND_OFF,
     ),
     Skip(
@@ -157,7 +153,7 @@ SKIPS: tuple[Skip, ...] = (
     ),
 )
 OF_OUTPUT: tuple[SkipName, ...] = ("error-bars", "fields", "pictures")
-"""Skips that results do not depend on."""
+"""Skips of output, on which results do not depend."""
 
 
 def skip_named(name: SkipName) -> Skip:
@@ -166,59 +162,27 @@ def skip_named(name: SkipName) -> Skip:
 
 
 def skips(scene: Scene, name: SkipName) -> bool:
-    """Whether this is left out: the skip applies and is not switched off."""
+    """Whether a skip is made: it applies and is not switched off."""
     return name not in scene.skip.off and skip_named(name).applies(scene)
 
 
 def skipped(scene: Scene) -> list[Skipped]:
-    """What the scene does without."""
+    """The skips that are made."""
     return [Skipped(skip.name, skip.sentence(scene)) for skip in SKIPS if skips(scene, skip.name)]
 
 
 def switched_off(scene: Scene) -> list[SkipName]:
-    """The skips that would apply, but are computed the long way."""
+    """The skips that apply but are switched off."""
     return [skip.name for skip in SKIPS if skip.name in scene.skip.off and skip.applies(scene)]
 
 
 def with_deflected_flanks(scene: Scene) -> Scene:
-    """The same, with its flanks touching as they have deflected; as it is where that does not apply."""
+    """The scene that asks for deflected flanks, by which a run's files tell that they were needed; the same scene where
+    it does so already or where they do not apply."""
     if not skips(scene, "deflected-flanks"):
         return scene
     off = SkipSection(off=(*scene.skip.off, "deflected-flanks"))
     return scene.model_copy(update={"skip": off})
-
-
-def is_plane(scene: Scene) -> bool:
-    """Whether the scene is solved in 2D."""
-    return skips(scene, "plane")
-
-
-def pitches(scene: Scene) -> int:
-    """How many pitches are swept: one, or all that a tooth is in mesh."""
-    if skips(scene, "one-pitch"):
-        return 1
-    pair = scene.gear_pair()
-    return math.ceil(pair.engagement_angle * pair.pinion.z / (2 * math.pi))
-
-
-def touching_teeth(scene: Scene) -> range:
-    """The tooth pairs that can touch while the pinion turns from 0 by the pitches that are swept, rigid flanks."""
-    pair = scene.gear_pair()
-    last = pair.teeth_in_contact(0.0)
-    first = pair.teeth_in_contact(pitches(scene) * 2 * math.pi / pair.pinion.z)
-    return range(first[0], last[-1] + 1)
-
-
-def contact_teeth(scene: Scene) -> list[int]:
-    """The tooth pairs that are looked at: those that can touch and those that deflection may bring into contact; all
-    that the gears have where these are not skipped."""
-    teeth = touching_teeth(scene)
-    near = range(teeth[0] - 1, teeth[-1] + 2)
-    if skips(scene, "far-teeth"):
-        return list(near)
-    count = min(scene.pinion.teeth, scene.wheel.teeth)
-    first = (near[0] + near[-1]) // 2 - count // 2
-    return list(range(first, first + count))
 
 
 def wanted_output(scene: Scene) -> OutputSection:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from evolvent.wear.gears.gear_wear import GearWear as GearWear
     from evolvent.wear.gears.gear_wear import PitchState as PitchState
     from evolvent.wear.gears.pair_geometry import GearMeshMotion as GearMeshMotion
+    from evolvent.wear.gears.solver import wear_study as wear_study
+    from evolvent.wear.gears.solver import wearing_pair as wearing_pair
     from evolvent.wear.mesh_motion import MeshInverted as MeshInverted
     from evolvent.wear.mesh_motion import MeshVolumeLost as MeshVolumeLost
     from evolvent.wear.pin_on_disc import Coefficient as Coefficient

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
-from evolvent.scene.csv_tables import Column, TableError, read_columns, require_ascending
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.csv_tables import Column, TableError, read_columns, require_ascending
 
 DISTANCE = Column("sliding_distance", (("mm", 1.0), ("m", 1e3), ("km", 1e6)))
 DEPTH = Column("depth")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent.gears.gear_model import GearModel
-from evolvent.results.contact_slices import balance_error
+from evolvent.gears.solution.certificates import balance_error
 from evolvent.run.pitch_run import pitch_of
 from tests.support.gear_cases import helical_scene, model_of, swept
 

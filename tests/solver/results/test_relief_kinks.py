@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.contact_slices import fitted_peak
 from evolvent.results.error_bars.position_spacing import known_on_kinks
 from evolvent.results.relief_kinks import relief_kinks, wedge_factor
@@ -14,7 +15,6 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import scene_from_text
 from evolvent_meshes.arrays import Floats
 from tests.support.run_parts import GOOD

@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 from mpi4py import MPI
 
+from evolvent.gears.solution import certificates
+from evolvent.gears.solution.certificates import BalanceError, PitchImbalance
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.run import certificates, start
-from evolvent.run.certificates import BalanceError, PitchImbalance
+from evolvent.run import start
 from evolvent.run.context import RunContext, run_context
 from evolvent.run.pitch_run import ScenePitch, friction_groups, sweep_scene
 from evolvent.run.start import resume_point

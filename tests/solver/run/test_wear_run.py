@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.archive.archive import Archive
-from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of
-from evolvent.scene.skips import is_plane, skipped
+from evolvent.scene.skips import skipped
 from tests.support.abuses.malformed_scenes import MALFORMED
 from tests.support.checkout import ROOT
 from tests.support.scene_texts import DEMOS, HE, YANG, without
@@ -137,25 +138,25 @@ def test_coefficients_give_the_diameters() -> None:
 def test_resolution_follows_the_contact_width(level: str, elements: float) -> None:
     """Yang: as many elements as ∫ds/h wants with h = 2b/elements; at twice the torque 1/√2 of them."""
     scene = scene_from_text(YANG, [f"mesh.level={level}"])
-    assert elements_per_contact_width(scene) == elements
-    pinion, wheel = sector_resolutions(scene)
+    assert elements_per_contact_width(gear_problem(scene)) == elements
+    pinion, wheel = sector_resolutions(gear_problem(scene))
     assert 13.5 * elements <= pinion.profile_elements <= wheel.profile_elements <= 16.5 * elements
-    double, _ = sector_resolutions(scene_from_text(YANG, [f"mesh.level={level}", "load.torque_Nm=500"]))
+    double, _ = sector_resolutions(gear_problem(scene_from_text(YANG, [f"mesh.level={level}", "load.torque_Nm=500"])))
     assert double.profile_elements == pytest.approx(pinion.profile_elements / 2**0.5, abs=3)
 
 
 def test_elements_per_contact_width_replaces_that_of_the_level() -> None:
     """elements_per_contact_width replaces the level's."""
-    coarse, _ = sector_resolutions(scene_from_text(YANG, ["mesh.elements_per_contact_width=1"]))
+    coarse, _ = sector_resolutions(gear_problem(scene_from_text(YANG, ["mesh.elements_per_contact_width=1"])))
     assert coarse.profile_elements <= 18
 
 
 def test_spur_pairs_are_plane_unless_the_lead_varies() -> None:
     """He: 2D; with crowning, misalignment, a helix or unequal widths: 3D."""
-    assert is_plane(scene_from_text(HE))
+    assert gear_problem(scene_from_text(HE)).is_plane
     for override in ("wheel.lead_crowning_um=5", "pair.misalignment_um=-5", "wheel.face_width_mm=19"):
-        assert not is_plane(scene_from_text(HE, [override]))
-    assert not is_plane(scene_from_text(YANG))
+        assert not gear_problem(scene_from_text(HE, [override])).is_plane
+    assert not gear_problem(scene_from_text(YANG)).is_plane
     assert any("2D plane strain" in skip.sentence for skip in skipped(scene_from_text(HE)))
     assert not any(skip.name == "friction-terms" for skip in skipped(scene_from_text(YANG)))
 

@@ -16,16 +16,17 @@ from evidence.benchmarks.gears.skips import CASES, differences
 from evolvent.cli import main
 from evolvent.gears import gear_model
 from evolvent.gears.full_gear import WholeGear
+from evolvent.gears.meshing.sector_meshes import sector_meshes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.archive.archive import fingerprint
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
-from evolvent.scene.meshing.sector_meshes import sector_meshes
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
-from evolvent.scene.skips import SKIPS, contact_teeth, skip_named, skipped, switched_off
+from evolvent.scene.skips import SKIPS, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
 from tests.support.running.processes import Run
 
@@ -128,9 +129,9 @@ def histories(scene: Scene) -> int:
 
 
 COUNTED: dict[SkipName, tuple[tuple[str, ...], Callable[[Scene], int], int, int]] = {
-    "plane": (SPUR, lambda scene: sector_meshes(scene)[0].dimension, 2, 3),
+    "plane": (SPUR, lambda scene: sector_meshes(gear_problem(scene))[0].dimension, 2, 3),
     "one-pitch": ((SMOOTH,), lambda scene: len(pitch_of(scene).angles), 2, 4),
-    "far-teeth": ((SMOOTH,), lambda scene: len(contact_teeth(scene)), 4, 20),
+    "far-teeth": ((SMOOTH,), lambda scene: len(gear_problem(scene).contact_teeth), 4, 20),
 }
 """A skip, settings, what it changes, and that with the skip and without."""
 
@@ -168,7 +169,7 @@ def test_the_whole_gear_is_factored() -> None:
 def test_the_body_is_refined() -> None:
     """Without the skip the back flank has the loaded flank's elements, and the bore three times as many radially."""
     case = Case("coarse-body", SPUR)
-    short, long = (sector_meshes(case.scene(off))[0] for off in (False, True))
+    short, long = (sector_meshes(gear_problem(case.scene(off)))[0] for off in (False, True))
     assert len(long.facets["flank"]) == len(short.facets["flank"]) > len(short.facets["back"]) - 5
     assert len(long.facets["back"]) == len(long.facets["flank"]) + 15
     assert len(long.facets["cut_low"]) > 2.5 * len(short.facets["cut_low"])

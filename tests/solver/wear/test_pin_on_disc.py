@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit, main
-from evolvent.scene.csv_tables import TableError
 from evolvent.wear import PinOnDisc, Record, coefficient
+from evolvent_meshes.csv_tables import TableError
 
 K = 1.3832e-10  # mm²/N, He 2022
 HE = PinOnDisc(500.0, 6.0)

@@ -35,9 +35,9 @@ from evolvent.cli import main
 from evolvent.contact.newton.equilibrium import CondensedSystem
 from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.solution import certificates
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
 from evolvent.results.archive.archive import Archive
-from evolvent.run import certificates
 from evolvent_meshes import files
 
 

@@ -7,7 +7,7 @@ the displacements of the cut faces follow from the forces on all teeth, and one 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -21,8 +21,8 @@ from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.schema.output import SkipSection
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -98,8 +98,9 @@ class Deformation:
 def deformation_of(scene: Scene, archive: Archive, comm: MPI.Comm) -> Deformation | None:
     """Of the run in the archive, on rank 0; None on the others. All ranks must call it. Raises what preparing a model
     does, and ArchiveError."""
-    ways = SkipSection(off=tuple(name for name in scene.skip.off if name != "one-sector"))
-    bodies = prepare_model(scene.model_copy(update={"skip": ways}), comm).model.bodies
+    problem = gear_problem(scene)
+    one_sector = replace(problem, options=replace(problem.options, whole_gears=False))
+    bodies = prepare_model(one_sector, comm).model.bodies
 
     def made() -> Deformation:
         positions = archive.read_positions(scene.gear_pair())

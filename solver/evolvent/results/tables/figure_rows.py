@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from evolvent.results.contact_slices import ToothSummary, balance_error, pitch_imbalance
+from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
+from evolvent.results.contact_slices import ToothSummary
 from evolvent.results.engagement import Engagement, crossing, engagements
 from evolvent.results.error_bars.position_spacing import spacing_errors
 from evolvent.results.line_peaks import line_peak

@@ -9,15 +9,16 @@ from typing import NamedTuple
 
 from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.scene.checking.problem_size import counted, gigabytes, memory_megabytes, room_problem, sector_sizes
 from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.estimates import HertzEstimate
 from evolvent.scene.gear_pair import working_angle_of
-from evolvent.scene.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.schema.wear import WearSection
-from evolvent.scene.skips import is_plane, pitches, skipped, switched_off, touching_teeth
+from evolvent.scene.skips import skipped, switched_off
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 
@@ -211,18 +212,19 @@ def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:
 
 
 def _cost_rows(scene: Scene) -> list[Row]:
-    sectors, plane = sector_resolutions(scene), is_plane(scene)
-    layers = tuple("plane" if plane else counted(sector.face_elements) for sector in sectors)
+    problem = gear_problem(scene)
+    sectors = sector_resolutions(problem)
+    layers = tuple("plane" if problem.is_plane else counted(sector.face_elements) for sector in sectors)
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
-        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(scene)),
+        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem)),
         Row("elements along the loaded flank", "", "", tuple(counted(sector.profile_elements) for sector in sectors)),
         Row("layers over the face width", "", "", layers),
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
-        Row("tooth pairs that can touch", "", "", (str(len(touching_teeth(scene))),)),
+        Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
         Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),
         Row("friction coefficients at each", "", "", (str(len(scene.contact.friction)),)),
     ]
@@ -241,4 +243,4 @@ def _positions_name(scene: Scene) -> str:
 
 def positions_to_solve(scene: Scene) -> int:
     """Number of positions of the sweep."""
-    return pitches(scene) * scene.sweep.positions
+    return gear_problem(scene).pitches * scene.sweep.positions

@@ -10,12 +10,12 @@ from typing import Any
 from mpi4py import MPI
 
 from evolvent.fem.parallel.machine import machine_megabytes
-from evolvent.scene.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolutions
+from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolutions
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import SkipSection
-from evolvent.scene.skips import contact_teeth, is_plane, pitches, skips
 from evolvent_meshes.sector.section import SectorResolution
 
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
@@ -78,8 +78,9 @@ def sector_size(resolution: SectorResolution, order: int, plane: bool) -> Sector
 
 def sector_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
     """Sector sizes of (pinion, wheel)."""
-    plane = is_plane(scene)
-    pinion, wheel = (sector_size(each, scene.mesh.order, plane) for each in sector_resolutions(scene))
+    problem = gear_problem(scene)
+    order, plane = problem.mesh.order, problem.is_plane
+    pinion, wheel = (sector_size(each, order, plane) for each in sector_resolutions(problem))
     return pinion, wheel
 
 
@@ -88,14 +89,15 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
 
     One rank holds one gear's elimination beside the other gear's compliance, several ranks both eliminations at once.
     """
-    dimension = 2 if is_plane(scene) else 3
+    problem = gear_problem(scene)
+    dimension = 2 if problem.is_plane else 3
     sizes = pinion, _ = _factored_sizes(scene)
     first, second = (
         MEGABYTES_PER_DOF[dimension] * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts)
         for size in sizes
     )
     gears = first + second if ranks > 1 else max(first, second + _square_megabytes(pinion.flank))
-    far = 0 if skips(scene, "far-teeth") else 2 * len(contact_teeth(scene))
+    far = 2 * len(problem.contact_teeth) if problem.options.all_teeth else 0
     modes = min(MOST_MODES, max(size.cuts for size in sizes))
     ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
     return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
@@ -104,7 +106,7 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
 def result_count(scene: Scene) -> int:
     """Number of archived results: positions of all pitches at all friction coefficients and all reports of wear."""
     pairs = 1 if scene.wear is None else 1 + len(scene.wear.reports)
-    return pairs * pitches(scene) * scene.sweep.positions * len(scene.contact.friction)
+    return pairs * gear_problem(scene).pitches * scene.sweep.positions * len(scene.contact.friction)
 
 
 def results_megabytes(scene: Scene) -> float:
@@ -120,10 +122,10 @@ def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
 
 def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
     """Sizes of what is eliminated for (pinion, wheel): a sector, or the whole gear."""
-    pinion, wheel = sector_sizes(scene)
-    if skips(scene, "one-sector"):
+    problem, (pinion, wheel) = gear_problem(scene), sector_sizes(scene)
+    if not problem.options.whole_gears:
         return pinion, wheel
-    teeth = len(contact_teeth(scene))
+    teeth = len(problem.contact_teeth)
     return pinion.times(scene.pinion.teeth, teeth), wheel.times(scene.wheel.teeth, teeth)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from evolvent.scene.meshing.element_sizes import (
+from evolvent.gears.meshing.element_sizes import (
     STIFF_ELEMENTS,
     elements_per_contact_width,
     has_stiff_pinion,
     sector_resolutions,
 )
-from evolvent.scene.meshing.modifications import folding_warnings, modification_warnings
+from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 
 FEWEST_CELLS = 2.0
@@ -25,10 +26,11 @@ def scene_warnings(scene: Scene) -> tuple[str, ...]:
 
 
 def _expected(scene: Scene) -> Iterator[str]:
-    count = elements_per_contact_width(scene)
+    problem = gear_problem(scene)
+    count = elements_per_contact_width(problem)
     if count < FEWEST_CELLS:
         yield f"The contact will be about {count:.1f} elements wide; {few_cells()}"
-    if count < STIFF_ELEMENTS and has_stiff_pinion(scene):
+    if count < STIFF_ELEMENTS and has_stiff_pinion(problem):
         yield (
             "The pinion, which carries the pressure, is much stiffer than the wheel: with fewer than "
             f"{STIFF_ELEMENTS:g} elements across the contact single pressures may be several times too large; leave "
@@ -39,8 +41,8 @@ def _expected(scene: Scene) -> Iterator[str]:
             "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
             "falls to 1e-3 and below, and those of order 1 bend too little; hexahedra of order 2 are the better choice."
         )
-    yield from modification_warnings(scene)
-    yield from folding_warnings(scene, sector_resolutions(scene))
+    yield from modification_warnings(problem)
+    yield from folding_warnings(problem, sector_resolutions(problem))
 
 
 def few_cells() -> str:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
@@ -20,7 +21,6 @@ from evolvent.results.archive.archive import Archive, Meshes, gear_shapes, read_
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import keep_scene
 from evolvent.results.tables.tables import csv_text
-from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import trapezoid
 
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.scene.flank_deviations import FlankChart
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow

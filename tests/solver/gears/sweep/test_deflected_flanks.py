@@ -19,13 +19,13 @@ from evolvent.gears.contact.pair_contact import gear_contact
 from evolvent.gears.contact.search_window import placed_flanks
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
+from evolvent.gears.solution.certificates import pitch_imbalance
 from evolvent.gears.sweep import deflected_flanks
 from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_search import shared_position
-from evolvent.results.contact_slices import pitch_imbalance
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import model_of, spur_scene
 from tests.support.running.processes import BROKEN_RUN, Run, on_ranks

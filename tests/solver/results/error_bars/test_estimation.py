@@ -14,6 +14,8 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
 from evidence.benchmarks.accuracy.subdivision import halved
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.error_bar_data import (
     METHOD,
@@ -31,7 +33,7 @@ from evolvent.run import coarse_run
 from evolvent.run.coarse_run import coarser, companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -84,7 +86,7 @@ def test_bars_shrink_with_the_mesh() -> None:
     assert ratio["transmission_error_peak_to_peak_um"] < 0.25 and ratio["secant_stiffness_N_per_mm_um"] < 0.25, ratio
 
 
-def finer_mesh(scene: Scene, member: Member) -> MeshData:
+def finer_mesh(problem: GearProblem, member: Member) -> MeshData:
     def twice(own: SectorResolution) -> SectorResolution:
         counts = (
             "profile_elements", "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements",
@@ -92,7 +94,7 @@ def finer_mesh(scene: Scene, member: Member) -> MeshData:
         doubled: dict[str, Any] = {name: 2 * getattr(own, name) for name in counts}
         return replace(own, **doubled, layer_depths=tuple(0.5 * depth for depth in own.layer_depths))
 
-    return gear_mesh(scene, member, adapted=twice)
+    return gear_mesh(problem, member, adapted=twice)
 
 
 def solved(scene: Scene, mesh: coarse_run.Mesher) -> RunData:
@@ -165,7 +167,7 @@ def test_coarser_halves_all_directions() -> None:
 def test_halved_keeps_the_body() -> None:
     """Exact: four times the cells and twice the facets of each group; the old nodes are nodes still."""
     scene = spur_scene("mesh.level=quick")
-    own = gear_mesh(scene, Member.PINION)
+    own = gear_mesh(gear_problem(scene), Member.PINION)
     fine = halved(own)
     assert len(fine.cells) == 4 * len(own.cells)
     assert {n: len(f) for n, f in fine.facets.items()} == {n: 2 * len(f) for n, f in own.facets.items()}

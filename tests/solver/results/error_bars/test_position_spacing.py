@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import hit_rate
 from evidence.benchmarks.accuracy.spacing import PLASTIC, SpacingProblem, measure_spacing
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import added
 from evolvent.results.drawing.style import styled
 from evolvent.results.error_bars.estimation import errors_between, estimated_errors
@@ -32,7 +33,6 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import SPACING_SAID, warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.scene import load_scene
 from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run

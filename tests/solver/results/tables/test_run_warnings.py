@@ -10,6 +10,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.cli import Exit, main
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.mesh_facts import MeshFacts, cells_across
@@ -19,7 +20,6 @@ from evolvent.results.tables.run_warnings import warnings_of
 from evolvent.results.tables.tables import summary, write_tables
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.scene.plain_text import brief
 from tests.support.gear_cases import spur_scene
 from tests.support.run_parts import FACTS, GOOD

@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 
 from evolvent.cli import main
+from evolvent.gears.meshing.element_sizes import sector_resolutions
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.scene.checking import problem_size
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_size, sector_sizes
-from evolvent.scene.meshing.element_sizes import sector_resolutions
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
@@ -42,7 +43,7 @@ def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str,
     off = ['skip.off=["coarse-body"]'] if long_way else []
     scene = make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off)
     for member, found in zip(Member, sector_sizes(scene)):
-        mesh = gear_mesh(scene, member)
+        mesh = gear_mesh(gear_problem(scene), member)
         flank, low, high = (len(np.unique(mesh.facets[name])) for name in ("flank", "cut_low", "cut_high"))
         exact = np.array([len(mesh.points), flank, low + high]) * mesh.dimension
         assert [found.dofs, found.flank, found.cuts] == exact.tolist()
@@ -53,7 +54,7 @@ def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str,
 def test_section_size_is_that_of_the_mesh(name: str, level: str) -> None:
     """Exact for the papers' pairs at every level, counted on the second-order section."""
     scene = load_scene(ROOT / f"demos/{name}.toml", [f"mesh.level={level}"])
-    for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(scene), strict=True):
+    for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(gear_problem(scene)), strict=True):
         section, found = section_mesh(gear, resolution), sector_size(resolution, 2, plane=True)
         nodes = len(section.points), *(len(np.unique(section.edges[edge])) for edge in ("flank", "cut_low"))
         assert [found.dofs, found.flank, found.cuts] == [2 * nodes[0], 2 * nodes[1], 4 * nodes[2]]
@@ -161,7 +162,7 @@ def test_commands_refuse_a_mesh_that_does_not_fit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     """Status 2 before a mesh is made, nothing written; --force goes on."""
-    monkeypatch.setattr("evolvent.scene.meshing.sector_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
+    monkeypatch.setattr("evolvent.gears.meshing.sector_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
     machine(200.0)
     out = str(tmp_path / ("out" if command == "run" else "pair.msh"))
     arguments = [command, str(ROOT / "demos/yang2022.toml"), "--out", out]
@@ -185,7 +186,7 @@ def test_force_computes_a_mesh_that_does_not_fit(
 
     machine(200.0)
     monkeypatch.setattr("evolvent.run.scene_run.run_scene", begin)
-    monkeypatch.setattr("evolvent.scene.meshing.sector_meshes.standing_pair", begin)
+    monkeypatch.setattr("evolvent.gears.meshing.sector_meshes.standing_pair", begin)
     with pytest.raises(Begun):
         main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])
 

@@ -7,9 +7,9 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.contact.hertz import line_pressure
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
-from evolvent.scene.meshing.sector_meshes import gear_mesh
 from evolvent.wear.gears.flank_grid import line_arc
 from evolvent.wear.results.mesh_passage import (
     ContactProfile,

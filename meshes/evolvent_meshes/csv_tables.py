@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from evolvent.scene.text_files import UnreadableText, read_text
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.text_files import UnreadableText, read_text
 
 LARGEST_FILE = 20
 """Largest size of a table [MB]."""

@@ -1,4 +1,4 @@
-"""How fine the sectors of a scene are meshed, and how large that makes them: element sizes from the Hertz width."""
+"""How finely the sectors of a gear pair are meshed: element sizes from the Hertz width."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import trapezoid
 
-from evolvent.scene.estimates import HertzEstimate
-from evolvent.scene.scene import Scene
-from evolvent.scene.skips import is_plane, skips
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -41,43 +40,42 @@ NECK = 0.8
 """Cells from the flank start to the middle of the fillet, and how many modules they cover at most: they grow from the
 thin layers' depth, twofold at most."""
 CORE_AND_RIM = {True: (6, 6), False: (4, 4)}
-"""Coarse columns of a tooth and rows of the rim, by whether the scene is plane. Error of the transmission error of He's
-spur pair at quick, standard and fine, against 12 and 16: 0.04, 0.05, 0.09 % with 6 and 6; 0.16, 0.19, 0.29 % with 4 and
-4; 0.29, 0.40, 0.72 % with 2 and 4. In space the rows of the rim cost most: the cut faces are condensed densely."""
+"""Coarse columns of a tooth and rows of the rim, by whether the problem is plane. Error of the transmission error of
+He's spur pair at quick, standard and fine, against 12 and 16: 0.04, 0.05, 0.09 % with 6 and 6; 0.16, 0.19, 0.29 % with
+4 and 4; 0.29, 0.40, 0.72 % with 2 and 4. In space the rows of the rim cost most: the cut faces are condensed
+densely."""
 FORE_LAND = 1.2
 """The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
 
 
-def elements_per_contact_width(scene: Scene) -> float:
-    """Elements across 2b: the scene's override, or the level's; more on a pinion much stiffer than its wheel."""
-    own = scene.mesh.elements_per_contact_width
-    if own is not None:
-        return own
-    return max(ELEMENTS_PER_WIDTH[scene.mesh.level], STIFF_ELEMENTS if has_stiff_pinion(scene) else 0.0)
+def elements_per_contact_width(problem: GearProblem) -> float:
+    """Elements across 2b: as given, or the level's; more on a pinion much stiffer than its wheel."""
+    given = problem.mesh.elements_per_contact_width
+    if given is not None:
+        return given
+    return max(ELEMENTS_PER_WIDTH[problem.mesh.level], STIFF_ELEMENTS if has_stiff_pinion(problem) else 0.0)
 
 
-def has_stiff_pinion(scene: Scene) -> bool:
-    """Whether the pinion is `STIFF_PINION` times as stiff as the wheel."""
-    pinion, wheel = scene.materials()
+def has_stiff_pinion(problem: GearProblem) -> bool:
+    """Whether the pinion, which carries the pressure, is much stiffer than its wheel."""
+    pinion, wheel = problem.materials
     return pinion.plane_modulus > STIFF_PINION * wheel.plane_modulus
 
 
-def sector_resolutions(scene: Scene) -> tuple[SectorResolution, SectorResolution]:
+def sector_resolutions(problem: GearProblem) -> tuple[SectorResolution, SectorResolution]:
     """(pinion's, wheel's) resolution; see `sector_resolution`."""
-    estimate = scene.hertz_estimate()
-    pinion, wheel = (sector_resolution(scene, estimate, member) for member in Member)
-    return pinion, wheel
+    return sector_resolution(problem, Member.PINION), sector_resolution(problem, Member.WHEEL)
 
 
-def sector_resolution(scene: Scene, estimate: HertzEstimate, member: Member) -> SectorResolution:
+def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     """The resolution of the pinion's or the wheel's sector.
 
     Along the profile the elements are h = 2b/n long with the local half-width b: ∫ds/h of them, with ds = ρ/r_b dρ the
     arc of the involute. A layer of length L shears the contact line by s = L tan β_b ρ/r_b along the profile; s/h is
     held at what the level allows, on average over the path of contact.
     """
-    gear, level = estimate.pair.gears[member], scene.mesh.level
-    count = elements_per_contact_width(scene)
+    estimate, gear, level = problem.hertz_estimate, problem.pair.gears[member], problem.mesh.level
+    count = elements_per_contact_width(problem)
     width = _ContactWidth(estimate, member)
     start = _flank_start(gear, width)
     roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
@@ -86,7 +84,7 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, member: Member) -> 
     depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
     depths *= min(1.0, DEEPEST * gear.normal_module / float(depths.sum()))
     more = _neck_elements(float(depths.sum()) / gear.normal_module) - LEAST_NECK
-    core, rim = CORE_AND_RIM[is_plane(scene)]
+    core, rim = CORE_AND_RIM[problem.is_plane]
     resolution = SectorResolution(
         profile_elements=3 * max(LEAST_ROWS, math.ceil(along / 3)),
         face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][member])),
@@ -99,11 +97,11 @@ def sector_resolution(scene: Scene, estimate: HertzEstimate, member: Member) -> 
         core_elements=core,
         rim_elements=rim,
     )
-    return resolution if skips(scene, "coarse-body") else _fine_everywhere(resolution)
+    return _fine_everywhere(resolution) if problem.options.fine_body else resolution
 
 
 def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
-    """The back flank like the loaded one, and three times as many elements in all the rest."""
+    """The back flank meshed as the loaded one, three times as many elements elsewhere."""
     return replace(
         resolution,
         fine_back=True,
@@ -116,12 +114,12 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
 
 
 def _neck_elements(depth: float) -> int:
-    """Cells n that reach down the neck, the first 2 and the last at most 2ⁿ depths [modules] of the layers long."""
+    """Cells n that cover the neck, each at most twice as long as the one above. depth: of the thin layers [modules]."""
     return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (FIRST_CELL_ASPECT * depth))))
 
 
 class _ContactWidth:
-    """2b [mm] along one gear's profile; outside the path of contact that of its nearest end."""
+    """Hertz width 2b [mm] along one gear's profile; beyond the path of contact that of its nearest end."""
 
     def __init__(self, estimate: HertzEstimate, member: Member) -> None:
         self.estimate, self.member, self.gear = estimate, member, estimate.pair.gears[member]

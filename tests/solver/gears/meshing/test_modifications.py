@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit, main
+from evolvent.gears.meshing.modifications import POINTS, POSITIONS, bearing
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.meshing.modifications import POINTS, POSITIONS, bearing
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.pair import GearPair
@@ -37,7 +37,7 @@ def mean_share(pair: GearPair, single: float, power: float) -> float:
     return single * float(np.sum(pairs ** (1.0 - power)) / np.sum(pairs))
 
 
-def test_flanks_as_designed() -> None:
+def test_all_contact_lines_of_designed_flanks_bear() -> None:
     """Without modifications all lines bear, alike; half of them each where two pairs touch."""
     pair = spur_scene().gear_pair()
     found = bearing(pair, FORCE, STIFFNESS)
@@ -46,7 +46,7 @@ def test_flanks_as_designed() -> None:
 
 
 @pytest.mark.parametrize("times", [20.0, 100.0])
-def test_misalignment(times: float) -> None:
+def test_bearing_share_of_misaligned_flanks(times: float) -> None:
     """f = 20 δ0 and 100 δ0 of one pair: shares 0.316 and 0.141; the end of the face gives way by share times f."""
     pair = spur_scene().gear_pair()
     δ0 = FORCE / STIFFNESS / pair.face_width
@@ -57,7 +57,7 @@ def test_misalignment(times: float) -> None:
 
 
 @pytest.mark.parametrize("times", [12.0, 100.0])
-def test_crowning(times: float) -> None:
+def test_bearing_share_of_crowned_flanks(times: float) -> None:
     """C_b = 12 δ0 and 100 δ0 of one pair: shares 0.5 and 0.247."""
     pair = spur_scene().gear_pair()
     δ0 = FORCE / STIFFNESS / pair.face_width
@@ -67,7 +67,7 @@ def test_crowning(times: float) -> None:
     assert found.share == pytest.approx(wanted, abs=1.0 / POINTS)
 
 
-def test_light_load_leaves_what_is_not_relieved() -> None:
+def test_bearing_share_of_relieved_tips_at_a_light_load() -> None:
     """Tip relief that no load closes: the share of the path of contact where neither flank is relieved."""
     scene = spur_scene("pinion.tip_relief_um=50", "load.torque_Nm=1")
     pair = scene.gear_pair()
@@ -84,13 +84,15 @@ def test_light_load_leaves_what_is_not_relieved() -> None:
     (("load.torque_Nm=5", "pair.misalignment_um=3", "wheel.lead_crowning_um=2"),
      "pair.misalignment_um = 3 and wheel.lead_crowning_um = 2", 48),
 ])  # fmt: skip
-def test_said(settings: tuple[str, ...], key: str, share: int) -> None:
+def test_warning_names_the_modification_that_keeps_flanks_apart(
+    settings: tuple[str, ...], key: str, share: int
+) -> None:
     """The figure that does it, and what it does; several where only together they do."""
     text = said(*settings)
     assert f"{key} (µm): the flanks bear on about {share} %" in text
 
 
-def test_usual_figures_are_not_warned_of() -> None:
+def test_usual_modifications_are_not_warned_of() -> None:
     """What designers give at the nominal load: reliefs near the deflection, some micrometres over the face."""
     for name in ("he2022", "yang2022", "zhang2023", "first_pair"):
         assert "bear on" not in said("mesh.level=standard", name=name)
@@ -98,14 +100,14 @@ def test_usual_figures_are_not_warned_of() -> None:
     assert "bear on" not in said(*usual)
 
 
-def test_what_may_fold_is_said_by_check() -> None:
+def test_check_warns_of_a_relief_that_may_fold_the_mesh() -> None:
     """A relief that `run` refuses because it folds the mesh is named before."""
     text = overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=500"]))
     assert "The mesh may fold, which `run` then refuses: pinion.tip_relief_um: found 500" in text
     assert "fold" not in overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=20"]))
 
 
-def test_run_says_it_before_it_computes(
+def test_run_warns_of_modifications_before_it_computes(
     tmp_path: object, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The warning comes first: with 1 mm of misalignment three minutes of searching ended without a result."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 import pytest
 from mpi4py import MPI
 
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.checking.scene_warnings import scene_warnings
-from evolvent.scene.meshing.element_sizes import elements_per_contact_width
-from evolvent.scene.meshing.sector_meshes import gear_mesh
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import scene_from_text
 
 SPUR = """
@@ -41,18 +42,20 @@ positions = 12
         ((210.0, 3.0), 2.0, 2.0),
     ],
 )
-def test_stiff_pinion(moduli: tuple[float, float], own: float | None, elements: float) -> None:
+def test_stiff_pinion_has_three_elements_across_the_contact(
+    moduli: tuple[float, float], own: float | None, elements: float
+) -> None:
     """Level quick, 1.7 elements across: 3 where the pinion is more than five times as stiff as the wheel; what the
     scene says holds, with a warning."""
     sets = [f"material.{gear}.E_GPa={E}" for gear, E in zip(("pinion", "wheel"), moduli)]
     sets += [] if own is None else [f"mesh.elements_per_contact_width={own}"]
     scene = scene_from_text(SPUR, sets)
-    assert elements_per_contact_width(scene) == elements
+    assert elements_per_contact_width(gear_problem(scene)) == elements
     said = any("softer gear the pinion" in sentence for sentence in scene_warnings(scene))
     assert said == (own is not None)
 
 
-def test_a_plastic_wheel() -> None:
+def test_pressure_on_a_plastic_wheel_is_that_of_hertz() -> None:
     """Problem: a steel pinion on a wheel of 3 GPa, ν = 0.4, 15 N·m, without friction. Exact: Hertz where one pair
     carries the whole load, 66.0 MPa at the pitch point; within 8 %, with 1.7 elements 223 MPa were found."""
     scene = scene_from_text(SPUR, ["material.wheel.E_GPa=3", "material.wheel.nu=0.4", "contact.friction=0"])

@@ -1,4 +1,4 @@
-"""The sector meshes of a scene: of each gear in its own frame, and both standing as they mesh, to be looked at."""
+"""The sector meshes of a gear pair: each in its gear's own frame, and both in place as the gears mesh."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from evolvent.scene.meshing.element_sizes import sector_resolutions
-from evolvent.scene.meshing.modifications import too_much_relief
-from evolvent.scene.scene import Scene
-from evolvent.scene.schema.errors import SceneError
-from evolvent.scene.skips import is_plane
+from evolvent.gears.meshing.element_sizes import sector_resolutions
+from evolvent.gears.meshing.modifications import too_much_relief
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import nominal_angles
 from evolvent_meshes.gears.member import Member
@@ -30,31 +28,27 @@ FACET_OF = {
 }
 
 
-def sector_meshes(scene: Scene, plane: bool | None = None) -> tuple[MeshData, MeshData]:
-    """(pinion's, wheel's) sector in its own frame [mm], with the scene's cells and order.
-
-    plane: mesh the mid-face sections only; by default where `is_plane` says so. Raises MeshError.
-    """
-    return gear_mesh(scene, Member.PINION, plane), gear_mesh(scene, Member.WHEEL, plane)
+def sector_meshes(problem: GearProblem) -> tuple[MeshData, MeshData]:
+    """(pinion's, wheel's) sector in its own frame [mm]; of a plane problem the mid-face section. Raises MeshError."""
+    return gear_mesh(problem, Member.PINION), gear_mesh(problem, Member.WHEEL)
 
 
 def gear_mesh(
-    scene: Scene, member: Member, plane: bool | None = None, adapted: Adaption = lambda own: own
+    problem: GearProblem, member: Member, adapted: Adaption = lambda resolution: resolution
 ) -> MeshData:
-    """One of the `sector_meshes`: the pinion's or the wheel's; `adapted` may change its resolution.
+    """The sector of the pinion or the wheel. adapted: changes its resolution.
 
-    Raises MeshError, and SceneError where it is the flank's modification that folds the cells.
+    Raises MeshError, and TooMuchRelief where the flank's modification folds the cells.
     """
-    flat = is_plane(scene) if plane is None else plane
-    shape = PLANE_SHAPE[scene.mesh.shape] if flat else scene.mesh.shape
-    resolution = adapted(sector_resolutions(scene)[member])
+    shape = PLANE_SHAPE[problem.mesh.shape] if problem.is_plane else problem.mesh.shape
+    resolution = adapted(sector_resolutions(problem)[member])
     try:
-        mesh = sector_mesh(scene.gear_pair().gears[member], resolution, shape)
+        mesh = sector_mesh(problem.pair.gears[member], resolution, shape)
     except MeshError as error:
-        if problem := too_much_relief(scene, member, resolution):
-            raise SceneError([problem]) from error
+        if reason := too_much_relief(problem, member, resolution):
+            raise reason from error
         raise
-    return mesh if scene.mesh.order == 2 else linear(mesh)
+    return mesh if problem.mesh.order == 2 else linear(mesh)
 
 
 def linear(mesh: MeshData) -> MeshData:
@@ -66,13 +60,13 @@ def linear(mesh: MeshData) -> MeshData:
     return MeshData(mesh.points[used], mesh.shape, 1, first.reshape(cells.shape), renumbered, dict(mesh.volumes))
 
 
-def standing_pair(scene: Scene) -> MeshData:
-    """Both sectors in one mesh in space at φ = 0, tooth pair 0 touching at the pitch point.
+def standing_pair(problem: GearProblem) -> MeshData:
+    """Both sectors in place at φ = 0 as one mesh, tooth pair 0 touching at the pitch point.
 
     Groups: pinion_tooth, pinion_flank, ..., wheel_tooth, ... Raises MeshError.
     """
-    pair = scene.gear_pair()
-    first, second = sector_meshes(scene)
+    pair = problem.pair
+    first, second = sector_meshes(problem)
     angles = nominal_angles(pair, 0.0)
     centre = np.array([pair.centre_distance, 0.0, 0.0])
     points = [_turned(first, float(angles[0])), _turned(second, float(angles[1])) + centre]

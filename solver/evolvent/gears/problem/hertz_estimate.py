@@ -1,4 +1,4 @@
-"""What can be said of a gear pair before it is computed: Hertz on the nominal contact lines.
+"""Estimates of a gear pair before it is solved: Hertz contact on the nominal contact lines.
 
 The estimates are frictionless and spread the load evenly over the contact lines of rigid flanks.
 """
@@ -18,17 +18,29 @@ from evolvent_meshes.gears.pair import GearPair
 TOOTH_STIFFNESS = 14.0
 """c' of a steel tooth pair [N/(mm µm)], ISO 6336-1; each tooth has twice that, in proportion to its modulus."""
 STEEL_MODULUS = 206e3
+"""Young's modulus of that steel [MPa]."""
+
 
 @dataclass(frozen=True)
 class HertzEstimate:
-    """Hertz contact along the path of contact.
+    """Hertz contact along the path of contact, frictionless, the load spread evenly over the contact lines.
 
-    modulus E* [MPa]; pinion_torque [N·mm].
+    Examples:
+        >>> from evolvent.gears import GearPair, GearParameters, Material
+        >>> gear = GearParameters.from_rack(z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0,
+        ...                                 bore_diameter=70.0)
+        >>> steel = Material(210e3, 0.3)
+        >>> estimate = HertzEstimate.of(GearPair(gear, gear, centre_distance=150.0), (steel, steel), 170e3)
+        >>> print(f"{estimate.normal_force:.0f} N, {float(estimate.half_width(0.0)):.3f} mm")
+        2412 N, 0.099 mm
     """
 
     pair: GearPair
+    """The gears' geometry."""
     modulus: float
+    """Contact modulus E* [MPa]."""
     pinion_torque: float
+    """[N·mm]."""
 
     @classmethod
     def of(cls, pair: GearPair, materials: tuple[Material, Material], pinion_torque: float) -> HertzEstimate:
@@ -45,11 +57,11 @@ class HertzEstimate:
     @property
     def line_lengths(self) -> tuple[float, float, float]:
         """Shortest, mean and longest total contact line over a pitch [mm]."""
-        lengths = [self.pair.contact_line_length(rotation) for rotation in self._telling_rotations()]
+        lengths = [self.pair.contact_line_length(rotation) for rotation in self._extreme_rotations()]
         mean = self.pair.transverse_contact_ratio * self.pair.face_width / math.cos(self.pair.pinion.base_helix_angle)
         return min(lengths), mean, max(lengths)
 
-    def _telling_rotations(self) -> Floats:
+    def _extreme_rotations(self) -> Floats:
         """Pinion rotations between which the line length is linear (helical) or constant (spur)."""
         pinion, pitch = self.pair.pinion, self.pair.pinion.transverse_base_pitch
         reach = self.pair.face_width / 2 * math.tan(pinion.base_helix_angle)
@@ -68,9 +80,11 @@ class HertzEstimate:
         return line_peak_pressure(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 
     def wear_per_cycle(self, pinion: float, wheel: float) -> tuple[float, float]:
-        """Depth [mm] that a revolution of the pinion takes off pinion and wheel where it is most, K/H [mm²/N] of both:
+        """Largest worn depth of pinion and wheel per revolution of the pinion [mm], from the K/H of both [mm²/N].
+
         (K/H)(F/L)|1 − v_2/v_1| (He et al. 2022, Eq. 24 without its 4/π) at the ends of the path of contact, with the
-        mean line length."""
+        mean line length.
+        """
         load = self.normal_force / self.line_lengths[1]
         slides = [float(np.abs(ζ).max()) for ζ in self.pair.specific_sliding(self.pair.path_of_contact)]
         return pinion * load * slides[0], wheel * load * slides[1] / self.pair.ratio

@@ -1,4 +1,4 @@
-"""A flank as it was measured, or as wear has left it: a chart of profile and lead in a CSV file.
+"""Deviations of a measured or worn flank from the designed one: a chart over profile and face width, as a CSV file.
 
     diameter_mm,z_mm,depth_um
     144.2,-10.0,0.3
@@ -19,29 +19,35 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from evolvent.scene.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.gears.gear import GearParameters
 
 DIAMETER, HEIGHT = Column("diameter", (("mm", 1.0),)), Column("z", (("mm", 1.0),))
 DEPTH = Column("depth")
-SAME = 1e-6  # mm: diameters or heights that are one
-DEEPEST = 0.1  # modules: more is no flank any more, or other units
-WIDEST = 1.5  # tip diameters: a chart beyond is of another gear
+SAME = 1e-6
+"""Diameters or heights that differ by less are one [mm]."""
+DEEPEST = 0.1
+"""Largest depth [modules]: more is no flank any more, or another unit."""
+WIDEST = 1.5
+"""Largest diameter [tip diameters]: beyond it a chart is of another gear."""
 
 
 @dataclass(frozen=True)
 class FlankChart:
-    """depth (k, l) [mm] at diameters (k,) and heights (l,) [mm], both ascending; one height: the same over the face."""
+    """Depth of material missing from the designed flank, on a grid."""
 
     diameters: Floats
+    """(k,) ascending [mm]."""
     heights: Floats
+    """(l,) ascending, from mid-face [mm]; a single one: the same over the face."""
     depth: Floats
+    """(k, l) normal to the flank; negative where there is more material [mm]."""
 
     @staticmethod
     def read(path: Path) -> FlankChart:
-        """From a CSV file; read once while it stays as it is. Raises TableError where it cannot be read or its points
-        are no grid."""
+        """From a CSV file, which is read again only after it has changed. Raises TableError where it cannot be read or
+        its points are no grid."""
         try:
             state = path.stat()
         except (OSError, ValueError) as error:  # ValueError: the path has a NUL
@@ -52,7 +58,7 @@ class FlankChart:
 
     @staticmethod
     def parsed(path: Path) -> FlankChart:
-        """See read."""
+        """From a CSV file, read anew; see `read`."""
         wanted = (DIAMETER, DEPTH, HEIGHT) if has_column(path, HEIGHT) else (DIAMETER, DEPTH)
         d, h, *rest = read_columns(path, wanted)
         z = rest[0] if rest else np.zeros_like(d)
@@ -74,8 +80,10 @@ class FlankChart:
         return bool(np.ptp(self.depth, axis=1).max() > 0.0)
 
     def checked(self, path: Path, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
-        """The chart from the base circle on, if it covers the diameters `active` [mm] of a gear's contact, and is of
-        its size. Raises TableError."""
+        """The chart from the base circle on. active: diameters of a gear's active flank [mm], which it has to cover.
+
+        Raises TableError where it does not, or is of another size than the gear.
+        """
         low, high = active
         slack = 0.02 * (high - low)
         if self.diameters[0] > low + slack or self.diameters[-1] < high - slack:
@@ -126,12 +134,12 @@ class FlankChart:
 
 @lru_cache(maxsize=4)
 def _read(path: Path, changed: int, size: int) -> FlankChart:
-    """See FlankChart.read; changed, size: of the file, so that another one in its place is read anew."""
+    """See FlankChart.read. changed, size: of the file, so that a changed one is read again."""
     return FlankChart.parsed(path)
 
 
 def _levels(values: Floats) -> tuple[Floats, np.ndarray]:
-    """Ascending different values, and which of them each is."""
+    """Different values, ascending, and the index of each value among them (n,)."""
     order = np.argsort(values)
     new = np.concatenate([[False], np.diff(values[order]) > SAME])
     which = np.empty(len(values), dtype=np.int64)
@@ -140,5 +148,5 @@ def _levels(values: Floats) -> tuple[Floats, np.ndarray]:
 
 
 def _shown(path: Path) -> str:
-    """A path in a message, whatever its characters."""
+    """A path as it stands in a message, unprintable characters escaped."""
     return str(path) if str(path).isprintable() else ascii(str(path))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from evolvent.cli import Exit, main
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.scene.csv_tables import TableError
-from evolvent.scene.flank_deviations import FlankChart
-from evolvent.scene.skips import is_plane
+from evolvent.scene.gear_problem import gear_problem
+from evolvent_meshes.csv_tables import TableError
 from tests.support.gear_cases import ROOT, model_of, spur_scene
 
 DIAMETERS = np.linspace(144.0, 156.0, 25)
@@ -25,7 +25,7 @@ def chart(over_face: float = 0.0) -> FlankChart:
     return FlankChart(DIAMETERS, heights, 1e-2 + over_face * heights * np.ones((len(DIAMETERS), 1)))
 
 
-def test_written_and_read_back(tmp_path: Path) -> None:
+def test_chart_is_written_and_read_back(tmp_path: Path) -> None:
     """A chart of 25 diameters and 3 heights: the same within what nine decimals leave; in any order of lines."""
     rng = np.random.default_rng(0)
     made = FlankChart(DIAMETERS, np.array([-9.0, 1.0, 10.0]), 1e-2 * rng.random((25, 3)))
@@ -38,7 +38,7 @@ def test_written_and_read_back(tmp_path: Path) -> None:
     assert read.text() == made.text()
 
 
-def test_depth_between_points() -> None:
+def test_chart_depth_is_linear_in_the_arc() -> None:
     """Linear in the involute's arc, constant beyond the rim: exact for a depth that is linear in d²."""
     gear = PAIR.pinion
     made = FlankChart(DIAMETERS, np.zeros(1), (1e-5 * DIAMETERS**2)[:, None])
@@ -66,10 +66,10 @@ def test_only_charts_that_vary_over_the_face_need_3d(tmp_path: Path) -> None:
     for over_face in (0.0, 1e-4):
         path = tmp_path / f"{over_face}.csv"
         path.write_text(chart(over_face).text())
-        assert is_plane(spur_scene(f'wheel.flank_csv="{path}"')) == (over_face == 0.0)
+        assert gear_problem(spur_scene(f'wheel.flank_csv="{path}"')).is_plane == (over_face == 0.0)
 
 
-def test_named_from_the_scenes_folder(tmp_path: Path) -> None:
+def test_chart_is_found_from_the_folder_of_its_scene(tmp_path: Path) -> None:
     """A scene names its chart as it lies beside it, wherever the program runs; --set names it from there."""
     (tmp_path / "low.csv").write_text(chart().text())
     text = (ROOT / "demos/he2022.toml").read_text(encoding="utf-8").replace("[wheel]", 'flank_csv = "low.csv"\n[wheel]')
@@ -101,7 +101,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_chart_is_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A clear message that names the scene's key, status 2, nothing written."""
     text, message = WRONG[name]
     (tmp_path / "bad.csv").write_text(text)

@@ -1,7 +1,7 @@
-"""What relief, crowning and misalignment do, before anything is computed.
+"""Estimates of what relief, crowning and misalignment do, before a pair is solved.
 
-How much of the contact lines bears, on springs of a tooth pair's stiffness; and whether the mesh below a flank is deep
-enough for what is taken off it.
+The share of the contact lines that bears, on springs of a tooth pair's stiffness; and whether the thin layers of the
+mesh below a flank are deep enough for the material that is taken off.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.scene.scene import GEARS, Scene
-from evolvent.scene.schema.errors import InputProblem
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.flank import contact_lines, separation
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -32,18 +32,22 @@ POSITIONS, POINTS = 12, 64
 """Of a base pitch; along a contact line."""
 
 
+class TooMuchRelief(InputError):
+    """Relief and crowning take most of the thin layers away that lie below a flank: its mesh may fold."""
+
+
 @dataclass(frozen=True)
 class Bearing:
-    """A pitch on springs."""
+    """Contact lines on springs, over a pitch."""
 
     share: float
-    """Of the length of all contact lines that bears."""
+    """Length that bears over the length of all contact lines."""
     deflection: float
-    """Largest of the springs [mm]."""
+    """Largest deflection of a spring [mm]."""
 
 
 def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
-    """On springs of this stiffness [N/mm²] along the contact lines, under the normal force [N]."""
+    """Contact lines on springs of this stiffness [N/mm²], under the normal force [N]."""
     rotations = np.arange(POSITIONS) * 2.0 * math.pi / pair.pinion.z / POSITIONS
     each = [_pressed(*_gaps(pair, float(rotation)), force / stiffness) for rotation in rotations]
     borne, whole, deepest = (np.array(values) for values in zip(*each, strict=True))
@@ -51,7 +55,7 @@ def bearing(pair: GearPair, force: float, stiffness: float) -> Bearing:
 
 
 def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
-    """Gaps [mm] and lengths [mm] of the pieces of all contact lines, by ascending gap."""
+    """Gaps (n,) and lengths (n,) [mm] of pieces of all contact lines, by ascending gap."""
     gaps, lengths = [], []
     for line in contact_lines(pair, rotation):
         ξ, z = (values[1::2] for values in line.points(2 * POINTS + 1))
@@ -62,20 +66,20 @@ def _gaps(pair: GearPair, rotation: float) -> tuple[Floats, Floats]:
 
 
 def _pressed(gaps: Floats, lengths: Floats, load: float) -> tuple[float, float, float]:
-    """Length that bears, length in all [mm], largest deflection [mm]: the approach δ with Σ l (δ − g)₊ = load [mm²]."""
+    """Length that bears, total length and largest deflection [mm]; approach δ with Σ l (δ − g)₊ = load [mm²]."""
     borne = np.cumsum(lengths)
     approach = (load + np.cumsum(lengths * gaps)) / borne  # with the first pieces alone
     last = int(np.argmax(np.append(gaps[1:], np.inf) >= approach))
     return float(borne[last]), float(borne[-1]), float(approach[last] - gaps[0])
 
 
-def modification_warnings(scene: Scene) -> Iterator[str]:
-    """Sentences on figures with which much of the flanks would never touch."""
-    given = _given(scene)
+def modification_warnings(problem: GearProblem) -> Iterator[str]:
+    """Sentences on modifications with which much of the flanks would never touch."""
+    given = _given(problem.pair)
     if not given:
         return
-    estimate = scene.hertz_estimate()
-    single = estimate.tooth_deflection(*scene.materials())  # one pair with the whole load over the whole face
+    estimate = problem.hertz_estimate
+    single = estimate.tooth_deflection(*problem.materials)  # one pair with the whole load over the whole face
     force, width = estimate.normal_force, estimate.pair.face_width
     stiffness = force / (single * width)
     whole = bearing(estimate.pair, force, stiffness)
@@ -93,44 +97,47 @@ def modification_warnings(scene: Scene) -> Iterator[str]:
         )
 
 
-def folding_warnings(scene: Scene, resolutions: tuple[SectorResolution, SectorResolution]) -> Iterator[str]:
-    """Sentences on what may fold the mesh."""
+def folding_warnings(
+    problem: GearProblem, resolutions: tuple[SectorResolution, SectorResolution]
+) -> Iterator[str]:
+    """Sentences on modifications that may fold the mesh."""
     for member, resolution in zip(Member, resolutions):
-        if problem := too_much_relief(scene, member, resolution):
-            yield f"The mesh may fold, which `run` then refuses: {problem}."
+        if reason := too_much_relief(problem, member, resolution):
+            yield f"The mesh may fold, which `run` then refuses: {reason}."
 
 
-def too_much_relief(scene: Scene, member: Member, resolution: SectorResolution) -> InputProblem | None:
-    """What is wrong where relief and crowning take most of the thin layers away that lie below the flank; else None."""
-    name, depth = member.label, 1e3 * sum(resolution.layer_depths)
-    gear = getattr(scene, name)
-    taken = gear.tip_relief_um + gear.lead_crowning_um
+def too_much_relief(problem: GearProblem, member: Member, resolution: SectorResolution) -> TooMuchRelief | None:
+    """The error where relief and crowning take most of the thin layers away that lie below the flank; else None."""
+    depth, flank = 1e3 * sum(resolution.layer_depths), problem.pair.gears[member].modifications
+    taken = flank.tip_relief_um + flank.lead_crowning_um
     if taken < FOLDING * depth:
         return None
-    key = "tip_relief_um" if gear.tip_relief_um >= gear.lead_crowning_um else "lead_crowning_um"
-    found = f"{getattr(gear, key):g} (relief and crowning take {taken:.4g} µm off)"
-    allowed = f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine"
-    return InputProblem(f"{name}.{key}", found, allowed, "lower it, raise the torque, or take a chart as flank_csv")
+    key = "tip_relief_um" if flank.tip_relief_um >= flank.lead_crowning_um else "lead_crowning_um"
+    return TooMuchRelief(
+        f"{member.label}.{key}: found {getattr(flank, key):g} (relief and crowning take {taken:.4g} µm off); allowed: "
+        f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine; remedy: "
+        "lower it, raise the torque, or take a chart as flank_csv"
+    )
 
 
-def _given(scene: Scene) -> Mapping[str, float]:
-    """Key of the scene -> figure [mm], of those that are not 0."""
-    found = {"pair.misalignment_um": scene.pair.misalignment_um}
-    for name in GEARS:
-        gear = getattr(scene, name)
-        found |= {f"{name}.{key}": getattr(gear, key) for key in ("tip_relief_um", "lead_crowning_um")}
+def _given(pair: GearPair) -> Mapping[str, float]:
+    """Key -> modification [mm], of those that are not 0."""
+    found = {"pair.misalignment_um": pair.misalignment_um}
+    for member, gear in zip(Member, pair.gears):
+        keys = "tip_relief_um", "lead_crowning_um"
+        found |= {f"{member.label}.{key}": getattr(gear.modifications, key) for key in keys}
     return {key: 1e-3 * value for key, value in found.items() if value}
 
 
 def _only(pair: GearPair, key: str) -> GearPair:
-    """The pair with this figure and no other."""
+    """The pair with this modification alone."""
 
-    def bare(name: str, gear: GearParameters) -> GearParameters:
-        own = gear.modifications
-        relief = own.tip_relief_um if key == f"{name}.tip_relief_um" else 0.0
-        crowning = own.lead_crowning_um if key == f"{name}.lead_crowning_um" else 0.0
+    def bare(member: Member) -> GearParameters:
+        gear, own = pair.gears[member], pair.gears[member].modifications
+        relief = own.tip_relief_um if key == f"{member.label}.tip_relief_um" else 0.0
+        crowning = own.lead_crowning_um if key == f"{member.label}.lead_crowning_um" else 0.0
         return replace(gear, modifications=replace(own, tip_relief_um=relief, lead_crowning_um=crowning))
 
-    pinion, wheel = (bare(name, gear) for name, gear in zip(GEARS, pair.gears, strict=True))
+    pinion, wheel = (bare(member) for member in Member)
     tilt = pair.misalignment_um if key == "pair.misalignment_um" else 0.0
     return replace(pair, pinion=pinion, wheel=wheel, misalignment_um=tilt)

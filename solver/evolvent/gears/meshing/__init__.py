@@ -1,0 +1,1 @@
+"""The sector meshes of a gear pair, and how fine they are."""

@@ -1,0 +1,171 @@
+"""A gear pair under load, and how it is computed: all that the rooms of `gears` are given, as plain data."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from evolvent.fem.material import STEEL, Material
+from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.input_checks import number, one_of
+
+Level = Literal["quick", "standard", "fine"]
+LEVELS: tuple[Level, ...] = ("quick", "standard", "fine")
+CellShape = Literal["hexahedron", "tetrahedron"]
+SHAPES: tuple[CellShape, ...] = ("hexahedron", "tetrahedron")
+WINDOW = 1.6
+"""Half-width of the contact window in largest Hertz half-widths."""
+
+
+@dataclass(frozen=True)
+class MeshSettings:
+    """How finely the sectors are meshed. Raises InputError.
+
+    Examples:
+        >>> MeshSettings("quick")
+        MeshSettings(level='quick', elements_per_contact_width=None, shape='hexahedron', order=2)
+    """
+
+    level: Level = "standard"
+    """`quick` for looking, `standard` for results, `fine` for reference."""
+    elements_per_contact_width: float | None = None
+    """Elements across the Hertz width 2b; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
+    shape: CellShape = "hexahedron"
+    """Cells of sectors in space; plane sections have quadrilaterals or triangles."""
+    order: Literal[1, 2] = 2
+    """Order of the cells and of the displacement."""
+
+    def __post_init__(self) -> None:
+        one_of("mesh level", self.level, LEVELS)
+        one_of("mesh shape", self.shape, SHAPES)
+        one_of("mesh order", self.order, (1, 2))
+        if self.elements_per_contact_width is not None:
+            wanted, remedy = "a number above 0", "leave it out for that of the level"
+            number("elements_per_contact_width", self.elements_per_contact_width, wanted, remedy, lambda n: n > 0.0)
+
+
+@dataclass(frozen=True)
+class GearOptions:
+    """What is computed in full, though the result is the same without it within a tolerance (docs/evidence.md);
+    nothing of it by default."""
+
+    in_space: bool = False
+    """Three dimensions, also where all transverse sections are equal."""
+    friction_terms: bool = False
+    """Tangential components and friction history, also at μ = 0."""
+    whole_engagement: bool = False
+    """All pitches in which a tooth is in mesh; else one."""
+    whole_gears: bool = False
+    """All sectors of a gear in one mesh; else one sector that stands for all."""
+    all_teeth: bool = False
+    """As many tooth pairs as the smaller gear has teeth; else those that can touch, and their neighbours."""
+    whole_flanks: bool = False
+    """Contact is searched on the whole flanks; else in a window about each contact line."""
+    deflected_flanks: bool = False
+    """Contact is searched again on the flanks as they have deflected."""
+    fine_body: bool = False
+    """Back flank, fillets, core and rim are meshed finely; else the loaded flank only."""
+
+
+@dataclass(frozen=True, eq=False)
+class GearProblem:
+    """A pinion that drives a wheel under a constant torque. Raises InputError.
+
+    Examples:
+        >>> from evolvent.gears import GearPair, GearParameters
+        >>> rack = dict(normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0)
+        >>> pinion = GearParameters.from_rack(z=30, bore_diameter=40.0, **rack)
+        >>> wheel = GearParameters.from_rack(z=50, bore_diameter=60.0, **rack)
+        >>> problem = GearProblem(GearPair(pinion, wheel, centre_distance=120.0), torque=150e3)
+        >>> problem.is_plane, problem.contact_teeth
+        (True, (-2, -1, 0, 1))
+        >>> print(f"{float(problem.hertz_estimate.peak_pressure(0.0)):.0f} MPa at the pitch point")
+        630 MPa at the pitch point
+    """
+
+    pair: GearPair
+    """Both gears and how they stand."""
+    torque: float
+    """Held constant on one gear, over its whole face [N·mm]."""
+    torque_on: Member = Member.PINION
+    """The gear with the torque; the rotation of the other one is prescribed."""
+    materials: tuple[Material, Material] = (STEEL, STEEL)
+    """Of pinion and wheel."""
+    mesh: MeshSettings = MeshSettings()
+    """How finely the sectors are meshed."""
+    flanks: tuple[FlankChart | None, FlankChart | None] = (None, None)
+    """Measured or worn flanks of pinion and wheel; None: as designed."""
+    options: GearOptions = GearOptions()
+    """What is computed in full."""
+
+    def __post_init__(self) -> None:
+        remedy = "give it in N·mm and without a sign: the pinion drives"
+        number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
+        one_of("torque_on", self.torque_on, tuple(Member))
+
+    @cached_property
+    def has_equal_sections(self) -> bool:
+        """Whether all transverse sections are alike: a spur pair of one face width without lead variation."""
+        gears = self.pair.gears
+        varies = (
+            self.pair.pinion.helix_angle_deg, self.pair.misalignment_um,
+            *(gear.modifications.lead_crowning_um for gear in gears),
+            *(chart is not None and chart.varies_over_the_face for chart in self.flanks),
+        )  # fmt: skip
+        return not any(varies) and gears[0].face_width == gears[1].face_width
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether it is solved in plane strain."""
+        return self.has_equal_sections and not self.options.in_space
+
+    @property
+    def pinion_torque(self) -> float:
+        """Torque on the pinion without friction, over the whole face [N·mm]."""
+        return self.torque if self.torque_on is Member.PINION else self.torque / self.pair.ratio
+
+    @cached_property
+    def hertz_estimate(self) -> HertzEstimate:
+        """Hertz contact on the nominal contact lines."""
+        return HertzEstimate.of(self.pair, self.materials, self.pinion_torque)
+
+    @cached_property
+    def pitches(self) -> int:
+        """How many base pitches are swept: one, or all in which a tooth is in mesh."""
+        if not self.options.whole_engagement:
+            return 1
+        return math.ceil(self.pair.engagement_angle * self.pair.pinion.z / (2 * math.pi))
+
+    @cached_property
+    def touching_teeth(self) -> range:
+        """Tooth pairs that can touch while the pinion turns from 0 through all pitches, on rigid flanks."""
+        last = self.pair.teeth_in_contact(0.0)
+        first = self.pair.teeth_in_contact(self.pitches * 2 * math.pi / self.pair.pinion.z)
+        return range(first[0], last[-1] + 1)
+
+    @cached_property
+    def contact_teeth(self) -> tuple[int, ...]:
+        """Tooth pairs that are searched: those that can touch and their neighbours, which deflection may bring into
+        contact; or as many as the smaller gear has."""
+        near = range(self.touching_teeth[0] - 1, self.touching_teeth[-1] + 2)
+        if not self.options.all_teeth:
+            return tuple(near)
+        count = min(gear.z for gear in self.pair.gears)
+        first = (near[0] + near[-1]) // 2 - count // 2
+        return tuple(range(first, first + count))
+
+    @cached_property
+    def window_half_width(self) -> float:
+        """Half-width [mm of profile arc] of the contact window; infinite for whole flanks. The same everywhere: beyond
+        the path of contact deflection brings more into contact than Hertz's width there."""
+        if self.options.whole_flanks:
+            return float(np.inf)
+        ξ = np.linspace(*self.pair.path_of_contact, 50)
+        return WINDOW * float(np.max(self.hertz_estimate.half_width(ξ)))

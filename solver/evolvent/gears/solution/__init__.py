@@ -1,0 +1,1 @@
+"""Solved positions and pitches, certified: what a Python user of gears calls."""

@@ -1,0 +1,161 @@
+"""Gear pairs from Python: condensed gears, a single position, the pitch, and the curves that it gives.
+
+On several ranks all of them call these functions, and all get all results.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.load_limits import check_load
+from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.input_checks import is_index, number, refuse
+
+LOG = logging.getLogger("evolvent")
+
+
+@dataclass(frozen=True, eq=False)
+class PitchSolution:
+    """A certified pitch at one friction coefficient: k positions in equal steps, whose friction history is periodic."""
+
+    friction: float
+    """Coulomb's coefficient μ."""
+    results: tuple[PositionResult, ...]
+    """One a position; forces and torques of a plane problem are per mm of face width."""
+    width: float
+    """By what forces and torques of the results are multiplied to be those of the gears: the face width [mm] where the
+    problem is plane, else 1."""
+    deflected: bool
+    """Whether contact was searched again on deflected flanks, because energy did not balance without."""
+
+    @property
+    def angles(self) -> Floats:
+        """Pinion rotations (k,) [rad]; 0: tooth pair 0 touches at the pitch point, in the mid-face section."""
+        return np.array([result.stand.angle for result in self.results])
+
+    @property
+    def transmission_error(self) -> Floats:
+        """r_b1 φ_1 − r_b2 φ_2 (k,) [mm], along the line of action."""
+        return np.array([result.transmission_error for result in self.results])
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less smallest transmission error [mm]."""
+        return float(np.ptp(self.transmission_error))
+
+    @property
+    def torques(self) -> Floats:
+        """Moments of the contact forces about both axes (k, 2) [N·mm]: pinion, wheel."""
+        return self.width * np.array([result.torques for result in self.results])
+
+    @property
+    def mesh_stiffness(self) -> Floats:
+        """Tangent stiffness along the line of action (k,) [N/mm], without friction."""
+        return self.width * np.array([result.stiffness for result in self.results])
+
+    @property
+    def largest_pressure(self) -> Floats:
+        """Largest pressure at the contact points (k,) [MPa]; singular where a tip edge bears."""
+        return np.array([result.contact.pressure.max() for result in self.results])
+
+    @property
+    def loss(self) -> float:
+        """Friction work over input work."""
+        lost = sum(result.friction_loss for result in self.results)
+        return float(lost / sum(abs(result.torques[0]) for result in self.results))
+
+
+def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel:
+    """Meshes and condenses both gears, once for all positions and friction coefficients.
+
+    Raises InputError for a torque that the gears cannot bear, MeshError, TooMuchRelief, NotPositiveDefinite,
+    OutOfMemory.
+
+    Examples:
+        >>> from evolvent.gears import GearPair, GearParameters, GearProblem, MeshSettings, condense, solve_pitch
+        >>> rack = dict(normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0)
+        >>> pinion = GearParameters.from_rack(z=30, bore_diameter=40.0, **rack)
+        >>> wheel = GearParameters.from_rack(z=50, bore_diameter=60.0, **rack)
+        >>> pair = GearPair(pinion, wheel, centre_distance=120.0)
+        >>> gears = condense(GearProblem(pair, torque=150e3, mesh=MeshSettings("quick")))
+        >>> pitch = solve_pitch(gears, friction=0.1, positions=4)
+        >>> pitch.transmission_error.shape
+        (4,)
+    """
+    check_load(problem)
+    dolfinx_compat.silence_logs()
+    return prepare_model(problem, comm).model
+
+
+def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0) -> PositionResult:
+    """A position without friction history: the flanks have slid as they do in a twentieth of a pitch, from the state
+    without friction. angle: pinion rotation [rad]. Every rank solves it.
+
+    Raises InputError, NotConverged, SearchError, BalanceError.
+    """
+    number("angle", angle, "a finite number [rad]", "give the pinion's rotation in rad")
+    check_frictions([friction])
+    swept = next(sweep_pitch(gears, Pitch((float(angle),)), [friction], initial_state([friction])))
+    certify(swept.results)
+    return swept.results[0]
+
+
+def solve_pitch(
+    gears: GearModel, friction: float = 0.0, positions: int = 20, comm: MPI.Comm = MPI.COMM_WORLD
+) -> PitchSolution:
+    """The pitch at one friction coefficient, see `solve_pitches`."""
+    return solve_pitches(gears, [friction], positions, comm)[0]
+
+
+def solve_pitches(
+    gears: GearModel, frictions: Sequence[float], positions: int = 20, comm: MPI.Comm = MPI.COMM_WORLD
+) -> tuple[PitchSolution, ...]:
+    """One base pitch in equal steps, repeated until the friction state is periodic; one solution a coefficient.
+
+    All coefficients share search and compliance. Where energy does not balance over the pitch, it is solved again on
+    deflected flanks. positions: steps of a base pitch. Raises InputError, NotConverged, SearchError, BalanceError.
+    """
+    check_frictions(frictions)
+    check_positions(positions)
+    pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
+    swept = one_pitch(list(sweep_until_periodic(gears, pitch, list(frictions), initial_state(frictions), comm)))
+    for position in swept:
+        certify(position.results)
+    try:
+        certify_pitch(position.results for position in swept)
+    except PitchImbalance as imbalance:
+        if gears.deflected:
+            raise
+        LOG.info("%s; solved again, on deflected flanks", imbalance)
+        return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
+    width = gears.pair.face_width if gears.bodies[0].d == 2 else 1.0
+    return tuple(
+        PitchSolution(friction, tuple(position.results[i] for position in swept), width, gears.deflected)
+        for i, friction in enumerate(frictions)
+    )
+
+
+def check_frictions(frictions: Sequence[float]) -> None:
+    """Raises InputError unless they are different numbers from 0 to 1."""
+    for friction in frictions:
+        number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
+    if len(frictions) == 0 or len(set(frictions)) < len(frictions):
+        refuse("frictions", "one coefficient or several different ones", list(frictions), "give each once")
+
+
+def check_positions(positions: int) -> None:
+    """Raises InputError unless it is a whole number from 2 on."""
+    if not (is_index(positions) and positions >= 2):
+        refuse("positions", "a whole number from 2 on", positions, "20 a base pitch is usual")

@@ -1,0 +1,42 @@
+"""From a scene to the plain data that the rooms of `gears` are given; here, once, a scene's skips become options."""
+
+from __future__ import annotations
+
+from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
+from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.member import Member
+
+
+def gear_problem(scene: Scene) -> GearProblem:
+    """The gears of a scene under its load, and how they are computed."""
+    mesh = scene.mesh
+    pinion, wheel = (scene.flank_chart(member.label) for member in Member)
+    return GearProblem(
+        pair=scene.gear_pair(),
+        torque=1e3 * scene.load.torque_Nm,
+        torque_on=Member.named(scene.load.on),
+        materials=scene.materials(),
+        mesh=MeshSettings(mesh.level, mesh.elements_per_contact_width, mesh.shape, mesh.order),
+        flanks=(pinion, wheel),
+        options=gear_options(scene),
+    )
+
+
+def gear_options(scene: Scene) -> GearOptions:
+    """What the scene wants computed in full: what skip.off names."""
+    off = set(scene.skip.off)
+    return GearOptions(
+        in_space="plane" in off,
+        friction_terms="friction-terms" in off,
+        whole_engagement="one-pitch" in off,
+        whole_gears="one-sector" in off,
+        all_teeth="far-teeth" in off,
+        whole_flanks="window" in off,
+        deflected_flanks="deflected-flanks" in off,
+        fine_body="coarse-body" in off,
+    )
+
+
+def shares_gears(scene: Scene) -> bool:
+    """Whether condensed gears serve all friction coefficients; else each has gears of its own."""
+    return len(scene.contact.friction) == 1 or "reuse" not in scene.skip.off

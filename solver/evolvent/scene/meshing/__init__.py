@@ -1,1 +1,0 @@
-"""The sector meshes of a scene, and how fine they are."""

@@ -1,0 +1,166 @@
+"""Gear pairs from Python: the same figures as a run of the same scene, errors, the figures of docs/gears_api.md."""
+
+from __future__ import annotations
+
+import doctest
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from evolvent.gears import (
+    GearOptions,
+    GearProblem,
+    MeshSettings,
+    condense,
+    solve_pitch,
+    solve_pitches,
+    solve_single_position,
+)
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.problem import gear_problem, hertz_estimate
+from evolvent.gears.solution import solver
+from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
+from evolvent.results.archive.archive import Archive
+from evolvent.scene.scene import load_scene
+from evolvent.wear import Archard, wear_study, wearing_pair
+from evolvent_meshes.errors import InputError
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import QUIET
+from tests.support.gears_api_curve import he_problem
+from tests.support.running.processes import Run, on_ranks
+
+POSITIONS, FRICTIONS = 4, (0.0, 0.1)
+
+
+@pytest.fixture(scope="module")
+def gears() -> GearModel:
+    """He's spur pair, condensed on this rank."""
+    return condense(he_problem(), MPI.COMM_SELF)
+
+
+@pytest.mark.parametrize("ranks", on_ranks(1, 2))
+def test_curve_of_the_api_equals_that_of_a_run(run_script: Run, tmp_path: Path, ranks: int) -> None:
+    """Problem: He's pair at level quick, four positions, without friction and at μ = 0.1, once by `evolvent run` and
+    once by the API, on as many ranks. Exact: the same transmission errors; and no module of scenes is imported."""
+    settings = [*QUIET, f"sweep.positions={POSITIONS}", f"contact.friction={list(FRICTIONS)}", "mesh.level='quick'"]
+    words = [word for setting in settings for word in ("--set", setting)]
+    out = tmp_path / "run"
+    done = run_script("-m", "evolvent", "run", "demos/he2022.toml", "--out", str(out), "--quiet", *words, ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    scene = load_scene(ROOT / "demos/he2022.toml", settings)
+    positions = Archive(out, scene).read_positions(scene.gear_pair())
+    expected = [[position.results[i].transmission_error for position in positions] for i in range(len(FRICTIONS))]
+    done = run_script("tests/support/gears_api_curve.py", str(POSITIONS), *map(str, FRICTIONS), ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    found: dict[str, Any] = json.loads(done.stdout)
+    np.testing.assert_allclose(found["curves"], expected, rtol=1e-12, atol=0.0)
+    assert found["scenes"] == []
+
+
+def test_figures_of_the_page_are_those_of_its_program() -> None:
+    """The first program in docs/gears_api.md, a whole calculation, has at most 20 lines and gives the figures that the
+    page states below it."""
+    text = (ROOT / "docs/gears_api.md").read_text(encoding="utf-8")
+    program = re.findall(r"```python\n(.*?)```", text, re.DOTALL)[0]
+    assert len(program.splitlines()) <= 20
+    names: dict[str, Any] = {}
+    exec(compile(program, "gears_api.md", "exec"), names)
+    stated = re.search(r"It prints ([\d.]+) µm and ([\d.]+) %", text)
+    assert stated is not None
+    assert (f"{1e3 * names['pitch'].peak_to_peak:.2f}", f"{100 * names['pitch'].loss:.2f}") == stated.groups()
+
+
+@pytest.mark.parametrize("module", [gear_problem, hertz_estimate, solver], ids=lambda module: module.__name__)
+def test_examples_run(module: ModuleType) -> None:
+    """The examples in the docstrings print what they say."""
+    done = doctest.testmod(module)
+    assert done.attempted > 0 and done.failed == 0
+
+
+def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:
+    """Problem: a plane pair, solved per mm of face width. Exact: the torque on the pinion is that of the problem, and
+    input less output is the friction work."""
+    pitch = solve_pitch(gears, friction=0.1, positions=POSITIONS, comm=MPI.COMM_SELF)
+    np.testing.assert_allclose(pitch.torques[:, 0], 170e3, rtol=1e-9)
+    lost = 1.0 - pitch.torques[:, 1].sum() / pitch.torques[:, 0].sum()  # 50/50: both turn alike
+    assert lost == pytest.approx(pitch.loss, rel=1e-3)
+    np.testing.assert_allclose(pitch.angles, 2.0 * np.pi / 50 / POSITIONS * np.arange(POSITIONS), rtol=1e-12)
+    assert pitch.peak_to_peak == pytest.approx(np.ptp(pitch.transmission_error))
+    assert (pitch.largest_pressure > 400.0).all() and not pitch.deflected
+
+
+def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel) -> None:
+    """Without friction there is no history. Exact: the position alone has the pitch's transmission error."""
+    pitch = solve_pitch(gears, 0.0, POSITIONS, MPI.COMM_SELF)
+    alone = solve_single_position(gears, float(pitch.angles[2]))
+    assert alone.transmission_error == pytest.approx(pitch.transmission_error[2], rel=1e-9)
+
+
+def test_pitch_out_of_balance_is_solved_on_deflected_flanks(gears: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Problem: the certificate refuses the first pitch. Exact: the pitch of the same gears on deflected flanks; and
+    where that is refused too, the error."""
+    calls = []
+
+    def refuse_the_first(positions: Any) -> None:
+        calls.append(1)
+        if len(calls) == 1:
+            raise PitchImbalance("out of balance")
+        certify_pitch(positions)
+
+    expected = solve_pitch(replace(gears, deflected=True), 0.0, 2, MPI.COMM_SELF)
+    monkeypatch.setattr(solver, "certify_pitch", refuse_the_first)
+    found = solve_pitch(gears, 0.0, 2, MPI.COMM_SELF)
+    assert found.deflected and len(calls) == 2
+    np.testing.assert_array_equal(found.transmission_error, expected.transmission_error)
+    calls.clear()
+    with pytest.raises(PitchImbalance):
+        solve_pitch(replace(gears, deflected=True), 0.0, 2, MPI.COMM_SELF)
+
+
+def changed(**values: Any) -> GearProblem:
+    """He's problem with other values."""
+    return replace(he_problem(), **values)
+
+
+WRONG = {
+    "no torque": (lambda: changed(torque=0.0), "torque: wanted a finite number > 0"),
+    "torque that bends the teeth": (lambda: condense(changed(torque=1e8)), "as strains must stay small"),
+    "torque without a contact": (lambda: condense(changed(torque=1e-6)), "wanted a contact with a half-width"),
+    "third gear": (lambda: changed(torque_on=2), "torque_on: wanted"),
+    "unknown level": (lambda: MeshSettings("rough"), "mesh level: wanted 'quick' or 'standard' or 'fine'"),  # type: ignore[arg-type]
+    "order 3": (lambda: MeshSettings(order=3), "mesh order: wanted 1 or 2"),  # type: ignore[arg-type]
+    "no elements": (lambda: MeshSettings(elements_per_contact_width=0.0), "elements_per_contact_width: wanted"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_problem_that_does_not_fit_is_refused(name: str) -> None:
+    """InputError with what was wanted."""
+    make, words = WRONG[name]
+    with pytest.raises(InputError, match=re.escape(words)):
+        make()
+
+
+def test_wrong_arguments_are_refused(gears: GearModel) -> None:
+    """Friction outside 0 to 1 or given twice, a single position, wear on deflected flanks, reports out of order."""
+    for frictions in ((-0.1,), (1.5,), (0.1, 0.1), ()):
+        with pytest.raises(InputError, match="friction"):
+            solve_pitches(gears, frictions, 2, MPI.COMM_SELF)
+    with pytest.raises(InputError, match="positions: wanted a whole number from 2 on, found 1"):
+        solve_pitch(gears, 0.0, 1, MPI.COMM_SELF)
+    with pytest.raises(InputError, match="angle: wanted"):
+        solve_single_position(gears, np.nan)
+    deflected = changed(options=GearOptions(deflected_flanks=True))
+    with pytest.raises(InputError, match="wear of gears: wanted one pitch on flanks before deflection"):
+        wearing_pair(deflected, Archard(1e-10, 1e-10), comm=MPI.COMM_SELF)
+    wearing = wearing_pair(he_problem(), Archard(1e-10, 1e-10), positions=2, comm=MPI.COMM_SELF)
+    for reports in ((), (0.0,), (2.0, 1.0), (np.inf,)):
+        with pytest.raises(InputError, match="wear reports"):
+            next(wear_study(wearing, reports))

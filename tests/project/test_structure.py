@@ -94,7 +94,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
 FILES, BELOW, LINES = 12, 9, 300
 """Of a room at most: its files, the rooms directly below it, the lines of a file."""
 PACKAGES = ("solver/evolvent", "meshes/evolvent_meshes")
-TREES = (*PACKAGES, "demos", "evidence")
+TREES = ("solver/evolvent", "meshes/evolvent_meshes", "demos", "evidence", "tests")
 Imports = Mapping[str, set[str]]
 
 

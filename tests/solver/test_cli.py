@@ -15,8 +15,8 @@ import evolvent
 from evolvent.cli import main
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
-from tests.support.abuses.malformed_scenes import MALFORMED
 from tests.support.checkout import PYTHONPATH, ROOT
+from tests.support.malformed.scenes import MALFORMED
 from tests.support.running.processes import one_at_a_time
 from tests.support.scene_texts import HE
 

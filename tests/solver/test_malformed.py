@@ -17,8 +17,8 @@ from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.mesh_data import MeshError
-from tests.support.abuses.malformed_inputs import CHART, CHARTS, OPTIONS, RECORD, RECORDS, SCENE_FILES, TEST
-from tests.support.abuses.malformed_scenes import MALFORMED, UNSUPPORTED
+from tests.support.malformed.inputs import CHART, CHARTS, OPTIONS, RECORD, RECORDS, SCENE_FILES, TEST
+from tests.support.malformed.scenes import MALFORMED, UNSUPPORTED
 from tests.support.scene_texts import HE, WEAR, YANG
 
 MESSAGE = re.compile(r"(?P<key>.*?): found (?P<found>.*); allowed: (?P<allowed>.+); remedy: (?P<remedy>.+)")

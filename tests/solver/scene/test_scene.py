@@ -13,8 +13,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, SceneError, load_scene, scene_from_text
 from evolvent.scene.schema.errors import keys_of
 from evolvent.scene.skips import skipped
-from tests.support.abuses.malformed_scenes import MALFORMED
 from tests.support.checkout import ROOT
+from tests.support.malformed.scenes import MALFORMED
 from tests.support.scene_texts import DEMOS, HE, YANG, without
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evolvent import EvolventError, InputError
-from tests.support.abuses import bodies, contacts, extremes, meshes, odd_inputs, solutions, steps
-from tests.support.abuses.blocks import Exact, Refused
+from tests.support.api_abuses import bodies, contacts, extremes, meshes, odd_inputs, solutions, steps
+from tests.support.api_abuses.blocks import Exact, Refused
 
 REFUSED = [*meshes.ROWS, *bodies.ROWS, *contacts.ROWS, *steps.ROWS, *solutions.ROWS, *extremes.REFUSED]
 EXACT = [*odd_inputs.ROWS, *extremes.EXACT]

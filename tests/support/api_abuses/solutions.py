@@ -18,7 +18,7 @@ from evolvent import (
     solve,
     write_paraview,
 )
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     NAN,
     UPPER,
     Refused,

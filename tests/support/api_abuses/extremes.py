@@ -23,7 +23,7 @@ from evolvent import (
     Traction,
     solve,
 )
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     PRESSURE,
     REST,
     ROLLS,

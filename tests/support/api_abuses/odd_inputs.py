@@ -30,7 +30,7 @@ from evolvent import (
     sweep,
 )
 from evolvent_meshes.mesh.gmsh_io import write_msh
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     LOWER,
     PRESSURE,
     PUSH,

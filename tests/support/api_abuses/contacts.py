@@ -15,7 +15,7 @@ from evolvent import (
     Problem,
     solve,
 )
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     CUBE,
     INF,
     LOWER,

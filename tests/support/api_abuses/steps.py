@@ -14,7 +14,7 @@ from evolvent import (
     solve,
     sweep,
 )
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     INF,
     NAN,
     REST,

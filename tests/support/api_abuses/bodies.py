@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent import Body, BodyForce, Fixed, Freedom, Material, MeshError, Rigid, Traction, solve
-from tests.support.abuses.blocks import CUBE, INF, NAN, TALL, UPPER, Refused, group, lower, problem, upper
+from tests.support.api_abuses.blocks import CUBE, INF, NAN, TALL, UPPER, Refused, group, lower, problem, upper
 
 MATERIALS = (
     [

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent import Body, MeshError, read_msh, solve
-from tests.support.abuses.blocks import (
+from tests.support.api_abuses.blocks import (
     CUBE,
     CURVED,
     INF,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tests.support.abuses.malformed_gears import IMPOSSIBLE_GEARS
-from tests.support.abuses.malformed_keys import UNSUPPORTED, WRONG_KEYS
-from tests.support.abuses.malformed_text import NOT_PARSED
-from tests.support.abuses.malformed_values import WRONG_VALUES
+from tests.support.malformed.gears import IMPOSSIBLE_GEARS
+from tests.support.malformed.keys import UNSUPPORTED, WRONG_KEYS
+from tests.support.malformed.text import NOT_PARSED
+from tests.support.malformed.values import WRONG_VALUES
 
 __all__ = ["MALFORMED", "UNSUPPORTED"]
 

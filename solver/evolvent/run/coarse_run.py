@@ -21,7 +21,8 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 from evolvent.results.archive.archive import gear_shape
 from evolvent.results.archive.error_bar_data import kept_errors
-from evolvent.results.run_data import Companion, RunData, run_data
+from evolvent.results.error_bars.estimation import Companion
+from evolvent.results.run_data import RunData, run_data
 from evolvent.run.context import RunContext
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.gear_problem import gear_problem

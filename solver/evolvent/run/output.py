@@ -11,11 +11,11 @@ from evolvent.results.archive.archive import Meshes
 from evolvent.results.archive.run_cost import Cost, keep_cost
 from evolvent.results.archive.scene_files import keep_scene
 from evolvent.results.drawing.picture_files import Drawn, draw
-from evolvent.results.error_bars.estimation import with_errors
+from evolvent.results.error_bars.estimation import Companion, with_errors
 from evolvent.results.fields.deformation import Deformation
 from evolvent.results.fields.paraview import write_fields
 from evolvent.results.mesh_facts import NARROW, MeshFacts, cells_across
-from evolvent.results.run_data import Companion, RunData, run_data
+from evolvent.results.run_data import RunData, run_data
 from evolvent.results.tables.summary_rows import RunFacts
 from evolvent.results.tables.tables import summary, write_summary, write_tables
 from evolvent.run.context import RunContext

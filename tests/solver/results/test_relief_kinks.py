@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.results.contact_slices import fitted_peak
-from evolvent.results.error_bars.position_spacing import known_on_kinks
+from evolvent.results.error_bars.position_spacing import limited_on_kinks
 from evolvent.results.relief_kinks import relief_kinks, wedge_factor
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -91,7 +91,7 @@ def test_a_peak_between_positions(missed: RunData) -> None:
     said."""
     (row,) = friction_rows(missed)
     pinion, wheel = relief_kinks(missed, 0)
-    assert (pinion.ξ, wheel.ξ) == pytest.approx((3.794, -4.042), abs=1e-3)
+    assert (pinion.roll_distance, wheel.roll_distance) == pytest.approx((3.794, -4.042), abs=1e-3)
     assert (pinion.pressure, wheel.pressure) == pytest.approx((812.0, 884.0), rel=0.02)
     assert (
         row.max_pressure_MPa < 0.8 * wheel.pressure <= 0.8 * (row.max_pressure_MPa + row.spacing_error.max_pressure_MPa)
@@ -104,7 +104,8 @@ def test_a_peak_between_positions(missed: RunData) -> None:
 def test_bars_on_a_kink_are_no_wider_than_it(missed: RunData) -> None:
     """Samples on the wheel's kink and far from any: what lines reach, 2000 MPa, is cut down to the pressure
     over the kink where the contact lies on it, and nowhere else."""
-    known = known_on_kinks(np.array([-4.5, -4.3, -4.1, -3.9, 0.0, 0.2, 0.4]), np.full(4, 2e3), relief_kinks(missed, 0))
+    places = np.array([-4.5, -4.3, -4.1, -3.9, 0.0, 0.2, 0.4])
+    known = limited_on_kinks(places, np.full(4, 2e3), relief_kinks(missed, 0))
     assert known[:3] == pytest.approx(relief_kinks(missed, 0)[1].pressure) and known[3] == 2e3
 
 

@@ -54,7 +54,7 @@ def test_clear_keeps_what_it_is_told_to(folder: RunFolder) -> None:
     scene = folder.out / "scene.toml"
     folder.clear(keep=[scene])
     assert scene.read_text() == "our scene.toml"
-    assert folder.is_ours(scene)
+    assert folder.is_written(scene)
 
 
 def test_a_changed_file_is_theirs(folder: RunFolder) -> None:
@@ -107,7 +107,7 @@ def test_others_are_named(folder: RunFolder) -> None:
     """In the folders where runs write, also below worn pairs; files that are being written are nobody's."""
     write_text(folder.out / "deep/in/there.txt", "x")
     part_of(folder.out / "results/state.npz").write_text("half", encoding="utf-8")
-    names = {path.relative_to(folder.out).as_posix() for path in folder.theirs()}
+    names = {path.relative_to(folder.out).as_posix() for path in folder.foreign_files()}
     assert names == set(THEIRS)
 
 
@@ -125,8 +125,8 @@ def test_half_a_line_of_the_list_is_no_harm(cut: int, folder: RunFolder) -> None
     folder.write_text("results/gears.npz", "last")
     path.write_bytes(path.read_bytes()[:-cut])
     folder.write_text("summary.json", "next")
-    assert folder.is_ours(folder.out / "summary.json")
-    assert folder.is_ours(folder.out / "fields/flanks_0007.vtp")
+    assert folder.is_written(folder.out / "summary.json")
+    assert folder.is_written(folder.out / "fields/flanks_0007.vtp")
 
 
 def test_the_list_reaches_no_other_folder(tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ from evolvent.results.archive.error_bar_data import (
     plus_minus,
 )
 from evolvent.results.engagement import engagement
-from evolvent.results.error_bars.estimation import Curve, difference, errors_between, estimated_errors
-from evolvent.results.run_data import Companion, RunData, SolvedPosition, read_run
+from evolvent.results.error_bars.estimation import Companion, Curve, difference, errors_between, estimated_errors
+from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run import coarse_run
 from evolvent.run.coarse_run import coarser, companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of

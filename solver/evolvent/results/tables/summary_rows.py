@@ -119,8 +119,8 @@ class FrictionRow:
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangent stiffness, mean over the pitch. It corresponds to c_γ of ISO 6336-1, but holds the whole gears on rigid
-    bores, with rims, webs and tilting under the axial force; that of the standard holds the teeth."""
+    """Tangent stiffness, mean over the pitch. It corresponds to c_γ of ISO 6336-1, which covers the teeth alone: here
+    the whole gears on rigid bores count, with rims, webs and tilting under the axial force."""
     secant_stiffness_N_per_mm_um: float
     """Secant stiffness, mean over the pitch; null where a flank has a chart."""
     loss_percent: float

@@ -30,14 +30,14 @@ def summary(out: Path) -> dict[str, Any]:
     return found
 
 
-def test_parts_are_added() -> None:
+def test_cost_of_two_parts_adds_times_and_takes_the_larger_memory() -> None:
     """Times add up, memory is that of the larger part."""
     one = Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0)
     other = Cost(Timings(positions=1.0, output=2.0, total=3.5), 70.0)
     assert one + other == Cost(Timings(1.0, 2.0, 3.0, 5.0, 5.0, 8.0, 24.5), 100.0) == other + one
 
 
-def test_kept_and_read(tmp_path: Path) -> None:
+def test_cost_is_read_as_written(tmp_path: Path) -> None:
     """Nothing kept is nothing spent; what was kept comes back; what cannot be read is said, not counted as nothing."""
     folder, cost = RunFolder(tmp_path), Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0)
     assert kept_cost(folder) == Cost()
@@ -50,7 +50,7 @@ def test_kept_and_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("more", [(), WEARS], ids=["sweep", "wear"])
-def test_finished_run_resumed(more: tuple[str, ...], tmp_path: Path) -> None:
+def test_resumed_finished_run_keeps_its_cost(more: tuple[str, ...], tmp_path: Path) -> None:
     """A finished run and a finished study keep what they measured; only output was made again."""
     command = ["run", *HE, *more, "--out", str(tmp_path)]
     assert main(command) == Exit.DONE
@@ -66,7 +66,7 @@ def test_finished_run_resumed(more: tuple[str, ...], tmp_path: Path) -> None:
     assert after["peak_memory_MB"] >= before["peak_memory_MB"]
 
 
-def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_resumed_stopped_run_adds_its_cost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped before its second position: what it has spent by then is there. Set to 1000 s of each part and 1 TB, it
     is in what the resumed run says."""
     write = Archive.write_position
@@ -91,7 +91,7 @@ def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert found["peak_memory_MB"] == 1e6
 
 
-def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cost_of_the_companion_is_kept_with_the_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped once the bars are kept, before any table: the companion, which is not solved again, is counted, and part
     of the total."""
     def stopped(*_: object) -> None:
@@ -109,7 +109,7 @@ def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.Monkey
     assert found["total"] > spent.total >= sum(astuple(spent)[:-1])
 
 
-def test_overwritten_run_begins_anew(tmp_path: Path) -> None:
+def test_overwriting_run_starts_with_no_cost(tmp_path: Path) -> None:
     """What a run has cost that is replaced does not count."""
     command = ["run", *HE, "--set", "output.error_bars=false", "--out", str(tmp_path)]
     assert main(command) == Exit.DONE

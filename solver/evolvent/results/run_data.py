@@ -12,7 +12,7 @@ import numpy as np
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, ArchiveError, GearShape
-from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, wanted_errors
+from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
 from evolvent.results.contact_slices import Slices, ToothSummary, slices, tooth_summaries
 from evolvent.results.tip_zones import path_between_zones, row_before_tip
 from evolvent.scene.scene import Scene, load_scene
@@ -140,4 +140,4 @@ def read_run(folder: Path) -> RunData:
     scene = load_scene(folder / "scene.toml")
     archive = Archive(folder, scene)
     run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-    return replace(run, errors=wanted_errors(archive) or run.errors)
+    return replace(run, errors=requested_error_bars(archive) or run.errors)

@@ -77,7 +77,7 @@ class Archive:
         self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
         self.scene, self.fingerprint = scene, fingerprint(scene)
 
-    def keep(self, name: str, arrays: dict[str, Any]) -> None:
+    def write_arrays(self, name: str, arrays: dict[str, Any]) -> None:
         """Writes OUT/results/name atomically and durably. Raises WriteError, FolderError."""
         self.files.write(f"results/{name}", arrays_bytes(arrays))
 
@@ -87,7 +87,7 @@ class Archive:
         for name, shape in zip(("pinion", "wheel"), shapes):
             arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
             arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
-        self.keep("gears.npz", arrays)
+        self.write_arrays("gears.npz", arrays)
 
     def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
         """Raises ArchiveError if the archived results were computed on other meshes than these."""
@@ -111,8 +111,8 @@ class Archive:
         }  # fmt: skip
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
-        self.keep(f"position_{index:04d}.npz", arrays)
-        self.keep("state.npz", self._state_arrays(index + 1, position.state))
+        self.write_arrays(f"position_{index:04d}.npz", arrays)
+        self.write_arrays("state.npz", self._state_arrays(index + 1, position.state))
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
         """The positions of one pitch, each as it was solved last, without states. Raises ArchiveError."""
@@ -139,15 +139,15 @@ class Archive:
 
     def _state(self) -> dict[str, Any]:
         arrays = read_arrays(self.folder / "state.npz")
-        self.require_own(arrays)
+        self.require_scene(arrays)
         return arrays
 
-    def is_own(self) -> bool:
+    def holds_scene(self) -> bool:
         """Whether the archive holds positions of this scene. Raises ArchiveError if it cannot be read."""
         path = self.folder / "state.npz"
         return path.exists() and str(read_arrays(path).get("fingerprint")) == self.fingerprint
 
-    def require_own(self, arrays: dict[str, Any]) -> None:
+    def require_scene(self, arrays: dict[str, Any]) -> None:
         """Raises ArchiveError unless these arrays of the archive belong to this scene."""
         if str(arrays.get("fingerprint")) != self.fingerprint:
             raise ArchiveError(

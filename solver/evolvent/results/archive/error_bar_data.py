@@ -63,16 +63,17 @@ class EstimatedErrors:
 NOT_ESTIMATED = EstimatedErrors()
 
 
-def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
+def write_error_bars(archive: Archive, errors: EstimatedErrors) -> None:
     """Writes OUT/results/errors.npz if errors were estimated. Raises WriteError, FolderError."""
     if errors.figures:
         values = np.array([astuple(row) for row in errors.figures])
-        archive.keep("errors.npz", {"fingerprint": archive.fingerprint, "method": errors.method, "values": values})
+        arrays = {"fingerprint": archive.fingerprint, "method": errors.method, "values": values}
+        archive.write_arrays("errors.npz", arrays)
 
 
-def kept_errors(archive: Archive) -> EstimatedErrors | None:
-    """The errors that `keep_errors` wrote; None where they are missing, unreadable, or belong to another scene, another
-    method or other figures."""
+def read_error_bars(archive: Archive) -> EstimatedErrors | None:
+    """The errors that `write_error_bars` wrote; None where they are missing, unreadable, or belong to another scene,
+    another method or other figures."""
     try:
         arrays = read_arrays(archive.folder / "errors.npz")
     except ArchiveError:
@@ -84,9 +85,9 @@ def kept_errors(archive: Archive) -> EstimatedErrors | None:
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
 
 
-def wanted_errors(archive: Archive) -> EstimatedErrors | None:
+def requested_error_bars(archive: Archive) -> EstimatedErrors | None:
     """The archived errors if the archive's scene asks for error bars; None otherwise."""
-    return kept_errors(archive) if wanted_output(archive.scene).error_bars else None
+    return read_error_bars(archive) if wanted_output(archive.scene).error_bars else None
 
 
 def plus_minus(value: float, bar: float, digits: int) -> str:

@@ -11,6 +11,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent_meshes.files import open_file
 
 FILE = Path("results/cost.json")
+"""File of the cost below OUT."""
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,13 @@ class Cost:
         return Cost(self.timings + other.timings, max(self.memory_MB, other.memory_MB))
 
 
-def keep_cost(folder: RunFolder, cost: Cost) -> None:
+def write_cost(folder: RunFolder, cost: Cost) -> None:
     """Writes OUT/results/cost.json. Raises WriteError, FolderError."""
     folder.write_text(FILE, json.dumps(asdict(cost), indent=1) + "\n")
 
 
-def kept_cost(folder: RunFolder) -> Cost:
-    """The cost that `keep_cost` wrote, zero where there is none. Raises ArchiveError where it cannot be read."""
+def read_cost(folder: RunFolder) -> Cost:
+    """The cost that `write_cost` wrote, zero where there is none. Raises ArchiveError where it cannot be read."""
     path = folder.out / FILE
     if not path.exists():
         return Cost()

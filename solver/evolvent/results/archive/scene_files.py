@@ -8,9 +8,10 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.scene import GEARS, Scene
 
 SCENE_FILES = ("flank_pinion.csv", "flank_wheel.csv", "scene.toml")
+"""Files of the scene in OUT."""
 
 
-def keep_scene(scene: Scene, folder: RunFolder) -> None:
+def write_scene(scene: Scene, folder: RunFolder) -> None:
     """Writes OUT/scene.toml and the flank charts that it names. Raises WriteError, FolderError, OSError."""
     texts = scene_texts(scene)
     for name in SCENE_FILES:
@@ -21,7 +22,7 @@ def keep_scene(scene: Scene, folder: RunFolder) -> None:
 
 
 def scene_texts(scene: Scene) -> dict[str, str]:
-    """The files that `keep_scene` writes: name -> text."""
+    """The files that `write_scene` writes: name -> text."""
     local: dict[str, Any] = {}
     texts: dict[str, str] = {}
     for name in GEARS:

@@ -29,9 +29,9 @@ from evolvent.results.archive.error_bar_data import (
     METHOD,
     EstimatedErrors,
     FigureErrors,
-    keep_errors,
+    requested_error_bars,
     summed_errors,
-    wanted_errors,
+    write_error_bars,
 )
 from evolvent.results.engagement import engagement, with_hertz
 from evolvent.results.error_bars.position_spacing import spacing_errors
@@ -75,10 +75,10 @@ class Companion:
 def with_errors(run: RunData, archive: Archive, companion: Companion | None) -> RunData:
     """The run with its error bars: those in the archive, or those estimated from the companion, which are then
     archived; none where its scene does not ask for them. Raises WriteError, FolderError."""
-    errors = wanted_errors(archive)
+    errors = requested_error_bars(archive)
     if errors is None and companion is not None:
         errors = estimated_errors(run, companion)
-        keep_errors(archive, errors)
+        write_error_bars(archive, errors)
     return replace(run, errors=errors or run.errors)
 
 

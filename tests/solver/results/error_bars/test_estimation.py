@@ -22,9 +22,9 @@ from evolvent.results.archive.error_bar_data import (
     NOT_ESTIMATED,
     EstimatedErrors,
     FigureErrors,
-    keep_errors,
-    kept_errors,
     plus_minus,
+    read_error_bars,
+    write_error_bars,
 )
 from evolvent.results.engagement import engagement
 from evolvent.results.error_bars.estimation import Companion, Curve, difference, errors_between, estimated_errors
@@ -190,17 +190,17 @@ def test_error_bars_are_read_as_archived(tmp_path: Path) -> None:
     in another way; no bars leave no file, and a broken file is none."""
     archive = Archive(tmp_path, spur_scene())
     archive.folder.mkdir()
-    keep_errors(archive, EstimatedErrors(missing="It rained."))
-    assert kept_errors(archive) is None
+    write_error_bars(archive, EstimatedErrors(missing="It rained."))
+    assert read_error_bars(archive) is None
     errors = EstimatedErrors((FigureErrors(1.0, 2.0, float("nan"), 4.0, 5.0, 0.1 + 0.2),), METHOD, "")
-    keep_errors(archive, errors)
-    assert repr(kept_errors(archive)) == repr(errors)
-    keep_errors(archive, replace(errors, method="guessed"))
-    assert kept_errors(archive) is None
-    keep_errors(archive, errors)
-    assert kept_errors(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
+    write_error_bars(archive, errors)
+    assert repr(read_error_bars(archive)) == repr(errors)
+    write_error_bars(archive, replace(errors, method="guessed"))
+    assert read_error_bars(archive) is None
+    write_error_bars(archive, errors)
+    assert read_error_bars(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
     (archive.folder / "errors.npz").write_bytes(b"PK half")
-    assert kept_errors(archive) is None
+    assert read_error_bars(archive) is None
 
 
 def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -92,7 +92,9 @@ def test_finished_run_has_all_its_files(whole: Path) -> None:
         ("kill-before-11", 1),
     ],
 )
-def test_killed_run_resumes_to_the_same_results(how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_killed_run_resumes_to_the_same_results(
+    how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path
+) -> None:
     """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
     resumed it is the undisturbed run. One is resumed on two ranks."""
     out = tmp_path / "out"

@@ -34,8 +34,8 @@ from evolvent.results.tables.run_warnings import SPACING_SAID, warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import load_scene
-from tests.support.run_parts import GOOD
 from evolvent_meshes.arrays import Floats
+from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run
 
 COARSE = ('mesh.level="quick"', "contact.friction=[0.2]")

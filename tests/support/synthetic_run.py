@@ -1,11 +1,11 @@
-"""A run that was never solved: Hertz pressure on the nominal contact lines of the Yang pair, load spread evenly.
+"""A synthetic run: Hertz pressure on the nominal contact lines of a pair, with an even line load.
 
-Line load q is the same on all contact lines and follows from the pinion's moment, friction included (before the pitch
-point it pushes against the pinion, after it with it):
+The line load q is the same on all contact lines. It follows from the pinion's moment with friction, which opposes the
+pinion's rotation before the pitch point and supports it after:
 
     T_1 = q ∫ (r_b1 cos β_b − μ ρ_1 sign(−ξ)) dl        T_2 = u (T_1 − friction power)
 
-so torques, energy and the friction trend are known in closed form, and every figure has something to show.
+Torques, energy and the effect of friction are therefore known in closed form, and every figure has data.
 """
 
 from __future__ import annotations
@@ -32,34 +32,39 @@ from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.sector import sector_mesh
 
-PEAK_TO_PEAK = 1.6e-3  # [mm] of the made-up transmission error
-STIFFNESS = 3e5  # [N/mm] along the line of action, over the whole face
-LAST_ROW = 0.3  # [mm of ξ] beside a tip edge that count as bearing on it
-WINDOW = 0.6  # [mm of arc] on either side of a contact line
+PEAK_TO_PEAK = 1.6e-3
+"""Peak-to-peak transmission error [mm]."""
+STIFFNESS = 3e5
+"""Tangent stiffness along the line of action, of the whole face [N/mm]."""
+LAST_ROW = 0.3
+"""Contact within this roll distance [mm] of an end of the path of contact bears on a tip edge."""
+WINDOW = 0.6
+"""Arc length on either side of a contact line within which nodes have results [mm]."""
 NO_STATE = SweepState((0.0, 0.0), ())
 
 
 def synthetic_scene(*overrides: str, file: str = "demos/yang2022.toml") -> Scene:
-    """A demo's scene at level quick, with few positions unless said otherwise."""
+    """The scene of a demo at level quick, by default with six positions."""
     return load_scene(file, ["mesh.level=quick", "sweep.positions=6", *overrides])
 
 
 @lru_cache(maxsize=4)
 def synthetic_run(*overrides: str, file: str = "demos/yang2022.toml") -> RunData:
-    """The whole run; see the module's docstring."""
+    """The run of a demo's scene, see the module."""
     scene = synthetic_scene(*overrides, file=file)
     shapes, flank = synthetic_shapes(scene)
     return run_data(scene, shapes, synthetic_sweep(scene, flank))
 
 
 def steep_run(*overrides: str) -> RunData:
-    """He's spur pair whose load on the tip edges is three times the evenly spread one, so that the pressure rises
-    between the last position and the beginning of a tip-edge zone, above that of all positions."""
+    """He's spur pair with three times the even load on tip edges: the pressure rises between the last position and the
+    limit of a tip-edge zone, and is largest there."""
     even = synthetic_run("sweep.positions=7", *overrides, file="demos/he2022.toml")
     return replace(even, positions=[tuple(map(_with_loaded_edges, position)) for position in even.positions])
 
 
 def _with_loaded_edges(solved: SolvedPosition) -> SolvedPosition:
+    """The position with three times the load on tip edges."""
     cut = solved.cut
     return replace(solved, cut=replace(cut, hertz=np.where(cut.edge, 3.0, 1.0) * cut.hertz))
 
@@ -76,7 +81,7 @@ def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface
 
 
 def synthetic_sweep(scene: Scene, flank: Surface) -> list[SweptPosition]:
-    """The pitch."""
+    """The positions of a pitch."""
     step = 2.0 * np.pi / scene.pinion.teeth / scene.sweep.positions
     return [
         SweptPosition(
@@ -89,7 +94,7 @@ def synthetic_sweep(scene: Scene, flank: Surface) -> list[SweptPosition]:
 
 
 def even_line_load(scene: Scene, angle: float, friction: float) -> float:
-    """q [N/mm of contact line]."""
+    """Line load q [N per mm of contact line] at a pinion rotation [rad]."""
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     cos_b, arms = np.cos(pair.pinion.base_helix_angle), 0.0
     for line in contact_lines(pair, angle):
@@ -101,7 +106,7 @@ def even_line_load(scene: Scene, angle: float, friction: float) -> float:
 
 
 def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: float) -> PositionResult:
-    """One position."""
+    """The result at a pinion rotation [rad] and a friction coefficient. flank: of the pinion."""
     pair, estimate, d = scene.gear_pair(), scene.hertz_estimate(), flank.points.shape[1]
     line = Ridge(pair, even_line_load(scene, angle, friction), estimate.modulus)
     error = 0.02 + 0.5 * PEAK_TO_PEAK * np.cos(angle * pair.pinion.z)
@@ -122,26 +127,29 @@ def synthetic_position(scene: Scene, flank: Surface, angle: float, friction: flo
 
 @dataclass(frozen=True)
 class Ridge:
-    """Hertz pressure along contact lines under the line load q [N/mm], modulus E* [MPa]."""
+    """Hertz pressure across contact lines under an even line load."""
 
     pair: GearPair
+    """The gear pair."""
     q: float
+    """Line load [N/mm]."""
     modulus: float
+    """Contact modulus E* [MPa]."""
 
     def at(self, s: Floats, ξ: Floats) -> Floats:
-        """Pressure [MPa] at distance s from the line where its roll distance is ξ."""
+        """Pressure (n,) [MPa] at distances s (n,) [mm] from the line, at roll distances ξ (n,) [mm]."""
         start, end = self.pair.path_of_contact
         radius = self.pair.relative_curvature_radius(np.clip(ξ, start, end))
         b, p0 = line_half_width(self.q, radius, self.modulus), line_peak_pressure(self.q, radius, self.modulus)
         return np.where((ξ >= start) & (ξ <= end), line_pressure(s / b, 1.0, 1.0) * p0, 0.0)
 
     def half_width(self, ξ: Floats) -> Floats:
-        """b [mm]."""
+        """Half-width b (n,) [mm] at roll distances ξ (n,) [mm]."""
         return line_half_width(self.q, self.pair.relative_curvature_radius(ξ), self.modulus)
 
 
 def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> ContactPoints:
-    """Three heights a layer of cells, forty points across; exact quadrature of the ellipse's square root."""
+    """Contact points of a tooth pair: three heights a layer of cells, and forty points across, exact for an ellipse."""
     pair, d = stand.pair, flank.points.shape[1]
     heights, widths = layer_points(flank)
     ξ = stand.roll_distance(tooth, heights)
@@ -163,7 +171,8 @@ def contact_points(stand: Stand, flank: Surface, tooth: int, line: Ridge, fricti
 
 
 def layer_points(flank: Surface) -> tuple[Floats, Floats]:
-    """Three Gauss points in every layer of cells along z, and their weights [mm; a sum of 1 in 2D]."""
+    """Heights (n,) [mm] of three Gauss points in every layer of cells along z, and their weights (n,) [mm]; a single
+    point of weight 1 in 2D."""
     if flank.points.shape[1] == 2:
         return np.zeros(1), np.ones(1)
     edges = np.unique(np.round(flank.points[:, 2], 9))[:: flank.order]
@@ -173,7 +182,7 @@ def layer_points(flank: Surface) -> tuple[Floats, Floats]:
 
 
 def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Floats, Floats, Floats]:
-    """(tooth, node, traction) at the nodes near a tooth's contact line."""
+    """Tooth (n,), node (n,) and traction (n, d) [MPa] at the nodes near a tooth's contact line."""
     pair, d = stand.pair, flank.points.shape[1]
     z = flank.points[:, 2] if d == 3 else np.zeros(len(flank.points))
     ρ = np.sqrt(np.maximum(np.sum(flank.points[:, :2] ** 2, axis=1) - pair.pinion.base_radius**2, 0.0))

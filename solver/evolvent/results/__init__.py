@@ -1,1 +1,1 @@
-"""A run's results as a gear engineer reads them."""
+"""Results of a run: archive, derived figures, error bars, tables, fields and pictures."""

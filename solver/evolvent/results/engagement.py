@@ -1,8 +1,8 @@
-"""The whole engagement of one tooth, put together from one pitch.
+"""Curves over the whole engagement of one tooth, assembled from the positions of one pitch.
 
-At pinion rotation φ + 2π/z_1 tooth pair i stands where pair i + 1 stood at φ. So pair i at φ is one tooth pair at
-φ + 2πi/z_1, its own rotation: 0 where its flanks meet at the pitch point of the mid-face section. A pitch with the
-three or four pairs that touch is then a curve over the whole engagement, each rotation met once.
+At pinion rotation φ + 2π/z_1 tooth pair i stands where pair i + 1 stood at φ. Pair i at φ therefore represents one
+tooth pair at its rotation φ + 2πi/z_1, which is 0 where the flanks meet at the pitch point of the mid-face section. The
+three or four pairs in contact over a pitch make one curve over the whole engagement, with each rotation once.
 """
 
 from __future__ import annotations
@@ -19,76 +19,83 @@ from evolvent.results.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Floats, Ints
 
 BESIDE = 3.0 * AT_LIMIT
-"""Roll distance [mm] from the end of a tip-edge zone within which a spur pair's position stands at it."""
+"""A position of a spur pair within this roll distance [mm] of a tip-edge zone's limit lies at the limit."""
 
 
 @dataclass(frozen=True)
-class TurnPeak:
-    """A pressure of an engagement."""
+class EngagementPeak:
+    """A peak pressure on the curve of an engagement."""
 
     angle: float
-    """The tooth's own pinion rotation [rad]."""
+    """Pinion rotation of the tooth [rad]; 0 at the pitch point."""
     pressure: float
-    """[MPa]."""
+    """Peak pressure [MPa]."""
     at_zone_end: bool
-    """It lies where a tip-edge zone begins, and pressure may rise on."""
+    """Whether it lies at the limit of a tip-edge zone, beyond which the pressure may rise further."""
     tooth: int
-    """The tooth pair of the pitch that has it."""
+    """Index of the tooth pair, within the pitch, on which it occurs."""
 
 
 @dataclass(frozen=True)
 class Engagement:
-    """One tooth's way through the mesh at one friction coefficient; entries (n,) ascend with `angle`.
-
-    angle: the tooth's own pinion rotation [rad]. position, tooth: where in the pitch it was computed. force: normal
-    [N]. share: of the sum over all teeth [-]. max_pressure, mean_pressure [MPa]: see `line_peak` and `line_mean`, NaN
-    where nothing of the line lies between the tip-edge zones. at_zone_end: (n,) bool, the maximum lies where such a
-    zone begins. contact_length [mm].
-    """
+    """The engagement of one tooth at one friction coefficient, sampled at n rotations in ascending order."""
 
     friction: float
+    """Friction coefficient μ."""
     angle: Floats
+    """(n,) pinion rotation of the tooth [rad]; 0 at the pitch point."""
     position: Ints
+    """(n,) index of the position of the pitch at which the entry was computed."""
     tooth: Ints
+    """(n,) index of the tooth pair, within the pitch, for which the entry was computed."""
     force: Floats
+    """(n,) normal force [N]."""
     share: Floats
+    """(n,) share of the normal force of all teeth in contact."""
     max_pressure: Floats
+    """(n,) largest peak pressure along the contact line [MPa], see `line_peak`; NaN where no part of the line lies
+    between the tip-edge zones."""
     at_zone_end: np.ndarray
+    """(n,) bool, whether that pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
+    """(n,) mean peak pressure along the contact line [MPa], see `line_mean`; NaN as `max_pressure`."""
     contact_length: Floats
-    zone_ends: tuple[TurnPeak, ...] = field(default=(), kw_only=True)
-    """Where a spur pair enters the tip-edge zones, between two positions."""
+    """(n,) length of the contact line [mm]."""
+    zone_ends: tuple[EngagementPeak, ...] = field(default=(), kw_only=True)
+    """Peaks of a spur pair at the limits of its tip-edge zones, between two positions."""
 
     @property
-    def peak(self) -> TurnPeak:
-        """The largest pressure. Raises ValueError where there is none."""
+    def peak(self) -> EngagementPeak:
+        """The largest pressure of the engagement. Raises ValueError where no pressure is known."""
         return self._largest(np.flatnonzero(np.isfinite(self.max_pressure)), self.zone_ends)
 
-    def peak_of(self, tooth: int) -> TurnPeak:
-        """The largest pressure of a tooth pair in the pitch. Raises ValueError where there is none."""
-        here = np.flatnonzero(np.isfinite(self.max_pressure) & (self.tooth == tooth))
-        return self._largest(here, [end for end in self.zone_ends if end.tooth == tooth])
+    def tooth_peak(self, tooth: int) -> EngagementPeak:
+        """The largest pressure on one tooth pair of the pitch. Raises ValueError where no pressure is known."""
+        entries = np.flatnonzero(np.isfinite(self.max_pressure) & (self.tooth == tooth))
+        return self._largest(entries, [end for end in self.zone_ends if end.tooth == tooth])
 
-    def _largest(self, here: Ints, ends: Iterable[TurnPeak]) -> TurnPeak:
-        """Of the entries `here` and the ends of zones."""
-        top = here[int(np.argmax(self.max_pressure[here]))]
-        own = TurnPeak(
+    def _largest(self, entries: Ints, ends: Iterable[EngagementPeak]) -> EngagementPeak:
+        """The largest pressure among the given entries and peaks at zone limits."""
+        top = entries[int(np.argmax(self.max_pressure[entries]))]
+        sampled = EngagementPeak(
             float(self.angle[top]), float(self.max_pressure[top]), bool(self.at_zone_end[top]), int(self.tooth[top])
         )
-        return max([own, *ends], key=lambda peak: peak.pressure)
+        return max([sampled, *ends], key=lambda peak: peak.pressure)
 
     @property
     def pressure_curve(self) -> tuple[Floats, Floats]:
-        """(rotations [rad], largest pressures [MPa]), those at `zone_ends` among them."""
+        """Rotations (m,) [rad], ascending, and largest pressures (m,) [MPa], with those at `zone_ends`."""
         angle = np.append(self.angle, [end.angle for end in self.zone_ends])
         order = np.argsort(angle, kind="stable")
         return angle[order], np.append(self.max_pressure, [end.pressure for end in self.zone_ends])[order]
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Rotations [rad] at which the tooth takes up its load and has given it up: the force is continued by the
-        parabola through its last three values, for a tip leaves its mate's path quadratically, and at most by a step,
-        for the next position has none."""
+        """Rotations [rad] at which the tooth takes up load and sheds it.
+
+        The force is extrapolated by the parabola through its last three values, because the gap at a tip opens
+        quadratically, and by at most one step, because the tooth carries no load at the next position.
+        """
         step = float(np.diff(self.angle).min(initial=np.inf))
         if not np.isfinite(step):
             return float(self.angle[0]), float(self.angle[-1])
@@ -97,8 +104,8 @@ class Engagement:
 
 
 def _steps_to_zero(force: Floats) -> float:
-    """In how many steps, at most one, a force is zero whose last values (2 or 3,), the very last one first, rise from
-    there; by a parabola where it falls ever faster, else by a straight line."""
+    """Steps, at most one, after which an extrapolated force is zero. force: its last values (2 or 3,), the last first.
+    Extrapolation is parabolic where the force falls ever faster, else linear."""
     slope = float(force[1] - force[0])
     bend = max(0.0, float(2.0 * force[1] - force[0] - force[-1])) if len(force) > 2 else 0.0
     fall = slope + 0.5 * bend  # F(x) = F_0 − fall·x − bend·x²/2 through x = 0, −1, −2
@@ -107,38 +114,40 @@ def _steps_to_zero(force: Floats) -> float:
 
 
 def engagement(run: RunData, index: int, inner: tuple[float, float] | None = None) -> Engagement:
-    """The engagement at friction coefficient number `index`. inner: roll distances [mm] between which pressures
-    are looked at; those of the run itself unless given, see `RunData.inner_path`."""
+    """The engagement at the friction coefficient with this index. inner: roll distances [mm] between which pressures
+    are evaluated, by default those of the run (`RunData.inner_path`)."""
     inner = inner or run.inner_path
     rows = [row for k, each in enumerate(run.positions) for row in _rows(run, k, each[index], inner)]
     columns = [np.array(column) for column in zip(*sorted(rows))]
     angle, position, tooth, *values = columns
-    radius, entered = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
+    radius, limits = run.pair.pinion.base_radius, _zone_ends(run, index, inner)
     curve = Engagement(run.frictions[index], angle, position, tooth, *values)
-    there = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in entered]
+    at_limit = [np.abs(radius * angle - peak.roll_distance) <= BESIDE for peak in limits]
     return replace(
         curve,
-        at_zone_end=np.any([curve.at_zone_end.astype(bool), *there], axis=0),
+        at_zone_end=np.any([curve.at_zone_end.astype(bool), *at_limit], axis=0),
         zone_ends=tuple(
-            TurnPeak(angle, peak.pressure, True, int((angle - run.angles[0]) // run.pitch))
-            for peak in entered for angle in [peak.roll_distance / radius]
+            EngagementPeak(angle, peak.pressure, True, int((angle - run.angles[0]) // run.pitch))
+            for peak in limits for angle in [peak.roll_distance / radius]
         ),
     )  # fmt: skip
 
 
 def _zone_ends(run: RunData, index: int, inner: tuple[float, float]) -> list[LinePeak]:
-    """Of a spur pair; a helical line's own slices enter the zones one by one, see `line_peak`."""
+    """Peaks of a spur pair at the limits of its tip-edge zones. A helical pair has none between positions: the slices
+    of its contact line enter the zones one by one, see `line_peak`."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
     return zone_end_peaks(run.pair, Slices.joined([each[index].cut for each in run.positions]), inner)
 
 
 def engagements(run: RunData, inner: tuple[float, float] | None = None) -> list[Engagement]:
-    """One per friction coefficient; inner: see `engagement`."""
+    """The engagement at each friction coefficient, in the order of the run. inner: see `engagement`."""
     return [engagement(run, index, inner) for index in range(len(run.frictions))]
 
 
 def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, float]) -> list[tuple[float, ...]]:
+    """Entries of `Engagement` after `friction`, one a tooth pair in contact at position k."""
     total = sum(tooth.force for tooth in solved.teeth)
     peaks = [line_peak(run.pair, solved.cut, tooth.tooth, inner) for tooth in solved.teeth]
     return [
@@ -158,20 +167,20 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
 
 
 def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
-    """The run with Hertz's peak pressure for its own line load in place of each slice's fitted one. at_edges: also
-    where a slice bears on a tip edge."""
+    """The run with Hertz' peak pressure for each slice's line load in place of the fitted peak. at_edges: also where a
+    slice bears on a tip edge."""
 
-    def exact(solved: SolvedPosition) -> SolvedPosition:
+    def replaced(solved: SolvedPosition) -> SolvedPosition:
         cut = solved.cut
         peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
         return replace(solved, cut=replace(cut, peak=peak))
 
-    return replace(run, positions=tuple(tuple(exact(solved) for solved in each) for each in run.positions))
+    return replace(run, positions=tuple(tuple(replaced(solved) for solved in each) for each in run.positions))
 
 
 def largest_peak(run: RunData, index: int) -> LinePeak:
-    """The largest pressure of all positions and teeth, and between positions where a spur pair enters a tip-edge
-    zone."""
+    """The largest pressure of all positions and teeth at the friction coefficient with this index; on a spur pair also
+    at the limits of tip-edge zones between positions. `NO_PEAK` where no pressure is known."""
     radius = run.pair.pinion.base_radius
     if run.pair.pinion.base_helix_angle == 0.0:
         curve = engagement(run, index)
@@ -179,12 +188,12 @@ def largest_peak(run: RunData, index: int) -> LinePeak:
             return NO_PEAK
         return LinePeak(radius * curve.peak.angle, curve.peak.pressure, curve.peak.at_zone_end)
     lines = [(each[index].cut, tooth.tooth) for each in run.positions for tooth in each[index].teeth]
-    found = [line_peak(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
-    return max((peak for peak in found if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
+    peaks = [line_peak(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
+    return max((peak for peak in peaks if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
 
 
 def sign_changes(x: Floats, y: Floats) -> Floats:
-    """Where the curve y (n,) over x (n,) crosses zero, by linear interpolation; NaN in y is passed over."""
+    """Places (m,) at which the curve y (n,) over x (n,) crosses zero, by linear interpolation; NaN in y is skipped."""
     known = np.isfinite(y)
     x, y = x[known], y[known]
     positive = y >= 0.0
@@ -193,8 +202,8 @@ def sign_changes(x: Floats, y: Floats) -> Floats:
 
 
 def crossing(low: Engagement, high: Engagement) -> float:
-    """The tooth's rotation [rad] at which the curves of maximum pressure of two friction coefficients cross, the one
-    nearest to the pitch point; NaN where they do not cross."""
+    """Rotation of the tooth [rad] at which the curves of maximum pressure at two friction coefficients cross: the
+    crossing nearest to the pitch point, NaN where there is none."""
     angle, first, second = np.intersect1d(np.round(low.angle, 9), np.round(high.angle, 9), return_indices=True)
-    found = sign_changes(angle, high.max_pressure[second] - low.max_pressure[first])
-    return float(found[np.argmin(np.abs(found))]) if len(found) else float("nan")
+    crossings = sign_changes(angle, high.max_pressure[second] - low.max_pressure[first])
+    return float(crossings[np.argmin(np.abs(crossings))]) if len(crossings) else float("nan")

@@ -22,9 +22,9 @@ class MeshFacts:
     min_scaled_jacobian: float
     """Smallest scaled Jacobian of the cells of both sectors; 1 is a cube, 0 a cell that is folded."""
     cells_across_contact_width: float
-    """Elements across the width 2b_H of the contact as it was found, in the median."""
+    """Elements across the fitted contact width 2b, median of all slices."""
     cells_across_narrow_contact: float
-    """The same where the contact is narrowest: nine in ten of all slices and positions have more."""
+    """Elements across the narrowest tenth of the contact: nine of ten slices of all positions have more."""
 
 
 def cells_across(run: RunData, share: float = 0.5) -> float:

@@ -1,15 +1,16 @@
-"""Where a linear tip relief begins: a kink of the flank, over which the pressure is higher than Hertz'.
+"""Pressure over the start of a linear tip relief, a kink of the flank at which it exceeds Hertz' pressure.
 
-A spur pair's contact rolls over it all at once, perhaps between two positions. The largest pressure on the way, as
-`gear_results.fitted_peak` has it, is known without a position there. It is found where the kink lies in the middle: the
-gap across the contact is x²/2R + α|x|, 2α the kink's angle, that of a cylinder and a blunt wedge on one another. Their
+The whole contact line of a spur pair passes the kink at once, possibly between two positions. The largest fitted peak
+(`contact_slices.fitted_peak`) during that passage is known in closed form. It occurs with the kink in the middle of the
+contact: the gap is then x²/2R + α|x|, 2α the angle of the kink, as between a cylinder and a blunt wedge. Their
 pressures on the same half-width a add up:
 
     F' = π E* a²/4R + E* α a                                    K. L. Johnson, *Contact Mechanics* (1985), 4.43 and 5.44
     M_2 = a²/4 of the first part + a²/6 of the second            from p = p0 √(1 − x²/a²) and (E* α/π) arcosh(a/|x|)
 
-The half-ellipse of this load and second moment is κ times as high as Hertz' p0, which depends on k = 4αR/πb = 2αE*/πp0
-alone. The pressure itself has no bound at the kink; how far it rises is a matter of how sharp that is made.
+The half-ellipse with this load and second moment is κ times as high as Hertz' p0, where κ depends on
+k = 4αR/πb = 2αE*/πp0 alone. The pressure itself is unbounded at an ideal kink; how far it rises depends on the radius
+with which the kink is manufactured.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from math import pi, sqrt
 import numpy as np
 
 from evolvent.fem.material import contact_modulus
-from evolvent.results.engagement import TurnPeak
+from evolvent.results.engagement import EngagementPeak
 from evolvent.results.run_data import RunData
 from evolvent_meshes.gears.flank import MICROMETRE
 from evolvent_meshes.gears.member import Member
@@ -30,54 +31,59 @@ from evolvent_meshes.gears.pair import GearPair
 
 @dataclass(frozen=True)
 class ReliefKink:
-    """What a run's contact meets where it rolls over the start of a linear tip relief."""
+    """Contact pressure at the start of a linear tip relief."""
 
-    ξ: float
-    """Roll distance [mm] of the kink."""
-    way: float
-    """Roll distance [mm] on either side of it within which the contact may lie on it."""
+    roll_distance: float
+    """Roll distance ξ of the kink from the pitch point [mm]."""
+    half_range: float
+    """Roll distance on either side of the kink within which the contact covers it [mm]."""
     hertz: float
-    """Hertz' pressure [MPa] for the largest line load beside it."""
+    """Hertz' peak pressure for the largest line load near the kink [MPa]."""
     pressure: float
-    """The largest fitted pressure [MPa] on the way over it."""
+    """Largest fitted peak pressure while the contact passes the kink [MPa]."""
 
 
 def wedge_factor(k: float) -> float:
-    """κ ≥ 1: the fitted peak pressure over a kink in the middle of a line contact, over Hertz'; k = 2αE*/πp0."""
-    a = sqrt(1.0 + 0.25 * k**2) - 0.5 * k  # over Hertz' half-width: a² + ka = 1
+    """Ratio κ ≥ 1 of the fitted peak pressure, with a kink in the middle of a line contact, to Hertz' peak pressure for
+    the same load. k: 2αE*/πp0."""
+    a = sqrt(1.0 + 0.25 * k**2) - 0.5 * k  # half-width over Hertz': a² + ka = 1
     return 1.0 / (a * sqrt(1.0 - a * k / 3.0))
 
 
 def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
-    """Of a spur pair at friction coefficient number `index`, between the tip-edge zones; a helical line lies across the
-    kink at every position."""
+    """The kinks of a spur pair between its tip-edge zones, at the friction coefficient with this index. Empty for a
+    helical pair, whose contact line crosses the kink at every position."""
     if run.pair.pinion.base_helix_angle != 0.0:
         return []
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     modulus = contact_modulus(*run.scene.materials())
     at = np.concatenate([each[index].cut.roll_distance for each in run.positions])
     hertz = np.concatenate([each[index].cut.hertz for each in run.positions])
-    found = []
+    kinks = []
     for ξ, angle, roll in _kinks(run.pair):
         beside = hertz[np.abs(at - ξ) <= step]
         p0 = float(beside.max(initial=0.0))
         if run.inner_path[0] < ξ < run.inner_path[1] and p0 > 0.0:
             radius = float(run.pair.relative_curvature_radius(ξ))
-            way = roll * radius * (2.0 * p0 / modulus + angle)  # Hertz' half-width, and while the contact turns
-            found.append(ReliefKink(ξ, way, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
-    return found
+            half_range = roll * radius * (2.0 * p0 / modulus + angle)  # Hertz' half-width, and the turn of the normal
+            kinks.append(ReliefKink(ξ, half_range, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
+    return kinks
 
 
-def peak_over_kink(run: RunData, index: int, peak: TurnPeak) -> ReliefKink | None:
-    """The kink at which the largest pressure of the engagement lies, or may lie between two positions; None where
-    there is none."""
+def peak_over_kink(run: RunData, index: int, peak: EngagementPeak) -> ReliefKink | None:
+    """The kink at which the largest pressure of an engagement lies, or may lie between two positions; None where no
+    kink applies. peak: the engagement's largest pressure."""
     ξ = run.pair.pinion.base_radius * peak.angle
-    found = [kink for kink in relief_kinks(run, index) if kink.pressure > peak.pressure or abs(ξ - kink.ξ) <= kink.way]
-    return max(found, key=lambda kink: kink.pressure, default=None)
+    relevant = [
+        kink for kink in relief_kinks(run, index)
+        if kink.pressure > peak.pressure or abs(ξ - kink.roll_distance) <= kink.half_range
+    ]  # fmt: skip
+    return max(relevant, key=lambda kink: kink.pressure, default=None)
 
 
 def _kinks(pair: GearPair) -> Iterator[tuple[float, float, float]]:
-    """Roll distance ξ [mm], angle 2α [rad] and dξ over the arc of the flank, of each linear tip relief."""
+    """For each linear tip relief: roll distance ξ [mm], angle of the kink 2α [rad], derivative of ξ by the flank's arc
+    length."""
     for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
         relief = gear.modifications
         start = relief.tip_relief_start_diameter

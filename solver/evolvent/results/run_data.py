@@ -1,4 +1,4 @@
-"""A finished run in memory: what tables, fields and pictures are made from."""
+"""A finished run in memory, from which tables, fields and pictures are made."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, ArchiveError, GearShape
-from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, wanted_errors
+from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
 from evolvent.results.contact_slices import Slices, ToothSummary, slices, tooth_summaries
 from evolvent.results.tip_zones import path_between_zones, row_before_tip
 from evolvent.scene.scene import Scene, load_scene
@@ -23,10 +23,12 @@ from evolvent_meshes.gears.pair import GearPair
 
 @dataclass(frozen=True)
 class FlankNodes:
-    """The loaded flank's nodes of a gear's tooth 0 in its own frame: points (n, 3) [mm]."""
+    """Nodes of the loaded flank of a gear's tooth 0."""
 
     gear: GearParameters
+    """The gear."""
     points: Floats
+    """(n, 3), nodes in the gear's own frame [mm]."""
 
     @property
     def z(self) -> Floats:
@@ -42,39 +44,43 @@ class FlankNodes:
 
 @dataclass(frozen=True)
 class SolvedPosition:
-    """One position at one friction coefficient, and what is read from it. 2D values are per mm of width."""
+    """One position at one friction coefficient, evaluated by slices and teeth. Values of a 2D run are per mm of
+    width."""
 
     result: PositionResult
+    """The solution."""
     cut: Slices
+    """Its contact in slices."""
     teeth: tuple[ToothSummary, ...]
+    """Its tooth pairs in contact, ascending."""
 
 
 @dataclass(frozen=True)
 class RunData:
-    """A scene and its results over one base pitch.
-
-    shapes: surfaces of (pinion, wheel). positions: (positions of the pitch, friction coefficients).
-    errors: the figures' error bars.
-    """
+    """A scene and its results over one base pitch."""
 
     scene: Scene
+    """The scene as it was solved."""
     shapes: tuple[GearShape, GearShape]
+    """Sector surfaces of pinion and wheel."""
     positions: tuple[tuple[SolvedPosition, ...], ...]
+    """The positions of the pitch; of each, the results at all friction coefficients."""
     errors: EstimatedErrors = NOT_ESTIMATED
+    """Error bars of the engineering figures."""
 
     @cached_property
     def pair(self) -> GearPair:
-        """The scene's gears."""
+        """The gear pair of the scene."""
         return self.scene.gear_pair()
 
     @cached_property
     def plane(self) -> bool:
-        """True where the scene was solved in 2D."""
+        """Whether the scene was solved in 2D."""
         return is_plane(self.shapes[0])
 
     @property
     def width(self) -> float:
-        """By which results must be multiplied: the face width [mm] of a 2D run, 1 in 3D."""
+        """Factor from results to values of the whole face: the face width [mm] in 2D, 1 in 3D."""
         return self.pair.face_width if self.plane else 1.0
 
     @property
@@ -102,32 +108,22 @@ class RunData:
 
     @cached_property
     def flank(self) -> FlankNodes:
-        """The pinion's flank nodes, in the order of PositionResult.node."""
+        """Nodes of the pinion's loaded flank, in the order of PositionResult.node."""
         return flank_nodes(self.pair.pinion, self.shapes[0])
 
 
-@dataclass(frozen=True)
-class Companion:
-    """The companion's run, on rank 0; None on the others, and where it failed for the reason `failure`."""
-
-    run: RunData | None
-    failure: str
-    seconds: float
-
-
-
 def flank_nodes(gear: GearParameters, shape: GearShape) -> FlankNodes:
-    """The nodes of a gear's loaded flank."""
+    """Nodes of a gear's loaded flank, in the order of GearShape.flank_nodes."""
     return FlankNodes(gear, shape.points[shape.flank_nodes])
 
 
 def is_plane(shape: GearShape) -> bool:
-    """True if the shape comes from a 2D mesh."""
+    """Whether the shape comes from a 2D mesh."""
     return "face_low" not in shape.facets
 
 
 def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[SweptPosition]) -> RunData:
-    """Puts a run together. Raises ArchiveError where no position of the pitch is there yet."""
+    """The run with these positions. Raises ArchiveError if there is no position."""
     if not swept:
         raise ArchiveError("wanted at least one position of the pitch, found none; let the run go on with --resume")
     flank, materials = flank_nodes(scene.gear_pair().pinion, shapes[0]), scene.materials()
@@ -140,8 +136,8 @@ def run_data(scene: Scene, shapes: tuple[GearShape, GearShape], swept: Sequence[
 
 
 def read_run(folder: Path) -> RunData:
-    """The run that `folder` holds: OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
+    """The run in the folder OUT, from OUT/scene.toml and OUT/results. Raises SceneError, ArchiveError."""
     scene = load_scene(folder / "scene.toml")
     archive = Archive(folder, scene)
     run = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
-    return replace(run, errors=wanted_errors(archive) or run.errors)
+    return replace(run, errors=requested_error_bars(archive) or run.errors)

@@ -1,7 +1,7 @@
-"""What the mesh does to the shafts: force on each gear and its tilting moment, from the nodal forces of the contact.
+"""Loads of the mesh on the shafts: force and tilting moment on each gear, from the nodal contact forces.
 
-Of a gear, at the pitch point: tangential = T/r_w, radial = tangential · tan α_wt, axial = tangential · tan β_w, without
-friction and with all flanks' normals as designed (ISO 21771).
+Without friction and with the flanks' nominal normals they are, at the pitch point (ISO 21771): tangential force T/r_w,
+radial force F_t tan α_wt, axial force F_t tan β_w.
 """
 
 from __future__ import annotations
@@ -19,46 +19,47 @@ from evolvent_meshes.gears.member import Member
 
 @dataclass(frozen=True)
 class ShaftForces:
-    """What the mesh does to a gear, friction included: mean over the pitch, and largest less smallest value.
+    """Loads of the mesh on a gear with friction: mean over the pitch, and peak-to-peak value.
 
-    The forces act on the gear; bearings react with the opposite. x: along the line of centres, from pinion to wheel; z:
-    along the axes; seen from +z the pinion turns counter-clockwise; y = z × x.
+    The forces act on the gear; the bearing reactions are opposite. x points along the line of centres from pinion to
+    wheel, z along the axes, and y = z × x. Seen from +z the pinion turns counter-clockwise.
     """
 
     tangential_N: float
-    """Along y: on the pinion positive along −y, against its rotation; on the wheel along +y, with its rotation."""
+    """Tangential force: on the pinion positive along −y, against its rotation; on the wheel positive along +y, with its
+    rotation."""
     tangential_peak_to_peak_N: float
-    """Of the tangential force."""
+    """Largest less smallest tangential force of the pitch."""
     radial_N: float
-    """Along x, positive where it pushes the gears apart: on the pinion along −x, on the wheel along +x."""
+    """Radial force, positive where it separates the gears: on the pinion along −x, on the wheel along +x."""
     radial_peak_to_peak_N: float
-    """Of the radial force."""
+    """Largest less smallest radial force of the pitch."""
     axial_N: float
-    """Along +z: positive on a right-hand pinion, negative on its wheel."""
+    """Axial force along +z: positive on a right-hand pinion, negative on its wheel."""
     axial_peak_to_peak_N: float
-    """Of the axial force."""
+    """Largest less smallest axial force of the pitch."""
     moment_x_Nm: float
-    """Tilting moment about x, at mid-face on the gear's axis: where along the face the load lies."""
+    """Tilting moment about x, at mid-face on the gear's axis: it shows where along the face the load lies."""
     moment_x_peak_to_peak_Nm: float
-    """Of that moment."""
+    """Largest less smallest tilting moment about x of the pitch."""
     moment_y_Nm: float
     """Tilting moment about y, at mid-face on the gear's axis: mostly the axial force times the pitch radius."""
     moment_y_peak_to_peak_Nm: float
-    """Of that moment."""
+    """Largest less smallest tilting moment about y of the pitch."""
 
 
 def shaft_forces(run: RunData, gear: Member, index: int) -> ShaftForces:
-    """On the pinion or the wheel, at friction coefficient number `index`."""
-    shape, apart = run.shapes[gear], -gear.sign
+    """Loads on the pinion or the wheel at the friction coefficient with this index."""
+    shape, separating = run.shapes[gear], -gear.sign
     nodes = shape.points[shape.flank_nodes]
     loads = run.width * np.array([_load(each[index].result, gear, nodes) for each in run.positions])
-    signed = loads[:, [1, 0, 2, 3, 4]] * [apart, apart, 1.0, 1e-3, 1e-3]
+    signed = loads[:, [1, 0, 2, 3, 4]] * [separating, separating, 1.0, 1e-3, 1e-3]
     return ShaftForces(*np.column_stack([signed.mean(axis=0), np.ptp(signed, axis=0)]).ravel().tolist())
 
 
 def _load(result: PositionResult, gear: Member, nodes: Floats) -> Floats:
-    """Force (x, y, z) [N] on a gear and its moments about x and y [N·mm], per mm of width in 2D, in the common frame;
-    nodes: (n, d) of its flank in its own frame [mm]."""
+    """(5,): force (x, y, z) on a gear [N] and its moments about x and y [N·mm] in the common frame; per mm of width in
+    2D. nodes: (n, d) of the gear's flank in its own frame [mm]."""
     rows, forces = (result.pinion_rows, result.wheel_rows)[gear], (result.pinion_forces, result.wheel_forces)[gear]
     d, pitch = forces.shape[1], 2.0 * np.pi / result.stand.pair.gears[gear].z
     R = result.stand.rotation(gear, d)
@@ -67,7 +68,7 @@ def _load(result: PositionResult, gear: Member, nodes: Floats) -> Floats:
         return np.append(f.sum(axis=0), [0.0, 0.0, 0.0])
     moment = np.zeros(d)
     for tooth in np.unique(rows[:, 0]):
-        own = rows[:, 0] == tooth
-        points = nodes[rows[own, 1]] @ (R @ turn(float(tooth) * pitch, d)).T
-        moment += np.cross(points, f[own]).sum(axis=0)
+        here = rows[:, 0] == tooth
+        points = nodes[rows[here, 1]] @ (R @ turn(float(tooth) * pitch, d)).T
+        moment += np.cross(points, f[here]).sum(axis=0)
     return np.concatenate([f.sum(axis=0), moment[:2]])

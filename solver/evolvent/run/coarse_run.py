@@ -20,8 +20,9 @@ from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
 from evolvent.results.archive.archive import gear_shape
-from evolvent.results.archive.error_bar_data import kept_errors
-from evolvent.results.run_data import Companion, RunData, run_data
+from evolvent.results.archive.error_bar_data import read_error_bars
+from evolvent.results.error_bars.estimation import Companion
+from evolvent.results.run_data import RunData, run_data
 from evolvent.run.context import RunContext
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.gear_problem import gear_problem
@@ -39,7 +40,7 @@ LEAST_LAYERS = 2
 
 def companion_of(run: RunContext, scene: Scene) -> Companion | None:
     """The solved companion, None where its error bars are in the archive already. Collective."""
-    if run.on_first(lambda: kept_errors(run.archive(scene))) is not None:
+    if run.on_first(lambda: read_error_bars(run.archive(scene))) is not None:
         return None
     companion = solve_companion(scene, pitch_of(scene), run.comm)
     if companion.failure:

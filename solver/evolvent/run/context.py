@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.results.archive.archive import Archive
-from evolvent.results.archive.run_cost import Cost, Timings, kept_cost
+from evolvent.results.archive.run_cost import Cost, Timings, read_cost
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.progress import Progress
 from evolvent.run.run_log import RunLog, logged
@@ -69,7 +69,7 @@ def run_context(folder: RunFolder, comm: MPI.Comm, resume: bool, quiet: bool, be
 
     Collective. Raises ArchiveError where the cost of earlier parts cannot be read.
     """
-    earlier = on_first(comm, lambda: kept_cost(folder) if resume else Cost())
+    earlier = on_first(comm, lambda: read_cost(folder) if resume else Cost())
     with logged(folder, comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
         yield RunContext(comm, folder, log, progress, resume, earlier, begin)
 

@@ -54,14 +54,14 @@ def _keep_sources(scene: Scene, folder: RunFolder, source: Path | None) -> None:
 
 def changed_files(out: Path) -> str:
     """A sentence on the files of a run that have been changed since, empty where there are none."""
-    files = ", ".join(map(str, RunFolder(out).changed(WRITTEN)))
+    files = ", ".join(map(str, RunFolder(out).changed_files(WRITTEN)))
     remedy = "move or remove that, and `evolvent run ... --resume` writes it anew"
     return f"changed, or cut off, since a run has written it: {files}; {remedy}" if files else ""
 
 
 def foreign_files(out: Path) -> str:
     """A sentence on the foreign files in the folder, empty where there are none."""
-    theirs = RunFolder(out).theirs()
-    named = ", ".join(path.relative_to(out).as_posix() for path in theirs[:NAMED])
-    more = f" and {len(theirs) - NAMED} more" if len(theirs) > NAMED else ""
-    return f"left alone, as no run has made them: {named}{more}" if theirs else ""
+    foreign = RunFolder(out).foreign_files()
+    named = ", ".join(path.relative_to(out).as_posix() for path in foreign[:NAMED])
+    more = f" and {len(foreign) - NAMED} more" if len(foreign) > NAMED else ""
+    return f"left alone, as no run has made them: {named}{more}" if foreign else ""

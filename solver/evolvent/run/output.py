@@ -8,14 +8,14 @@ from pathlib import Path
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.results.archive.archive import Meshes
-from evolvent.results.archive.run_cost import Cost, keep_cost
-from evolvent.results.archive.scene_files import keep_scene
+from evolvent.results.archive.run_cost import Cost, write_cost
+from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.drawing.picture_files import Drawn, draw
-from evolvent.results.error_bars.estimation import with_errors
+from evolvent.results.error_bars.estimation import Companion, with_errors
 from evolvent.results.fields.deformation import Deformation
 from evolvent.results.fields.paraview import write_fields
 from evolvent.results.mesh_facts import NARROW, MeshFacts, cells_across
-from evolvent.results.run_data import Companion, RunData, run_data
+from evolvent.results.run_data import RunData, run_data
 from evolvent.results.tables.summary_rows import RunFacts
 from evolvent.results.tables.tables import summary, write_summary, write_tables
 from evolvent.run.context import RunContext
@@ -47,14 +47,14 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
     begin, archive = time.perf_counter(), run.archive(scene)
     data = run_data(scene, archive.read_gears(), archive.read_positions(scene.gear_pair()))
     data = with_errors(data, archive, extra.companion)
-    keep_scene(scene, archive.files)  # a resumed run may ask for other output
+    write_scene(scene, archive.files)  # a resumed run may ask for other output
     error_bars = 0.0 if extra.companion is None else extra.companion.seconds
 
     def cost() -> Cost:
         timings = replace(record.timings, error_bars=error_bars, output=time.perf_counter() - begin, total=run.seconds)
         return run.cost(timings, memory_MB)
 
-    keep_cost(archive.files, cost())  # the error bars are archived, so their cost is too
+    write_cost(archive.files, cost())  # the error bars are archived, so their cost is too
     tables = summary(data, facts_of(data, record.meshes, run.comm.size, cost()))
     write_tables(archive.files, tables)
     show(replace(data, scene=scene.model_copy(update={"output": wanted_output(scene)})), run)
@@ -64,7 +64,7 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
         run.log.info("fields: %s", write_deformed(data, extra.deformation, archive.files))
     total = cost()  # with fields and pictures
     write_summary(archive.files, replace(tables, timings_s=total.timings))
-    keep_cost(archive.files, total)
+    write_cost(archive.files, total)
     for sentence in tables.warnings:
         run.log.warning(sentence)
     run.log.info("done in %.1f s, %.0f MB", run.seconds, memory_MB)

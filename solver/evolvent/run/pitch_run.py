@@ -12,7 +12,7 @@ from evolvent.gears.solution.certificates import PitchImbalance, balance_error, 
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
 from evolvent.results.archive.archive import Archive, Meshes
-from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
+from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.run.context import RunContext
 from evolvent.run.progress import POSITIONS
 from evolvent.run.start import ResumePoint, checked_meshes, open_archive, prepare_gears, timings_of
@@ -156,7 +156,7 @@ def _on_deflected_flanks(gears: Preparation) -> Preparation:
 def _keep(archive: Archive, index: int, position: SweptPosition, cost: Cost) -> None:
     """Archives a position. Raises WriteError, FolderError."""
     archive.write_position(index, position)
-    keep_cost(archive.files, cost)
+    write_cost(archive.files, cost)
 
 
 def friction_groups(scene: Scene) -> list[slice]:

@@ -11,7 +11,7 @@ from evolvent.gears.sweep.pitch_sweep import SweepState
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import SCENE_FILES, keep_scene
+from evolvent.results.archive.scene_files import SCENE_FILES, write_scene
 from evolvent.run.context import RunContext
 from evolvent.run.progress import CONDENSING, MESHING
 from evolvent.scene.gear_problem import gear_problem
@@ -57,7 +57,7 @@ def no_results_warning(scene: Scene, archive: Archive) -> str:
 def scene_to_solve(scene: Scene, archive: Archive, resume: bool) -> Scene:
     """The scene, on deflected flanks where the run to be resumed had switched to them."""
     deflected = with_deflected_flanks(scene)
-    return deflected if resume and Archive(archive.out, deflected).is_own() else scene
+    return deflected if resume and Archive(archive.out, deflected).holds_scene() else scene
 
 
 def prepare_gears(run: RunContext, scene: Scene) -> Preparation:
@@ -93,7 +93,7 @@ def open_archive(scene: Scene, archive: Archive, meshes: Meshes, resumed: bool) 
     else:
         clear(archive.files)
         archive.write_gears(gear_shapes(meshes))
-    keep_scene(scene, archive.files)
+    write_scene(scene, archive.files)
 
 
 def clear(folder: RunFolder) -> None:

@@ -11,9 +11,9 @@ from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
 from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.archive import Archive, Meshes
-from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
+from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import keep_scene
+from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.drawing.picture_files import draw
 from evolvent.results.run_data import run_data
 from evolvent.results.tables.tables import summary, write_tables
@@ -128,7 +128,7 @@ def _write(
     if stage.report and state.cycles == 0.0:
         clear(archive.files)
         write_pitch(archive, meshes, state.evaluation.positions)
-        keep_scene(scene, archive.files)
+        write_scene(scene, archive.files)
     elif stage.report:
         folder = worn_folder(archive.out, state.cycles)
         RunFolder(folder).clear()
@@ -137,9 +137,9 @@ def _write(
         write_pitch(worn_archive, meshes, state.evaluation.positions)
         data = run_data(worn, worn_archive.read_gears(), worn_archive.read_positions(worn.gear_pair()))
         write_tables(worn_archive.files, summary(data, facts_of(data, meshes, ranks, cost)))
-        keep_cost(worn_archive.files, cost)
+        write_cost(worn_archive.files, cost)
     write_checkpoint(archive, study)
-    keep_cost(archive.files, cost)
+    write_cost(archive.files, cost)
 
 
 def _log_line(stage: StudyState) -> str:

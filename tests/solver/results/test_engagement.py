@@ -77,7 +77,7 @@ def test_maximum_pressure_is_hertz_at_the_smallest_radius(run: RunData) -> None:
         assert curve.max_pressure[k] == pytest.approx(exact, rel=tolerance)
 
 
-def test_largest_peak(run: RunData) -> None:
+def test_largest_peak_is_at_the_limit_of_the_root_zone(run: RunData) -> None:
     """Problem: Hertz pressure with even load. Exact: the engagement's largest pressure, where the flanks are most
     curved: where a line enters the tip-edge zone towards the pinion's root."""
     top, curve = largest_peak(run, 0), engagement(run, 0)
@@ -112,7 +112,7 @@ def test_maximum_scatters_less_than_the_fits(run: RunData) -> None:
     np.testing.assert_allclose(uneven[known], even[known], rtol=0.016)
 
 
-def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
+def test_peak_at_a_zone_limit_follows_the_load(run: RunData) -> None:
     """Problem: a line whose load rises from 300 to 500 N/mm towards the tip edge, with peaks 3 % over Hertz's; its last
     slices bear on the edge, the very last over half of its width. Exact: 3 % over Hertz for the load where the zone
     begins, between the slices; the last peak that could be fitted is 3 % lower."""
@@ -128,7 +128,7 @@ def test_peak_at_the_zone_follows_the_load(run: RunData) -> None:
     assert peak[2] < 0.97 * exact
 
 
-def test_round_off_does_not_decide_at_the_end() -> None:
+def test_round_off_does_not_decide_at_a_zone_limit() -> None:
     """Problem: a slice that stands where the zone begins, as that of another mesh at the same position does, and the
     same a nanometre to either side; its pressure is ten times the others'. Exact: the mean of the others."""
     ones, peak = np.ones(3), np.array([10.0, 1.0, 1.0])
@@ -138,7 +138,7 @@ def test_round_off_does_not_decide_at_the_end() -> None:
         assert line_mean(cut, 0, (-4.0, 6.0)) == 1.0
 
 
-def test_sign_changes() -> None:
+def test_sign_changes_are_interpolated() -> None:
     """y = x² − 2 on a grid that misses ±√2; linear interpolation errs by h²/8·y''/|y'| < 1e-4; NaN is skipped."""
     x = np.linspace(-3.0, 3.0, 302)
     y = x**2 - 2.0
@@ -148,7 +148,7 @@ def test_sign_changes() -> None:
 
 
 @pytest.mark.parametrize("step", [0.1, 0.05, 0.013])
-def test_ends_where_the_force_is_zero(step: float) -> None:
+def test_engagement_ends_where_the_force_is_zero(step: float) -> None:
     """Forces that fall as parabolas from −0.731 and 0.684 on both sides: found to rounding from any positions; those
     that fall by straight lines too; and no further than a step where the force hardly falls."""
     x = np.arange(-2.0, 2.0, step) + 0.3 * step

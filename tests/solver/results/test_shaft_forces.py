@@ -57,7 +57,7 @@ def textbook(run: RunData, gear: Member) -> tuple[float, float, float, float]:
 
 
 @pytest.mark.parametrize("gear", Member)
-def test_without_friction(gear: Member, run: RunData) -> None:
+def test_shaft_forces_without_friction_are_those_of_the_standard(gear: Member, run: RunData) -> None:
     """Within 0.2 %, all signs included: a right-hand pinion is pushed along +z, which tilts it about −y."""
     found, (tangential, radial, axial, moment) = shaft_forces(run, gear, 0), textbook(run, gear)
     sign = 1.0 if gear == 0 else -1.0
@@ -70,7 +70,7 @@ def test_without_friction(gear: Member, run: RunData) -> None:
 
 
 @pytest.mark.parametrize("index", [0, 1])
-def test_action_and_reaction(index: int, run: RunData) -> None:
+def test_shaft_forces_on_both_gears_are_opposite(index: int, run: RunData) -> None:
     """Positive apart and with T_2, against T_1: the same figures on both gears; the axial ones opposite."""
     pinion, wheel = (shaft_forces(run, gear, index) for gear in Member)
     for name in ("tangential_N", "radial_N", "tangential_peak_to_peak_N", "radial_peak_to_peak_N"):
@@ -78,7 +78,7 @@ def test_action_and_reaction(index: int, run: RunData) -> None:
     assert pinion.axial_N == pytest.approx(-wheel.axial_N, rel=1e-4, abs=1e-9)
 
 
-def test_with_friction(spur: RunData) -> None:
+def test_friction_makes_the_radial_force_alternate(spur: RunData) -> None:
     """Friction turns about at the pitch point, and with it the direction of the force: the radial force swings by about
     2 μ F, the tangential one by no more than it does by 2 μ F tan α_wt."""
     smooth, rough = shaft_forces(spur, Member.PINION, 0), shaft_forces(spur, Member.PINION, 1)
@@ -88,7 +88,7 @@ def test_with_friction(spur: RunData) -> None:
     assert smooth.radial_peak_to_peak_N < 0.01 * swing
 
 
-def test_load_at_an_end_of_the_face() -> None:
+def test_load_at_a_face_end_tilts_the_shafts() -> None:
     """Under misalignment that opens the flanks at z > 0 the load lies at z < 0: the tangential force, along −y on the
     pinion, tilts it about −x by up to half the face width, the axial one a little more, and the wheel the other way."""
     scene = helical_scene("contact.friction=0.0", "pair.misalignment_um=60", "sweep.positions=2", "load.torque_Nm=20")
@@ -100,7 +100,7 @@ def test_load_at_an_end_of_the_face() -> None:
     assert wheel.moment_x_Nm == pytest.approx(-pinion.moment_x_Nm, rel=0.05)
 
 
-def test_all_figures_are_numbers(run: RunData) -> None:
+def test_shaft_forces_are_finite(run: RunData) -> None:
     """For every gear and friction coefficient."""
     for gear in Member:
         for index in (0, 1):

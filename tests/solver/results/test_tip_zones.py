@@ -35,7 +35,7 @@ def runs() -> list[RunData]:
     return [replace(run, positions=run.positions[k::4]) for k in range(4)]
 
 
-def test_pressure_does_not_depend_on_where_positions_lie(runs: list[RunData]) -> None:
+def test_peak_at_a_zone_limit_does_not_depend_on_the_positions(runs: list[RunData]) -> None:
     """The largest pressure stands where the tip-edge zone begins, which steps of 2° meet or miss by up to 2°: the
     sampled one differs by a tenth, that at the zone's end by less than half of that. Its place is the same within an
     eighth of a step."""
@@ -49,7 +49,7 @@ def test_pressure_does_not_depend_on_where_positions_lie(runs: list[RunData]) ->
     assert np.ptp([peak.roll_distance for peak in found]) < step / 8.0
 
 
-def test_warned_of_as_helical_pairs_are(runs: list[RunData]) -> None:
+def test_peak_at_a_zone_limit_is_warned_of(runs: list[RunData]) -> None:
     """The sentence names the roll distance where the zone begins, which no position stands at."""
     low = runs[1].inner_path[0]
     (said,) = [sentence for sentence in warnings_of(runs[1], GOOD) if "where the zone of a tip edge begins" in sentence]
@@ -57,7 +57,7 @@ def test_warned_of_as_helical_pairs_are(runs: list[RunData]) -> None:
     assert not any(abs(solved.cut.roll_distance - low).min() < 1e-4 for each in runs[1].positions for solved in each)
 
 
-def test_curve_has_its_ends(runs: list[RunData]) -> None:
+def test_pressure_curve_holds_the_peaks_at_zone_limits(runs: list[RunData]) -> None:
     """The curve that pictures draw and bars are read from ascends, and its largest value is the figure."""
     for run in runs:
         curve = engagement(run, 0)
@@ -66,7 +66,7 @@ def test_curve_has_its_ends(runs: list[RunData]) -> None:
         assert np.nanmax(pressure) == curve.peak.pressure == friction_rows(run)[0].max_pressure_MPa
 
 
-def test_pressure_at_the_end_follows_the_load() -> None:
+def test_pressure_at_a_zone_limit_follows_the_load() -> None:
     """Problem: a spur tooth whose load rises by 50 N/mm a millimetre towards the tip edge, with peaks 3 % over
     Hertz's, at positions 0.4 mm apart, the outer three of them on the edge. Exact: 3 % over Hertz for the load at
     −4.9 mm, between two positions; at the other end no edge bears, so there is none."""

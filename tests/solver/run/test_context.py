@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from evolvent.results.archive.run_cost import Cost, Timings, keep_cost
+from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.context import run_context
 from tests.support.checkout import ROOT
@@ -45,7 +45,7 @@ def test_only_the_run_log_uses_the_logger() -> None:
 def test_earlier_cost_is_that_of_the_resumed_run(resume: bool, tmp_path: Path) -> None:
     """A resumed run adds to the archived cost, a new one begins at zero."""
     folder = RunFolder(tmp_path)
-    keep_cost(folder, SPENT)
+    write_cost(folder, SPENT)
     with run_context(folder, MPI.COMM_SELF, resume=resume, quiet=True, begin=0.0) as run:
         now = run.cost(Timings(positions=1.0, total=1.0), 50.0)
     assert run.earlier == (SPENT if resume else Cost())

@@ -8,7 +8,7 @@ import pytest
 
 from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import keep_scene
+from evolvent.results.archive.scene_files import write_scene
 from evolvent.scene.differences import differences
 from evolvent.scene.skips import with_deflected_flanks
 from tests.support.gear_cases import spur_scene
@@ -48,12 +48,12 @@ def test_flank_charts_differ_by_content(tmp_path: Path) -> None:
 def test_refused_resume_names_the_difference(tmp_path: Path) -> None:
     """The keys; the version where none differs; that the kept scene cannot be read."""
     scene, other = spur_scene(), {"fingerprint": "of another one"}
-    keep_scene(spur_scene("load.torque_Nm=100"), RunFolder(tmp_path))
+    write_scene(spur_scene("load.torque_Nm=100"), RunFolder(tmp_path))
     with pytest.raises(ArchiveError, match=r"another one: this one has load\.torque_Nm = 170 \(kept: 100\);"):
-        Archive(tmp_path, scene).require_own(other)
-    keep_scene(scene, RunFolder(tmp_path))
+        Archive(tmp_path, scene).require_scene(other)
+    write_scene(scene, RunFolder(tmp_path))
     with pytest.raises(ArchiveError, match="found those of another version of Evolvent: no key differs"):
-        Archive(tmp_path, scene).require_own(other)
+        Archive(tmp_path, scene).require_scene(other)
     (tmp_path / "scene.toml").unlink()
     with pytest.raises(ArchiveError, match=r"scene\.toml cannot be read"):
-        Archive(tmp_path, scene).require_own({})
+        Archive(tmp_path, scene).require_scene({})

@@ -63,7 +63,7 @@ def kill_when(wanted: int) -> Callable[[int], None]:
 
 def at_archive_file(wanted: int, strike: Callable[[], None]) -> None:
     """Calls `strike` before the archive writes its file number `wanted`."""
-    before_call(Archive, "keep", lambda number: strike() if number == wanted else None)
+    before_call(Archive, "write_arrays", lambda number: strike() if number == wanted else None)
 
 
 def kill_before_renaming() -> None:

@@ -1,11 +1,11 @@
-"""What a run leaves on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
+"""Results on disk for resuming, plotting and later studies: NumPy archives, each written atomically.
 
-    OUT/results/gears.npz            the two sector meshes' surfaces
-    OUT/results/position_0003.npz    one swept position: converged results of the friction coefficients solved there
-    OUT/results/state.npz            the state to go on from, and how many positions are complete
+    OUT/results/gears.npz            surfaces of both sector meshes
+    OUT/results/position_0003.npz    one swept position: converged results at each friction coefficient
+    OUT/results/state.npz            number of complete positions, and the sweep's state after them
 
-A file is written under another name and then renamed, so a run killed at any moment leaves complete files only; the
-state is written last and removed first, so what it counts is there and belongs to one run.
+A file is written under a temporary name and then renamed, so that a run killed at any moment leaves complete files
+only. The state is written last and removed first: all positions that it counts exist and belong to one run.
 """
 
 from __future__ import annotations
@@ -39,92 +39,92 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 Meshes = tuple[MeshData, MeshData]
 """Sector meshes of pinion and wheel."""
 CONTACT_KEYS = {"roll_distance": "ξ"}
-"""Fields of ContactPoints that archives have by another name."""
+"""Field of ContactPoints -> its name in archives, where they differ."""
 
 
 class ArchiveError(InputError):
-    """The archive cannot be read or does not belong to this scene; the message says what to do."""
+    """An archive that cannot be read or belongs to another scene."""
 
 
 @dataclass(frozen=True)
 class GearShape:
-    """A gear's surface for pictures, in its own frame: of one sector, tooth 0.
-
-    points: (n, 3) [mm]; facets: name -> (f, k) corner indices of a sector's boundary ("flank", "back", "tip", "fillet",
-    "face_low", "face_high", "bore"); flank_nodes: (m,) point of each flank node, in the order of PositionResult.node.
-    """
+    """Surface of a gear's sector with tooth 0, in the gear's own frame."""
 
     points: Floats
+    """(n, 3), nodes of the sector mesh [mm]."""
     facets: dict[str, Ints]
+    """Name -> (f, k), nodes of the facets of a part of the boundary: "flank", "back", "tip", "fillet", "face_low",
+    "face_high", "bore"."""
     flank_nodes: Ints
+    """(m,), index into `points` of each flank node, in the order of PositionResult.node."""
 
 
 def gear_shape(mesh: MeshData, flank_nodes: Ints) -> GearShape:
-    """The surface of a sector mesh."""
+    """The surface of a sector mesh. flank_nodes: (m,) nodes of its loaded flank."""
     return GearShape(mesh.points, dict(mesh.facets), flank_nodes)
 
 
 def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:
-    """What the archive keeps of both sectors."""
+    """The surfaces of both sector meshes."""
     pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
     return pinion, wheel
 
 
 class Archive:
-    """The folder of a run. Only rank 0 writes."""
+    """The results of a scene in the folder OUT. Only rank 0 writes."""
 
     def __init__(self, folder: Path, scene: Scene) -> None:
         self.out, self.folder, self.files = folder, folder / "results", RunFolder(folder)
         self.scene, self.fingerprint = scene, fingerprint(scene)
 
-    def keep(self, name: str, arrays: dict[str, Any]) -> None:
+    def write_arrays(self, name: str, arrays: dict[str, Any]) -> None:
         """Writes OUT/results/name atomically and durably. Raises WriteError, FolderError."""
         self.files.write(f"results/{name}", arrays_bytes(arrays))
 
     def write_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
-        """Keeps both gears' surfaces."""
+        """Writes the surfaces of both gears. Raises WriteError, FolderError."""
         arrays: dict[str, Any] = {}
         for name, shape in zip(("pinion", "wheel"), shapes):
             arrays |= {f"{name}/points": shape.points, f"{name}/flank_nodes": shape.flank_nodes}
             arrays |= {f"{name}/facets/{group}": f for group, f in shape.facets.items()}
-        self.keep("gears.npz", arrays)
+        self.write_arrays("gears.npz", arrays)
 
     def check_gears(self, shapes: tuple[GearShape, GearShape]) -> None:
-        """Raises ArchiveError if the kept results stand on other meshes."""
-        for kept, own in zip(self.read_gears(), shapes):
-            same = kept.points.shape == own.points.shape and np.allclose(kept.points, own.points, rtol=0.0, atol=1e-9)
-            if not (same and np.array_equal(kept.flank_nodes, own.flank_nodes)):
+        """Raises ArchiveError if the archived results were computed on other meshes than these."""
+        for kept, mesh in zip(self.read_gears(), shapes):
+            same = kept.points.shape == mesh.points.shape and np.allclose(kept.points, mesh.points, rtol=0.0, atol=1e-9)
+            if not (same and np.array_equal(kept.flank_nodes, mesh.flank_nodes)):
                 raise ArchiveError(
                     f"{self.folder}: wanted results on the meshes of this scene, found them on others, made by another "
                     "version of Evolvent or gmsh; `evolvent run ... --overwrite` computes them anew"
                 )
 
     def read_gears(self) -> tuple[GearShape, GearShape]:
-        """(pinion, wheel). Raises ArchiveError."""
+        """The surfaces of pinion and wheel. Raises ArchiveError."""
         arrays = read_arrays(self.folder / "gears.npz")
         return _shape(arrays, "pinion"), _shape(arrays, "wheel")
 
     def write_position(self, index: int, position: SweptPosition) -> None:
-        """Keeps a position and the state after it."""
+        """Writes the position with this index and the state after it. Raises WriteError, FolderError."""
         arrays: dict[str, Any] = {
             "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
         }  # fmt: skip
         for i, result in enumerate(position.results):
             arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
-        self.keep(f"position_{index:04d}.npz", arrays)
-        self.keep("state.npz", self._state_arrays(index + 1, position.state))
+        self.write_arrays(f"position_{index:04d}.npz", arrays)
+        self.write_arrays("state.npz", self._state_arrays(index + 1, position.state))
 
     def read_positions(self, pair: GearPair) -> list[SweptPosition]:
-        """The pitch, each position as it was solved last, without their states. Raises ArchiveError."""
+        """The positions of one pitch, each as it was solved last, without states. Raises ArchiveError."""
         return one_pitch(self.read_sweep(pair))
 
     def read_sweep(self, pair: GearPair) -> list[SweptPosition]:
-        """All positions in the order in which they were solved, without their states. Raises ArchiveError."""
+        """All positions in the order of their solution, without states. Raises ArchiveError."""
         count = int(self._state()["complete"])
         return [self._position(k, pair) for k in range(count)]
 
     def read_state(self, pair: GearPair) -> SweepState | None:
-        """The state after all complete positions, or None where nothing is kept.
+        """The state after all complete positions; None where the archive is empty.
 
         Raises ArchiveError if the archive belongs to another scene.
         """
@@ -139,32 +139,32 @@ class Archive:
 
     def _state(self) -> dict[str, Any]:
         arrays = read_arrays(self.folder / "state.npz")
-        self.require_own(arrays)
+        self.require_scene(arrays)
         return arrays
 
-    def is_own(self) -> bool:
-        """Whether positions of this very scene are kept. Raises ArchiveError where what is kept cannot be read."""
+    def holds_scene(self) -> bool:
+        """Whether the archive holds positions of this scene. Raises ArchiveError if it cannot be read."""
         path = self.folder / "state.npz"
         return path.exists() and str(read_arrays(path).get("fingerprint")) == self.fingerprint
 
-    def require_own(self, arrays: dict[str, Any]) -> None:
-        """Raises ArchiveError where what was kept is another scene's."""
+    def require_scene(self, arrays: dict[str, Any]) -> None:
+        """Raises ArchiveError unless these arrays of the archive belong to this scene."""
         if str(arrays.get("fingerprint")) != self.fingerprint:
             raise ArchiveError(
-                f"{self.folder}: wanted the results of this scene, found those of {self._another()}; resume with the "
-                "scene and the settings that it was run with (its scene.toml), name another folder with --out, or "
+                f"{self.folder}: wanted the results of this scene, found those of {self._other_scene()}; resume with "
+                "the scene and the settings that it was run with (its scene.toml), name another folder with --out, or "
                 "compute anew with `evolvent run ... --overwrite`"
             )
 
-    def _another(self) -> str:
-        """Whose results these are, as OUT/scene.toml tells."""
+    def _other_scene(self) -> str:
+        """The scene to which the archive belongs, by its difference to this one, from OUT/scene.toml."""
         path = self.out / "scene.toml"
         try:
-            found = differences(load_scene(path), self.scene)
+            difference = differences(load_scene(path), self.scene)
         except SceneError:
             return f"another one, or of another version of Evolvent ({path} cannot be read)"
-        if found:
-            return f"another one: this one has {found}"
+        if difference:
+            return f"another one: this one has {difference}"
         return f"another version of Evolvent: no key differs from {path}"
 
     def _state_arrays(self, complete: int, state: SweepState) -> dict[str, Any]:
@@ -196,22 +196,22 @@ class Archive:
 
 
 def fingerprint(scene: Scene) -> str:
-    """A hash of all that results depend on: of the scene's values without its title and what says what else is written,
-    and of what its flank charts say, wherever these lie."""
+    """SHA-256 of all that the results depend on: the scene's values without its title and output section, and the
+    contents, not the paths, of its flank charts."""
     bare = essence(scene)
     values = json.dumps([bare.model_dump(mode="json"), derived_values(bare), *charts(scene)])
     return hashlib.sha256(values.encode()).hexdigest()
 
 
 def arrays_bytes(arrays: dict[str, Any]) -> memoryview:
-    """The content of a NumPy archive."""
+    """The content of a NumPy archive (.npz) with these arrays."""
     content = io.BytesIO()
     np.savez(content, **{name.replace("/", "|"): value for name, value in arrays.items()})
     return content.getbuffer()
 
 
 def read_arrays(path: Path) -> dict[str, Any]:
-    """Reads what `arrays_bytes` makes. Raises ArchiveError."""
+    """The arrays of an archive written from `arrays_bytes`. Raises ArchiveError."""
     try:
         with open_file(path) as file, np.load(file, allow_pickle=False) as archive:
             return {name.replace("|", "/"): archive[name] for name in archive.files}
@@ -236,17 +236,17 @@ def _result_arrays(result: PositionResult) -> dict[str, Any]:
 
 
 def _contact_key(field: str) -> str:
-    """Where a field of ContactPoints is kept."""
+    """Key in the archive of a field of ContactPoints."""
     return f"contact/{CONTACT_KEYS.get(field, field)}"
 
 
 def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
-    own = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
-    stand = Stand(pair, float(own.pop("angle")), (float(own["extra"][0]), float(own.pop("extra")[1])))
-    contact = ContactPoints(**{f.name: own.pop(_contact_key(f.name)) for f in fields(ContactPoints)})
-    own["torques"] = (float(own["torques"][0]), float(own["torques"][1]))
-    scalars = {name: value.item() for name, value in own.items() if isinstance(value, np.ndarray) and value.ndim == 0}
-    values = own | scalars | {"stand": stand, "contact": contact}
+    kept = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
+    stand = Stand(pair, float(kept.pop("angle")), (float(kept["extra"][0]), float(kept.pop("extra")[1])))
+    contact = ContactPoints(**{f.name: kept.pop(_contact_key(f.name)) for f in fields(ContactPoints)})
+    kept["torques"] = (float(kept["torques"][0]), float(kept["torques"][1]))
+    scalars = {name: value.item() for name, value in kept.items() if isinstance(value, np.ndarray) and value.ndim == 0}
+    values = kept | scalars | {"stand": stand, "contact": contact}
     return PositionResult(**{f.name: values[f.name] for f in fields(PositionResult)})
 
 

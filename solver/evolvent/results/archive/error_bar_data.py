@@ -1,4 +1,4 @@
-"""Error bars as a run keeps them: one for each engineering figure and friction coefficient, or why there is none."""
+"""Error bars in the archive: one an engineering figure and friction coefficient, or the reason why there are none."""
 
 from __future__ import annotations
 
@@ -15,63 +15,69 @@ METHOD = (
     "difference to Hertz for the slices' own line loads, plus the difference of these loads between the meshes; plus, "
     "of all figures, what may lie between the positions, on the start of a linear relief too (spacing_error)"
 )
+"""How error bars are estimated, as summary.json says it; bars archived with another method are estimated anew."""
+FINER = 3
+"""Largest number of additional decimals with which `plus_minus` prints."""
 
 
 @dataclass(frozen=True)
 class FigureErrors:
-    """Estimated errors, not negative, of the figures of the same names in `results.FrictionRow`; NaN where a figure
-    has none."""
+    """Estimated errors (≥ 0) of the figures with the same names in `summary_rows.FrictionRow`; NaN where unknown."""
 
     max_pressure_MPa: float
-    """Of the largest contact pressure."""
+    """Error of the largest contact pressure."""
     mean_pressure_MPa: float
-    """Of the mean pressure."""
+    """Error of the mean pressure."""
     transmission_error_peak_to_peak_um: float
-    """Of the peak-to-peak transmission error."""
+    """Error of the peak-to-peak transmission error."""
     mesh_stiffness_N_per_mm_um: float
-    """Of the mesh stiffness."""
+    """Error of the mesh stiffness."""
     secant_stiffness_N_per_mm_um: float
-    """Of the secant stiffness."""
+    """Error of the secant stiffness."""
     loss_percent: float
-    """Of the loss."""
+    """Error of the loss."""
 
 
-def added(one: FigureErrors, other: FigureErrors) -> FigureErrors:
-    """The sums of two parts; NaN where one is not known."""
+def summed_errors(one: FigureErrors, other: FigureErrors) -> FigureErrors:
+    """Sum of two parts of the errors, figure by figure; NaN where a part is unknown."""
     return FigureErrors(*(a + b for a, b in zip(astuple(one), astuple(other))))
 
 
 @dataclass(frozen=True)
 class EstimatedErrors:
-    """figures: one per friction coefficient, in the scene's order; empty where none were estimated, and `missing` says
-    why in a sentence. method: how they were estimated."""
+    """The error bars of a run."""
 
     figures: tuple[FigureErrors, ...] = ()
+    """Errors at each friction coefficient, in the scene's order; empty where none were estimated."""
     method: str = ""
+    """How they were estimated; empty where they were not."""
     missing: str = "Error bars were not asked for."
+    """The reason why there are none, as a sentence; empty where there are some."""
 
     def bar(self, figure: str, index: int) -> float:
-        """Of a figure of `FigureErrors` at friction coefficient number `index`; NaN where there is none."""
+        """The error of a figure, a field of `FigureErrors`, at the friction coefficient with this index; NaN where
+        there is none."""
         return float(getattr(self.figures[index], figure)) if self.figures else math.nan
 
 
 NOT_ESTIMATED = EstimatedErrors()
 
 
-def keep_errors(archive: Archive, errors: EstimatedErrors) -> None:
-    """Writes OUT/results/errors.npz, if there is something to keep. Raises OSError."""
+def write_error_bars(archive: Archive, errors: EstimatedErrors) -> None:
+    """Writes OUT/results/errors.npz if errors were estimated. Raises WriteError, FolderError."""
     if errors.figures:
         values = np.array([astuple(row) for row in errors.figures])
-        archive.keep("errors.npz", {"fingerprint": archive.fingerprint, "method": errors.method, "values": values})
+        arrays = {"fingerprint": archive.fingerprint, "method": errors.method, "values": values}
+        archive.write_arrays("errors.npz", arrays)
 
 
-def kept_errors(archive: Archive) -> EstimatedErrors | None:
-    """What `keep_errors` kept of this scene; None where there is nothing, nothing that can be read, or bars of other
-    figures or that were estimated in another way."""
+def read_error_bars(archive: Archive) -> EstimatedErrors | None:
+    """The errors that `write_error_bars` wrote; None where they are missing, unreadable, or belong to another scene,
+    another method or other figures."""
     try:
         arrays = read_arrays(archive.folder / "errors.npz")
     except ArchiveError:
-        return None  # a bar is no reason to refuse a run's results
+        return None  # results are usable without error bars
     if (str(arrays["fingerprint"]), str(arrays["method"])) != (archive.fingerprint, METHOD):
         return None
     if arrays["values"].shape[1] != len(fields(FigureErrors)):
@@ -79,17 +85,16 @@ def kept_errors(archive: Archive) -> EstimatedErrors | None:
     return EstimatedErrors(tuple(FigureErrors(*row.tolist()) for row in arrays["values"]), str(arrays["method"]), "")
 
 
-def wanted_errors(archive: Archive) -> EstimatedErrors | None:
-    """What was kept, where the archive's scene asks for error bars; None otherwise."""
-    return kept_errors(archive) if wanted_output(archive.scene).error_bars else None
-
-
-FINER = 3
+def requested_error_bars(archive: Archive) -> EstimatedErrors | None:
+    """The archived errors if the archive's scene asks for error bars; None otherwise."""
+    return read_error_bars(archive) if wanted_output(archive.scene).error_bars else None
 
 
 def plus_minus(value: float, bar: float, digits: int) -> str:
-    """ "2.60 ± 0.08", the bar rounded up; the value alone where it is exact or its bar unknown (NaN). digits: decimals,
-    up to FINER more where the bar needs them: in "0.6 ± 0.1" a bar of 0.003 cannot be seen."""
+    """Value and bar as text, such as "2.60 ± 0.08", with the bar rounded up; the value alone where the bar is zero or
+    unknown (NaN). digits: decimals, up to FINER more where the bar needs them: "0.6 ± 0.1" does not show a bar of
+    0.003.
+    """
     if not (math.isfinite(bar) and bar > 0.0):
         return f"{value:.{digits}f}"
     digits = min(max(digits, -math.floor(math.log10(bar))), digits + FINER)

@@ -1,8 +1,9 @@
-"""The folder of a run, in which other files may lie too: what our runs have made is listed, all else is left alone.
+"""The output folder OUT, which may hold other files: those written by runs are listed, all others are left alone.
 
-    OUT/results/evolvent-files.jsonl   a line for each file when it was written: its path below OUT and its SHA-256
+    OUT/results/evolvent-files.jsonl   the manifest: one line a written file with its path below OUT and its SHA-256
 
-A file is ours if a line of the manifest has its path and its content; one that somebody has changed since is theirs.
+A file counts as written by a run if a line of the manifest has its path and its content. All others are foreign files,
+those changed after they were written among them.
 """
 
 from __future__ import annotations
@@ -22,28 +23,30 @@ from evolvent_meshes.files import PART, open_file, write_bytes, write_error
 MANIFEST = Path("results/evolvent-files.jsonl")
 LOG = Path("run.log")
 LOCK = Path(".evolvent.lock")
-WORN = "worn_*"  # folders of worn pairs, each with a manifest of its own
+WORN = "worn_*"
+"""Folders of worn pairs, each with its own manifest."""
 FOLDERS = (".", "results", "fields", "pictures")
-"""Where a run writes. Others below OUT, which may be a home with a million files, are not looked into."""
-
-NAMED = 5  # files in a message
+"""Folders in which a run writes. Others are not searched: OUT may be a home directory with a million files."""
+NAMED = 5
+"""Largest number of files named in a message."""
 
 
 class FolderError(InputError):
-    """A folder that a run may not write to as it is; nothing in it has been touched."""
+    """A folder that a run may not write to; its files are unchanged."""
 
 
 @dataclass(frozen=True)
 class RunFolder:
-    """The folder OUT of a run."""
+    """The output folder of a run."""
 
     out: Path
+    """The folder OUT."""
 
     def write(self, name: str | Path, content: bytes | memoryview) -> Path:
-        """Writes OUT/name and lists it; gives its path. Ours with this very content is left as it is. Raises
-        WriteError, FolderError where a file that is not ours has this name."""
+        """Writes OUT/name and lists it; returns its path. A file that a run wrote with the same content is left as it
+        is. Raises WriteError; FolderError where a foreign file has this name."""
         path = self.out / name
-        self.require_ours([path])
+        self.require_not_foreign([path])
         digest = _digest(content)
         if path.exists() and _digest(path.read_bytes()) == digest:
             return path
@@ -51,74 +54,74 @@ class RunFolder:
         return write_bytes(path, content)
 
     def write_text(self, name: str | Path, text: str) -> Path:
-        """`write` of a text as UTF-8."""
+        """Writes a text as UTF-8, as `write` does."""
         return self.write(name, text.encode("utf-8"))
 
-    def is_ours(self, path: Path) -> bool:
-        """Whether a run has made this file, and nobody has changed it."""
-        made = self._made().get(self._name(path), set())
-        if not made or self._linked(path) or not path.is_file():
+    def is_written(self, path: Path) -> bool:
+        """Whether a run wrote this file and its content is unchanged."""
+        digests = self._digests().get(self._name(path), set())
+        if not digests or self._linked(path) or not path.is_file():
             return False
-        return path == self.out / LOG or _digest(path.read_bytes()) in made
+        return path == self.out / LOG or _digest(path.read_bytes()) in digests
 
-    def require_ours(self, paths: Iterable[Path]) -> None:
-        """Raises FolderError where one of these exists and is not ours, or lies in a folder that is a link."""
-        theirs = [path for path in paths if (path.exists() or self._linked(path)) and not self.is_ours(path)]
-        if theirs:
+    def require_not_foreign(self, paths: Iterable[Path]) -> None:
+        """Raises FolderError where one of these paths is a foreign file, or lies in a folder that is a link."""
+        foreign = [path for path in paths if (path.exists() or self._linked(path)) and not self.is_written(path)]
+        if foreign:
             raise FolderError(
-                f"{self.out}: wanted to write {', '.join(self._name(path) for path in theirs[:NAMED])}, found "
-                f"{_files(len(theirs))} of this name that no run has made, or that somebody has changed since; "
-                f"move or remove {_all_of(theirs)}, or name another folder with --out"
+                f"{self.out}: wanted to write {', '.join(self._name(path) for path in foreign[:NAMED])}, found "
+                f"{_files(len(foreign))} of this name that no run has made, or that somebody has changed since; "
+                f"move or remove {_all_of(foreign)}, or name another folder with --out"
             )
 
     def require_free(self, patterns: Iterable[str]) -> None:
-        """Raises FolderError where a file that is not ours has a name that a run writes (globs below OUT)."""
+        """Raises FolderError where a foreign file has a name that a run writes. patterns: globs below OUT."""
         links = [self.out / folder for folder in FOLDERS[1:] if (self.out / folder).is_symlink()]
         if links:
             raise FolderError(
                 f"{self.out}: wanted folders of its own for what a run writes, found the link {self._name(links[0])} "
                 f"to {links[0].readlink()}; what lies there may be another run's: name another folder with --out"
             )
-        self.require_ours(path for pattern in patterns for path in sorted(self.out.glob(pattern)))
+        self.require_not_foreign(path for pattern in patterns for path in sorted(self.out.glob(pattern)))
 
-    def changed(self, patterns: Iterable[str]) -> list[Path]:
-        """Files of these names (globs below OUT) that a run has made and somebody has changed, or cut off, since."""
-        made = self._made()
-        found = (path for pattern in patterns for path in sorted(self.out.glob(pattern)))
-        return [path for path in found if self._name(path) in made and not self.is_ours(path)]
+    def changed_files(self, patterns: Iterable[str]) -> list[Path]:
+        """Files written by a run whose content was changed or truncated since. patterns: globs below OUT."""
+        listed = self._digests()
+        paths = (path for pattern in patterns for path in sorted(self.out.glob(pattern)))
+        return [path for path in paths if self._name(path) in listed and not self.is_written(path)]
 
-    def ours(self) -> list[Path]:
-        """All files that are here and ours, the last written first."""
-        return [path for name in reversed(self._made()) if self.is_ours(path := self.out / name)]
+    def written_files(self) -> list[Path]:
+        """All files written by runs, the last written first."""
+        return [path for name in reversed(self._digests()) if self.is_written(path := self.out / name)]
 
-    def theirs(self) -> list[Path]:
-        """All other files where a run writes."""
-        known = {*self.ours(), self.out / MANIFEST}
+    def foreign_files(self) -> list[Path]:
+        """All other files in the folders in which a run writes."""
+        known = {*self.written_files(), self.out / MANIFEST}
         here = (path for folder in FOLDERS for path in sorted((self.out / folder).glob("*")))
         files = [path for path in here if path.is_file() and PART not in path.name and path != self.out / LOCK]
-        below = [path for worn in self._worn() for path in worn.theirs()]
+        below = [path for worn in self._worn() for path in worn.foreign_files()]
         return [path for path in files if path not in known] + below
 
     def clear(self, keep: Collection[Path] = ()) -> None:
-        """Removes what our runs have made, the newest first, and folders that are then empty; but for the log and
-        `keep`. Raises OSError."""
+        """Removes the files written by runs, the last written first, except the log and `keep`; then empty folders.
+        Raises OSError."""
         if self._linked(self.out / MANIFEST):
             return
-        kept, stays = {path.resolve() for path in keep}, [self.out / LOG]
+        kept, remaining = {path.resolve() for path in keep}, [self.out / LOG]
         for worn in self._worn():
             worn.clear(keep)
-        for path in self.ours():
+        for path in self.written_files():
             if path.resolve() in kept:
-                stays.append(path)
+                remaining.append(path)
             elif path != self.out / LOG:
                 path.unlink()
-        self._forget_all_but(stays)
+        self._reduce_manifest(remaining)
         for folder in FOLDERS[1:]:
-            with contextlib.suppress(OSError):  # not empty, or not there
+            with contextlib.suppress(OSError):  # not empty, or missing
                 (self.out / folder).rmdir()
 
     def remove_parts(self) -> None:
-        """Removes files that a killed run was writing."""
+        """Removes temporary files that a killed run left."""
         for folder in FOLDERS:
             for path in (self.out / folder).glob(f".*{PART}*"):
                 path.unlink(missing_ok=True)
@@ -126,34 +129,35 @@ class RunFolder:
             worn.remove_parts()
 
     def list_log(self) -> None:
-        """The log, which grows, is ours by its name."""
+        """Lists the log. As it grows it is identified by its name alone. Raises WriteError."""
         self._list(self.out / LOG, _digest(b""))
 
     def _worn(self) -> Iterator[RunFolder]:
+        """The folders of worn pairs."""
         for path in sorted(self.out.glob(WORN)):
             if (path / MANIFEST).is_file():
                 yield RunFolder(path)
 
     def _linked(self, path: Path) -> bool:
-        """Whether a file, or a folder between it and OUT, is a link: what it leads to is somebody's."""
+        """Whether a file, or a folder between it and OUT, is a link; its target is not the run's."""
         between = path.relative_to(self.out).parents
         return path.is_symlink() or any((self.out / part).is_symlink() for part in between if part != Path())
 
     def _name(self, path: Path) -> str:
         return path.relative_to(self.out).as_posix()
 
-    def _made(self) -> dict[str, set[str]]:
-        """Name -> SHA-256 of all that was ever written under it, in the order of the last writing."""
-        made: dict[str, set[str]] = {}
+    def _digests(self) -> dict[str, set[str]]:
+        """Name -> SHA-256 of every content written under it, in the order of the last writing. Raises FolderError."""
+        digests: dict[str, set[str]] = {}
         for line in self._lines():
-            with contextlib.suppress(ValueError, KeyError, TypeError):  # the last line of a killed run
+            with contextlib.suppress(ValueError, KeyError, TypeError):  # an incomplete line of a killed run
                 entry = json.loads(line)
                 if ".." not in Path(entry["path"]).parts:
-                    made[entry["path"]] = made.pop(entry["path"], set()) | {entry["sha256"]}
-        return made
+                    digests[entry["path"]] = digests.pop(entry["path"], set()) | {entry["sha256"]}
+        return digests
 
     def _lines(self) -> list[str]:
-        """Of the manifest. Raises FolderError."""
+        """Lines of the manifest. Raises FolderError."""
         path = self.out / MANIFEST
         try:
             with open_file(path) as file:
@@ -166,16 +170,18 @@ class RunFolder:
                 "with --out, or mend its access"
             ) from error
 
-    def _forget_all_but(self, stays: Collection[Path]) -> None:
-        manifest, names = self.out / MANIFEST, {self._name(path) for path in stays}
-        entries = [_entry(name, digest) for name, all_ in self._made().items() if name in names for digest in all_]
+    def _reduce_manifest(self, remaining: Collection[Path]) -> None:
+        """Writes the manifest anew with the entries of these files only; removes it where there are none."""
+        manifest, names = self.out / MANIFEST, {self._name(path) for path in remaining}
+        entries = [_entry(name, digest) for name, all_ in self._digests().items() if name in names for digest in all_]
         if entries:
             write_bytes(manifest, b"".join(entries))
         else:
             manifest.unlink(missing_ok=True)
 
     def _list(self, path: Path, digest: str) -> None:
-        """Before the file itself is there: one that is listed and missing does no harm. Raises WriteError."""
+        """Adds a file to the manifest, before it is written: a listed file that is missing does no harm. Raises
+        WriteError."""
         line, manifest = _entry(self._name(path), digest), self.out / MANIFEST
         try:
             manifest.parent.mkdir(parents=True, exist_ok=True)
@@ -185,12 +191,12 @@ class RunFolder:
 
 
 def _entry(name: str, digest: str) -> bytes:
-    """A line; it begins anew where a killed run has left half of one."""
+    """A line of the manifest; the leading newline ends an incomplete line of a killed run."""
     return ("\n" + json.dumps({"path": name, "sha256": digest}, ensure_ascii=False) + "\n").encode()
 
 
 def _append(path: Path, line: bytes) -> None:
-    """All of the line or nothing of it, on the disk. Raises OSError."""
+    """Appends a line to a file durably: the whole line, or nothing if that fails. Raises OSError."""
     with open(path, "ab", buffering=0) as stream:
         before = stream.tell()
         try:
@@ -207,7 +213,7 @@ def _digest(content: bytes | memoryview) -> str:
 
 
 def _all_of(paths: Sequence[Path]) -> str:
-    """Their names, of many the first."""
+    """Names of the files, of many the first NAMED and the number of others."""
     more = f" and {len(paths) - NAMED} more" if len(paths) > NAMED else ""
     return ", ".join(map(str, paths[:NAMED])) + more
 

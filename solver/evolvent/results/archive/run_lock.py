@@ -1,4 +1,4 @@
-"""One run a folder: a lock of the operating system, which ends with the process that holds it, however it ends."""
+"""Lock of the output folder: one run at a time. The operating system releases it however the process ends."""
 
 from __future__ import annotations
 
@@ -15,19 +15,23 @@ from pathlib import Path
 from evolvent.results.archive.run_folder import LOCK, FolderError
 from evolvent_meshes.files import folder_for, unusable
 
-ATTEMPTS = 10  # at a lock file that its owner removes while we open it
+ATTEMPTS = 10
+"""Attempts to lock a file that its owner removes between opening and locking."""
 
 
 @contextmanager
 def locked(out: Path) -> Iterator[None]:
-    """No other run computes into OUT inside this block. Makes the folder; what it has made and nobody has used is gone
-    afterwards. Raises InputError where it cannot be made or written, FolderError where another run is at it."""
+    """Context in which no other run writes to OUT. Creates the folder, and removes it at the end if it is still empty.
+
+    Raises InputError where the folder cannot be created or written, FolderError where another run holds the lock.
+    """
     with folder_for(out), _lock(out):
         yield
 
 
 @contextmanager
 def _lock(out: Path) -> Iterator[None]:
+    """Holds the lock file, with its owner's name as content."""
     path = out / LOCK
     try:
         descriptor = _opened(path)
@@ -35,7 +39,7 @@ def _lock(out: Path) -> Iterator[None]:
         raise unusable(out, error) from error
     try:
         os.ftruncate(descriptor, 0)
-        with contextlib.suppress(OSError):  # a full disk: the lock holds without its owner's name
+        with contextlib.suppress(OSError):  # on a full disk the lock holds without its owner's name
             os.write(descriptor, _owner().encode())
         yield
     finally:
@@ -45,7 +49,7 @@ def _lock(out: Path) -> Iterator[None]:
 
 
 def _opened(path: Path) -> int:
-    """The locked file. Raises OSError, FolderError where another process holds the lock."""
+    """Descriptor of the locked file. Raises OSError; FolderError where another process holds the lock."""
     for _ in range(ATTEMPTS):
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
         try:
@@ -59,14 +63,15 @@ def _opened(path: Path) -> int:
                 f"{path.parent}: wanted a folder that no other run computes into, found {owner} at it; wait for its "
                 "end, or name another folder with --out"
             ) from error
-        except OSError:  # no locks on this file system: a second run is not seen
+        except OSError:  # the file system has no locks: a second run is not detected
             return descriptor
         os.close(descriptor)
     raise FolderError(f"{path}: wanted to lock this file, found it removed {ATTEMPTS} times; start the run again")
 
 
 def _owner() -> str:
+    """Process, user, host and time of this run."""
     user = ""
-    with contextlib.suppress(OSError, KeyError):  # a number without a name, as in a container
+    with contextlib.suppress(OSError, KeyError):  # the user has no name, as in a container
         user = f" of {getpass.getuser()}"
     return f"process {os.getpid()}{user} on {socket.gethostname()}, since {time.strftime('%Y-%m-%d %H:%M:%S')}"

@@ -1,4 +1,4 @@
-"""The scene as it was solved, kept in the folder of its run."""
+"""The solved scene in the folder of its run."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.scene import GEARS, Scene
 
 SCENE_FILES = ("flank_pinion.csv", "flank_wheel.csv", "scene.toml")
+"""Files of the scene in OUT."""
 
 
-def keep_scene(scene: Scene, folder: RunFolder) -> None:
-    """Writes OUT/scene.toml, and the flank charts that it names beside it. Raises OSError."""
+def write_scene(scene: Scene, folder: RunFolder) -> None:
+    """Writes OUT/scene.toml and the flank charts that it names. Raises WriteError, FolderError, OSError."""
     texts = scene_texts(scene)
     for name in SCENE_FILES:
         if name in texts:
             folder.write_text(name, texts[name])
-        elif folder.is_ours(folder.out / name):
+        elif folder.is_written(folder.out / name):
             (folder.out / name).unlink()
 
 
 def scene_texts(scene: Scene) -> dict[str, str]:
-    """What `keep_scene` writes: file name -> text."""
+    """The files that `write_scene` writes: name -> text."""
     local: dict[str, Any] = {}
     texts: dict[str, str] = {}
     for name in GEARS:

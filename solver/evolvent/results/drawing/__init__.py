@@ -1,1 +1,1 @@
-"""What all pictures are drawn with."""
+"""Style, tooth names, files and off-screen rendering common to all pictures."""

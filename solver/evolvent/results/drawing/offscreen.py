@@ -1,7 +1,7 @@
-"""A place to draw on a machine without a screen: pyvista's off-screen pictures need an OpenGL window from somewhere.
+"""Off-screen rendering on machines without a display: pyvista needs an OpenGL window.
 
-VTK's wheels (Debian 12) bring one that needs no X server (EGL); Debian 13's own VTK draws through X only and gets a
-virtual server for the time it draws. A screen that happens to be there is not used: pictures must not depend on it.
+VTK's wheels (Debian 12) provide a window without an X server (EGL). The VTK package of Debian 13 renders through X only
+and gets a virtual X server while it renders. An existing display is not used, so that pictures do not depend on it.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from contextlib import contextmanager
 from vtkmodules import vtkRenderingOpenGL2
 
 SCREEN = "1920x1440x24"
+"""Width, height [pixels] and colour depth [bits] of the virtual screen."""
 
 
 @contextmanager
 def off_screen() -> Iterator[None]:
-    """pyvista's plotters work inside this block. Raises RuntimeError with the remedy where they cannot."""
+    """Context in which pyvista can render. Raises RuntimeError where it cannot, with the remedy."""
     if hasattr(vtkRenderingOpenGL2, "vtkEGLRenderWindow"):
         with _environment("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"):
             yield
@@ -30,6 +31,7 @@ def off_screen() -> Iterator[None]:
 
 @contextmanager
 def _environment(name: str, value: str) -> Iterator[None]:
+    """Context with this value of an environment variable."""
     before = os.environ.get(name)
     os.environ[name] = value
     try:
@@ -43,10 +45,10 @@ def _environment(name: str, value: str) -> Iterator[None]:
 
 @contextmanager
 def _virtual_server() -> Iterator[str]:
-    """An X server without a screen; gives its display, for instance ":1".
+    """Context with a virtual X server; yields its display, such as ":1".
 
-    It must not start anew when a picture is done and no window is left (`-noreset`): VTK, asking for the next window
-    meanwhile, would abort the process.
+    The server must not reset when its last window closes (`-noreset`): VTK aborts the process if it requests the next
+    window during a reset.
     """
     if shutil.which("Xvfb") is None:
         raise RuntimeError("pictures: wanted the virtual X server Xvfb, found none; install it: apt-get install xvfb")
@@ -58,7 +60,7 @@ def _virtual_server() -> Iterator[str]:
         os.close(write)
     try:
         with open(read) as answer:
-            number = answer.readline().strip()  # empty when the server ends without having started
+            number = answer.readline().strip()  # empty if the server failed to start
         if not number:
             raise RuntimeError("pictures: Xvfb did not start; run `Xvfb :99` to see why")
         yield f":{number}"

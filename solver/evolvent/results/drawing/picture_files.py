@@ -1,4 +1,4 @@
-"""Pictures are drawn one by one: one that cannot be drawn costs neither the others nor the run's results."""
+"""Pictures drawn one by one: a failure affects neither the other pictures nor the run's results."""
 
 from __future__ import annotations
 
@@ -12,30 +12,27 @@ from evolvent_meshes.files import WriteError
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture of a run that is still to be drawn.
-
-    name: of its file in OUT/pictures.
-    draw: makes the file's content.
-    """
+    """A picture that is not drawn yet."""
 
     name: str
+    """Name of its file in OUT/pictures."""
     draw: Callable[[], bytes]
+    """Function that draws it and returns the content of the file."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """What came of some pictures.
-
-    written: their files.
-    failures: a sentence for each that could not be drawn.
-    """
+    """Outcome of drawing pictures."""
 
     written: tuple[Path, ...]
+    """Files written."""
     failures: tuple[str, ...]
+    """A sentence for each picture that could not be drawn."""
 
 
 def draw(pictures: Iterable[Picture], folder: RunFolder) -> Drawn:
-    """Draws into OUT/pictures. Raises WriteError where there is no room for one: the next would have none either."""
+    """Draws pictures into OUT/pictures. Raises WriteError where a file cannot be written, as the next could not be
+    either."""
     written, failures = [], []
     for picture in pictures:
         try:

@@ -1,4 +1,4 @@
-"""How all figures look: colours, sizes, and the title with the one line that says what to see."""
+"""Style of all figures: colours, sizes, title with subtitle, footnotes, and files."""
 
 from __future__ import annotations
 
@@ -19,24 +19,28 @@ from PIL import Image
 from evolvent_meshes.files import write_bytes
 
 PINION, WHEEL = "#1f5fa8", "#c0392b"
-"""Curves that belong to the pinion and to the wheel."""
+"""Colours of curves of the pinion and of the wheel."""
 PINION_BODY, WHEEL_BODY = "#7d9cc4", "#cf8a7f"
+"""Colours of the gears in space."""
 TEETH = ("#3b7a57", "#8a5a9e", "#c98a1b", "#2d6fb0")
-"""Tooth pairs, the one ahead first."""
+"""Colours of tooth pairs, the leading pair first."""
 INK, FAINT = "#222222", "#8a8f98"
+"""Colours of text and main lines, and of auxiliary lines."""
 OVER = "#1f6fd0"
-"""Beyond the upper end of a colour scale."""
+"""Colour of values above the upper end of a colour scale."""
 ABOVE = "blue: above the scale, at a tip edge"
+"""Note on that colour."""
 AT_ZONE_END = "where a tip-edge zone begins"
+"""Legend of a pressure at the limit of a tip-edge zone."""
 HOLLOW: dict[str, Any] = {"marker": "o", "markersize": 6.0, "markerfacecolor": "white", "linestyle": "", "zorder": 4.0}
-"""A pressure there."""
+"""Marker of a pressure at the limit of a tip-edge zone."""
 PRESSURE_MAP = LinearSegmentedColormap.from_list(
     "evolvent_pressure", ["#eef0f2", "#fbe3a1", "#f7b24b", "#e8702a", "#c22a20", "#7d0c22", "#3a0418"]
 ).with_extremes(over=OVER)
-"""Sequential, from bare flank to the largest pressure; its lightness falls all the way."""
+"""Sequential colours from zero to the largest pressure; their lightness decreases throughout."""
 FRICTION_MAP = LinearSegmentedColormap.from_list("evolvent_friction", ["#d97706", "#c2386b", "#6d3fa0", "#16213d"])
-"""One colour per coefficient; also the lightest stands out from white by three to one."""
-STYLE = {
+"""Colours of friction coefficients; even the lightest has a contrast of three to one on white."""
+STYLE = {  # of matplotlib
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
     "axes.edgecolor": FAINT,
@@ -48,7 +52,7 @@ STYLE = {
     "grid.color": "#e3e6ea",
     "grid.linewidth": 0.8,
     "legend.frameon": True,
-    "legend.framealpha": 1.0,  # a line behind a legend does not cross its words
+    "legend.framealpha": 1.0,  # no line shows through the text of a legend
     "legend.edgecolor": "none",
     "legend.fancybox": False,
     "legend.fontsize": 9.0,
@@ -60,76 +64,77 @@ STYLE = {
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Matplotlib draws in this style inside the block."""
+    """Context in which matplotlib draws in this style."""
     with matplotlib.rc_context(STYLE):  # type: ignore[arg-type]  # the stubs list every key as a literal
         yield
 
 
-def sheet(title: str, see: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
-    """An empty figure [inch] with its title and below it the line that says what to see."""
+def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> Figure:
+    """An empty figure with title and subtitle. subtitle: the main result in a sentence; size: width and height
+    [inch]."""
     figure = Figure(figsize=size, layout="constrained")
     band, left, bottom = 0.62 / size[1], 0.14 / size[0], 0.08 / size[1]
-    inside = (0.5 * left, bottom, 1.0 - 1.5 * left, 1.0 - band - bottom)  # labels at an end reach over their axes
+    inside = (0.5 * left, bottom, 1.0 - 1.5 * left, 1.0 - band - bottom)  # labels extend beyond their axes
     figure.get_layout_engine().set(rect=inside)  # type: ignore[union-attr, call-arg]
     figure.text(
         left, 1.0 - 0.14 / size[1], title, va="top", ha="left", fontsize=13, fontweight="bold", color=INK,
         parse_math=False,  # a user's words, not a formula
     )  # fmt: skip
-    width = TextPath((0.0, 0.0), see, size=10.0).get_extents().width / 72.0 if see else 0.0
-    see_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
-    figure.text(left, 1.0 - 0.42 / size[1], see, va="top", ha="left", fontsize=see_size, color="#444444")
+    width = TextPath((0.0, 0.0), subtitle, size=10.0).get_extents().width / 72.0 if subtitle else 0.0
+    subtitle_size = 10.0 * min(1.0, (size[0] - 0.3) / max(width, 1e-9))
+    figure.text(left, 1.0 - 0.42 / size[1], subtitle, va="top", ha="left", fontsize=subtitle_size, color="#444444")
     return figure
 
 
 def foot(figure: Figure, *sentences: str) -> None:
-    """What one has to know to read the figure, below it; a sentence a line."""
+    """Adds footnotes below a figure, one sentence a line."""
     if sentences:
         left = 0.14 / figure.get_figwidth()
         figure.supxlabel("\n".join(sentences), fontsize=9.0, x=left, ha="left", color="#444444")
 
 
 def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
-    """One colour per coefficient, darker with more friction."""
+    """Colours of friction coefficients in their order, darker for more friction."""
     ranks = np.argsort(np.argsort(frictions)) / max(1, len(frictions) - 1)
     return [tuple(FRICTION_MAP(rank)) for rank in ranks]
 
 
 def dot_size(count: int) -> float:
-    """Markers for a cloud of `count` points."""
+    """Marker size for a scatter plot of `count` points."""
     return 3.0 if count > 400 else 7.0
 
 
 def note(axes: Axes, text: str, x: float = 0.01, y: float = 0.98) -> None:
-    """A small remark inside the axes, at its upper left unless said otherwise."""
+    """Adds a note inside the axes at (x, y) as parts of their size, by default at the upper left."""
     axes.text(x, y, text, transform=axes.transAxes, va="top", ha="left", fontsize=9, color="#444444")
 
 
 def palette(image: Image.Image) -> Image.Image:
-    """A palette of 255 colours for `image` and what is like it: white, the pressure map's, that above it, which few
-    pixels have and would lose, and the image's own."""
+    """A palette image of at most 255 colours: white, the colours of the pressure map, that above its scale, and colours
+    of the image. The first ones are fixed because quantisation would drop colours of few pixels."""
     scale = (255 * PRESSURE_MAP(np.append(np.linspace(0.0, 1.0, 70), 2.0))[:, :3]).round().astype(int)
     fixed = [255, 255, 255, *scale.ravel().tolist()]
-    own = image.quantize(255 - len(fixed) // 3, dither=Image.Dither.NONE).getpalette() or []
-    found = Image.new("P", (1, 1))
-    found.putpalette([*fixed, *own][: 3 * 255])
-    return found
+    others = image.quantize(255 - len(fixed) // 3, dither=Image.Dither.NONE).getpalette() or []
+    colours = Image.new("P", (1, 1))
+    colours.putpalette([*fixed, *others][: 3 * 255])
+    return colours
 
 
 def reduced(image: Image.Image, colours: Image.Image) -> Image.Image:
-    """The image in the colours of `palette`; its white stays white, which Pillow rounds."""
-    found = image.quantize(palette=colours, dither=Image.Dither.NONE)
+    """The image in the colours of `palette`. White pixels are set explicitly, since Pillow rounds them."""
+    indexed = image.quantize(palette=colours, dither=Image.Dither.NONE)
     white = (np.asarray(image) == 255).all(axis=-1)
-    found.paste(0, mask=Image.fromarray(white))
-    return found
+    indexed.paste(0, mask=Image.fromarray(white))
+    return indexed
 
 
 def png(figure: Figure) -> bytes:
-    """The content of a figure's PNG."""
+    """The content of a PNG file with the figure."""
     content = io.BytesIO()
     figure.savefig(content, format="png")
     return content.getvalue()
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Writes a PNG and gives its path back. Raises WriteError."""
+    """Writes a figure to a PNG file; returns its path. Raises WriteError."""
     return write_bytes(path, png(figure))

@@ -1,1 +1,1 @@
-"""Error bars of a run's figures."""
+"""Error bars of the engineering figures: the part of the mesh and the part of the spacing of positions."""

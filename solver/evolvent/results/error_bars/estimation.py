@@ -1,20 +1,20 @@
-"""Error bars of a run's figures, from the run and its coarse companion.
+"""Error bars of the engineering figures, from a run and its coarse companion.
 
-Each figure comes from a curve, over the engagement or over the pitch; two such figures may agree by chance, their
-curves do not. So the difference D of a figure is the larger one of |Q_h − Q_2h| and of Q times the relative root mean
-square difference of the curves.
+Each figure Q is computed from a curve over the engagement or over the pitch. Figures on two meshes may agree by chance
+where their curves do not. The difference D of a figure is therefore the larger of |Q_h − Q_2h| and of Q times the
+relative root mean square difference of the curves.
 
-- Transmission error, mesh stiffness and loss: D over 2^p − 1, which is Richardson's estimate, with the lowest rates p
-  that the benchmark pairs have shown; first-order cells bend badly, so theirs is below 1.
-- Pressures converge erratically while the contact is a few elements wide, but a fitted peak has a part that is known
-  without a finer mesh: Hertz for the slice's own line load. The bar is the difference D of peaks and Hertz on the run's
-  own mesh, plus D of Hertz's peaks between the meshes over 2^p − 1, which is the error of the loads. Where a flank is
-  not Hertz's (a relief sets in, a face ends) it is too wide. Both meshes are compared between the tip-edge zones of the
-  run's own mesh, as the figure is: the companion's larger cells see the edges from further away, but the loads beside
-  them are known.
+- Transmission error, mesh stiffness and loss: D/(2^p − 1), Richardson's estimate, with the lowest convergence rate p of
+  the benchmark pairs. First-order cells are too stiff in bending; their rate is below 1.
+- Pressures converge erratically while the contact is a few elements wide. The error of a fitted peak for its line load
+  is known without a finer mesh, by comparison with Hertz. The bar is D between fitted peaks and Hertz' peaks on the
+  run's mesh, plus the error of the loads: D of Hertz' peaks between the meshes, over 2^p − 1. It is too wide where a
+  flank departs from Hertz' assumptions, at the start of a relief or the end of a face. Both meshes are evaluated
+  between the tip-edge zones of the run's mesh, as the figure is: on the companion's larger cells these zones are wider,
+  but the loads within them are known.
 
-Both meshes stand at the same positions: how finely these sample the pitch is a part of its own (`spacing`), which is
-added. What the scene leaves out is in none of them.
+Both meshes are solved at the same positions. The error of sampling the pitch at these positions is estimated by
+`position_spacing` and added. Errors of the model, such as effects that the scene leaves out, are in neither.
 """
 
 from __future__ import annotations
@@ -29,66 +29,83 @@ from evolvent.results.archive.error_bar_data import (
     METHOD,
     EstimatedErrors,
     FigureErrors,
-    added,
-    keep_errors,
-    wanted_errors,
+    requested_error_bars,
+    summed_errors,
+    write_error_bars,
 )
 from evolvent.results.engagement import engagement, with_hertz
 from evolvent.results.error_bars.position_spacing import spacing_errors
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
-from evolvent.results.run_data import Companion, RunData
+from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
 
 Reduction = Callable[[Floats], float]
+"""Function from the values (n,) of a curve to a figure."""
 
 STIFFNESS_FACTOR = {1: 2.0, 2: 0.5}
-"""1/(2^p − 1) of transmission error and mesh stiffness by the order of the cells: p = 0.6 and 1.6."""
+"""Order of the cells -> 1/(2^p − 1) for transmission error and mesh stiffness; p = 0.6 and 1.6."""
 LOSS_FACTOR = {1: 2.0, 2: 1.0}
-"""The same of the loss, which follows the distribution of pressure and tooth forces: p = 0.6 and 1."""
+"""The same for the loss, which depends on the distribution of pressure and of tooth forces; p = 0.6 and 1."""
 LOAD_FACTOR = {1: 2.0, 2: 1.0}
-"""The same of the slices' loads, which pressures follow; with 1 at order 1 three bars of 24 were too small by 2 %."""
+"""The same for the loads of slices; with 1 at order 1, 3 of 24 bars of pressures were too small, by 2 %."""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """What a figure is read from: values (n,) at pinion rotations [rad]; NaN where there is none."""
+    """A curve from which a figure is computed."""
 
-    at: Floats
+    angle: Floats
+    """(n,) pinion rotation [rad]."""
     values: Floats
+    """(n,) values in the figure's unit; NaN where unknown."""
+
+
+@dataclass(frozen=True)
+class Companion:
+    """The coarse companion of a run: the same scene and positions on meshes of twice the element size."""
+
+    run: RunData | None
+    """Its results, on rank 0; None on other ranks and where its solution failed."""
+    failure: str
+    """Why its solution failed, as a sentence; empty where it did not."""
+    seconds: float
+    """Wall time of its solution [s]."""
 
 
 def with_errors(run: RunData, archive: Archive, companion: Companion | None) -> RunData:
-    """The run with its error bars, where its scene asks for them: those in the archive, or the companion's, which are
-    then kept. Raises OSError."""
-    errors = wanted_errors(archive)
+    """The run with its error bars: those in the archive, or those estimated from the companion, which are then
+    archived; none where its scene does not ask for them. Raises WriteError, FolderError."""
+    errors = requested_error_bars(archive)
     if errors is None and companion is not None:
         errors = estimated_errors(run, companion)
-        keep_errors(archive, errors)
+        write_error_bars(archive, errors)
     return replace(run, errors=errors or run.errors)
 
 
 def estimated_errors(run: RunData, companion: Companion) -> EstimatedErrors:
-    """The bars of all friction coefficients, or why there are none."""
+    """The error bars at all friction coefficients, or the reason why there are none."""
     if companion.run is None:
         return EstimatedErrors(missing=companion.failure)
     try:
         mesh = errors_between(run, companion.run)
-        return EstimatedErrors(tuple(added(own, spacing_errors(run, k)) for k, own in enumerate(mesh)), METHOD, "")
-    except (ValueError, IndexError) as error:  # a companion too coarse to have the figures, as without any contact
+        parts = [(errors, spacing_errors(run, k)) for k, errors in enumerate(mesh)]
+        return EstimatedErrors(tuple(summed_errors(*each) for each in parts), METHOD, "")
+    except (ValueError, IndexError) as error:  # a companion without these figures, as without any contact
         return EstimatedErrors(missing=f"The coarse companion's figures cannot be compared: {error}")
 
 
 def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
-    """The mesh's part of the bars of `run`, one per friction coefficient; coarse: the same scene on elements of twice
-    the size."""
+    """The part of the error bars that comes from the mesh, at each friction coefficient. coarse: the same scene on
+    elements of twice the size."""
     return tuple(_errors(run, coarse, index) for index in range(len(run.frictions)))
 
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
+    """Errors of the mesh at the friction coefficient with this index."""
     runs = run, with_hertz(run), *(with_hertz(each, at_edges=True) for each in (run, coarse))
     curves = [engagement(each, index, run.inner_path) for each in runs]
     error, tangent, secant, loss = (
-        [Curve(each.angles, np.array([value(each, own[index]) for own in each.positions])) for each in (run, coarse)]
+        [Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (run, coarse)]
         for value in (transmission_error_um, mesh_stiffness, secant_stiffness, loss_percent)
     )
     peaks = [Curve(*each.pressure_curve) for each in curves]
@@ -104,20 +121,22 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     )
 
 
-def _pressure_error(figure: Reduction, factor: float, own: Curve, hertz: Curve, fine: Curve, coarse: Curve) -> float:
-    """Of the profile at the loads found, plus that of the loads: Hertz's pressures for them, tip edges included."""
-    return difference(figure, own, hertz) + factor * difference(figure, fine, coarse)
+def _pressure_error(figure: Reduction, factor: float, fitted: Curve, hertz: Curve, fine: Curve, coarse: Curve) -> float:
+    """Error of the fitted peaks for the computed loads, plus the error of the loads. fine, coarse: Hertz' peaks for the
+    loads on both meshes, tip edges included."""
+    return difference(figure, fitted, hertz) + factor * difference(figure, fine, coarse)
 
 
 def difference(figure: Reduction, first: Curve, second: Curve) -> float:
-    """The larger of the difference of a figure between two curves, and of the figure times the curves' relative root
-    mean square difference where both have values; NaN where they have none in common."""
+    """Difference D of a figure between two curves: the larger of |Q_1 − Q_2| and of |Q_1| times the relative root mean
+    square difference of the curves where both are known; NaN where no rotation is common to both."""
     value = float(figure(first.values))
     return max(abs(value - float(figure(second.values))), abs(value) * _relative(first, second))
 
 
 def _relative(first: Curve, second: Curve) -> float:
-    _, i, j = np.intersect1d(np.round(first.at, 9), np.round(second.at, 9), return_indices=True)
+    """Root mean square difference of two curves over that of the first, at their common rotations; NaN without any."""
+    _, i, j = np.intersect1d(np.round(first.angle, 9), np.round(second.angle, 9), return_indices=True)
     one, other = first.values[i], second.values[j]
     known = np.isfinite(one) & np.isfinite(other)
     if not known.any():

@@ -1,1 +1,1 @@
-"""Displacement, stress and pressure as fields, for ParaView."""
+"""Fields on flanks and in teeth, and their files for ParaView."""

@@ -1,7 +1,8 @@
-"""Displacement and stress inside the teeth in contact, from what their flanks carry.
+"""Displacement and stress inside the teeth in contact, recovered from the nodal forces on their flanks.
 
-A run knows flanks only: the inside of a sector was eliminated with its compliance. Both gears are condensed once more,
-the displacements of the cut faces follow from the forces on all teeth, and one factor a gear gives each sector's field.
+The results of a run hold flanks only, since condensation eliminates the interior of a sector. Both gears are condensed
+once more. The displacements of the cut faces follow from the forces on all teeth, and one factorisation a gear gives
+the displacement of each sector.
 """
 
 from __future__ import annotations
@@ -30,26 +31,34 @@ from evolvent_meshes.mesh.mesh_data import MeshData
 
 @dataclass(frozen=True)
 class DeformedTooth:
-    """A gear's sector in tooth pair `tooth`, in its own frame: displacement (N, d) [mm] of its nodes, stress
-    (cells, 3, 3) [MPa] at the cells' centres."""
+    """A loaded sector of a gear, in the sector's own frame."""
 
     gear: Member
+    """The gear."""
     tooth: int
+    """Index of the tooth pair."""
     mesh: MeshData
+    """Mesh of the sector."""
     displacement: Floats
+    """(N, d), displacement of the nodes [mm]."""
     stress: Floats
+    """(cells, 3, 3), stress at the centres of the cells [MPa]."""
 
 
 class GearField:
-    """One gear under the forces of several positions: rows (m, 2) of its chain and forces (m, d) [N; N/mm in 2D] on
-    them in the gear's frame, at each position."""
+    """Displacements of one gear under the contact forces of several positions.
+
+    body: the condensed gear.
+    rows: for each position (m, 2), tooth and flank node under load.
+    forces: for each position (m, d), the forces on them in the gear's frame [N; N/mm in 2D].
+    """
 
     def __init__(self, body: GearBody, rows: Sequence[Ints], forces: Sequence[Floats]) -> None:
         self.body, self._rows, self._forces = body, rows, forces
         self._pitch = 2.0 * np.pi / body.gear.z
         every, place = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
         loads = np.zeros((len(rows), len(every), body.d))
-        position = np.repeat(np.arange(len(rows)), [len(own) for own in rows])
+        position = np.repeat(np.arange(len(rows)), [len(each) for each in rows])
         loads[position, place.ravel()] = np.concatenate(forces)
         assert isinstance(body.chain, ChainedCompliance)
         self._cuts = body.chain.cut_displacements(every, loads)
@@ -60,14 +69,14 @@ class GearField:
         self._recovery = SectorRecovery(K, P, number[parts.low], number[parts.high])
 
     def teeth(self, k: int) -> list[int]:
-        """The numbers of the gear's teeth that carry load at position k."""
+        """Numbers of the gear's loaded teeth at position k."""
         return np.unique(self._rows[k][:, 0]).tolist()
 
     def displacement(self, k: int, number: int) -> Floats:
-        """(N, d) [mm] of a tooth's sector at position k, in the sector's own frame."""
-        d, own = self.body.d, self._rows[k][:, 0] == number
+        """Displacement (N, d) [mm] of a tooth's sector at position k, in the sector's own frame."""
+        d, here = self.body.d, self._rows[k][:, 0] == number
         forces = np.zeros((len(self.body.flank.points), d))
-        forces[self._rows[k][own, 1]] = self._forces[k][own] @ turn(number * self._pitch, d)
+        forces[self._rows[k][here, 1]] = self._forces[k][here] @ turn(number * self._pitch, d)
         field = np.zeros(len(self.body.mesh.points) * d)
         field[self._free] = self._recovery.displacement(forces.ravel(), self._cuts[number][k])
         return field.reshape(-1, d)
@@ -75,19 +84,20 @@ class GearField:
 
 @dataclass(frozen=True)
 class Deformation:
-    """Both gears at the positions of a pitch, at the first friction coefficient."""
+    """Deformation of both gears at the positions of a pitch, at the first friction coefficient."""
 
     gears: tuple[GearField, GearField]
+    """Displacements of pinion and wheel."""
 
     @staticmethod
     def of(bodies: tuple[GearBody, GearBody], results: Sequence[PositionResult]) -> Deformation:
-        """From condensed gears and the positions' results."""
+        """The deformation of two condensed gears under the results of the positions."""
         pinion = GearField(bodies[0], [r.pinion_rows for r in results], [r.pinion_forces for r in results])
         wheel = GearField(bodies[1], [r.wheel_rows for r in results], [r.wheel_forces for r in results])
         return Deformation((pinion, wheel))
 
     def teeth(self, k: int) -> list[DeformedTooth]:
-        """Those that carry load at position k."""
+        """The loaded teeth of both gears at position k."""
         return [self._tooth(gear, k, number) for gear in Member for number in self.gears[gear].teeth(k)]
 
     def _tooth(self, gear: Member, k: int, number: int) -> DeformedTooth:
@@ -96,14 +106,14 @@ class Deformation:
 
 
 def deformation_of(scene: Scene, archive: Archive, comm: MPI.Comm) -> Deformation | None:
-    """Of the run in the archive, on rank 0; None on the others. All ranks must call it. Raises what preparing a model
-    does, and ArchiveError."""
+    """Deformation of the run in the archive, on rank 0; None on other ranks. Collective. Raises ArchiveError and the
+    errors of `prepare_model`."""
     problem = gear_problem(scene)
     one_sector = replace(problem, options=replace(problem.options, whole_gears=False))
     bodies = prepare_model(one_sector, comm).model.bodies
 
-    def made() -> Deformation:
+    def recovered() -> Deformation:
         positions = archive.read_positions(scene.gear_pair())
         return Deformation.of(bodies, [position.results[0] for position in positions])
 
-    return together(comm, lambda: made() if comm.rank == 0 else None)
+    return together(comm, lambda: recovered() if comm.rank == 0 else None)

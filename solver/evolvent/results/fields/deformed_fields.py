@@ -1,11 +1,11 @@
 """Displacement and stress of the teeth in contact for ParaView.
 
-    OUT/fields/deformed.pvd       open this one; time is the pinion rotation in °
-    OUT/fields/deformed_0003.vtu  the sectors of both gears that carry load, undeformed where they stand
+    OUT/fields/deformed.pvd       to open in ParaView; time is the pinion rotation in °
+    OUT/fields/deformed_0003.vtu  the loaded sectors of both gears, undeformed, at their place
 
-displacement_mm at the nodes ("Warp By Vector" bends the teeth), at the first friction coefficient; in the cells
-stress_MPa (nine components, in space) and von_mises_MPa at their centres, gear (0 pinion, 1 wheel) and tooth (pair).
-Next to the contact the stress is as coarse as the cells; contact pressure is in contact.pvd.
+Values are for the first friction coefficient. Nodes have displacement_mm ("Warp By Vector" shows the deformed teeth).
+Cells have stress_MPa (nine components, in space) and von_mises_MPa at their centres, gear (0 pinion, 1 wheel) and tooth
+(index of the pair). Near the contact the stress is as coarse as the cells; contact pressures are in contact.pvd.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from evolvent_meshes.mesh.reference_cells import corner_count
 from evolvent_meshes.mesh.vtk_xml import xml_bytes
 
 VTK_CELLS = {"triangle": 5, "quadrilateral": 9, "tetrahedron": 10, "hexahedron": 12}
-"""VTK's number of a cell with corners only, whose order is gmsh's."""
+"""Shape of a cell -> number of VTK's cell with corners only, whose order is that of gmsh."""
 
 
 def write_deformed(run: RunData, deformation: Deformation, folder: RunFolder) -> Path:
-    """Writes the series into OUT/fields; gives the .pvd file. Raises WriteError, FolderError."""
+    """Writes the series to OUT/fields; returns the .pvd file. Raises WriteError, FolderError."""
     collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
     series = ElementTree.SubElement(collection, "Collection")
     for k, each in enumerate(run.positions):
@@ -48,7 +48,7 @@ def write_deformed(run: RunData, deformation: Deformation, folder: RunFolder) ->
 
 
 def vtu_bytes(teeth: Sequence[DeformedTooth], result: PositionResult) -> bytes:
-    """The content of a .vtu of some teeth at a position, cells by their corners."""
+    """The content of a .vtu file with these teeth at a position, as cells with corners only."""
     placed = [_placed(tooth, result) for tooth in teeth]
     starts = np.cumsum([0] + [len(points) for points, *_ in placed[:-1]])
     grid = vtkUnstructuredGrid()
@@ -70,7 +70,8 @@ def vtu_bytes(teeth: Sequence[DeformedTooth], result: PositionResult) -> bytes:
 
 
 def _placed(tooth: DeformedTooth, result: PositionResult) -> tuple[Floats, Ints, Floats, Floats]:
-    """Points (n, 3), cells by their corners, displacement (n, 3) and stress (cells, 3, 3) where the tooth stands."""
+    """Corner points (n, 3) [mm], cells (cells, corners), displacement (n, 3) [mm] and stress (cells, 3, 3) [MPa] of a
+    tooth at its place in space."""
     mesh, R = tooth.mesh, result.stand.rotation(tooth.gear, 3, tooth.tooth)
     used, cells = np.unique(mesh.cells[:, : corner_count(mesh.shape)], return_inverse=True)
     u = np.zeros((len(used), 3))
@@ -80,6 +81,7 @@ def _placed(tooth: DeformedTooth, result: PositionResult) -> tuple[Floats, Ints,
 
 
 def _add(data: object, name: str, values: np.ndarray) -> None:
+    """Adds an array in single precision to VTK's point or cell data."""
     array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
     array.SetName(name)
     data.AddArray(array)  # type: ignore[attr-defined]

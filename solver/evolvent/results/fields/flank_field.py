@@ -1,7 +1,8 @@
-"""A position's pressures as smooth fields over the exact flank: for maps, pictures, and the gear opposite.
+"""Pressure of a position as a smooth field over the exact flank, for maps, pictures and the mating flank.
 
-The contact is a narrow ridge that crosses the rows of cells at an angle. Interpolated as it lies, a ridge a few points
-wide turns into a row of beads; interpolated along the contact line, at equal distance s from it, it stays a ridge.
+The contact is a narrow ridge of pressure that crosses the rows of cells at an angle. Interpolation along z would turn a
+ridge a few points wide into separate spots. Interpolation along the contact line, at equal distance s from it, keeps
+it.
 """
 
 from __future__ import annotations
@@ -21,18 +22,19 @@ from evolvent_meshes.gears.pair import GearPair
 
 @dataclass(frozen=True)
 class FlankField:
-    """Pressure on one tooth pair's flanks at a position.
-
-    heights (h,) [mm]: of the node rows, ascending. distances, values: per row, distances [mm of profile arc] from the
-    contact line, positive towards the pinion's tip and ascending, and the values there; empty rows carry nothing.
-    """
+    """Pressure on the flanks of one tooth pair at a position."""
 
     heights: Floats
+    """(h,), heights z of the node rows, ascending [mm]."""
     distances: tuple[Floats, ...]
+    """For each row, arc lengths along the profile from the contact line to its nodes in contact, ascending and positive
+    towards the pinion's tip [mm]; empty where none is in contact."""
     values: tuple[Floats, ...]
+    """For each row, the pressures at these distances [MPa]."""
 
     def at(self, distance: Floats, z: Floats) -> Floats:
-        """Values (n, m) at distances (n, m) from the contact line, columns at heights z (m,); 0 off the contact."""
+        """Pressure (n, m) [MPa] at distances (n, m) from the contact line [mm] and heights z (m,) [mm] of the columns;
+        0 outside the contact."""
         last = len(self.heights) - 1
         if last == 0:
             return np.column_stack([self._row(0, column) for column in distance.T])
@@ -51,10 +53,10 @@ class FlankField:
 
 
 def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
-    """The pressure of a position on tooth pair `tooth` [MPa], from its averages about the nodes."""
-    mine = np.flatnonzero(result.tooth == tooth)
-    nodes = result.node[mine]
-    z, p = np.round(run.flank.z, 9), result.pressure[mine]
+    """The pressure on a tooth pair at a position, from its nodal averages. tooth: index of the pair."""
+    here = np.flatnonzero(result.tooth == tooth)
+    nodes = result.node[here]
+    z, p = np.round(run.flank.z, 9), result.pressure[here]
     s = line_distance(run.pair, result, tooth, Member.PINION, run.flank.roll_length[nodes], z[nodes])
     heights = np.unique(z)
     members = [np.flatnonzero(z[nodes] == height) for height in heights]
@@ -65,8 +67,9 @@ def flank_field(run: RunData, result: PositionResult, tooth: int) -> FlankField:
 def line_distance(
     pair: GearPair, result: PositionResult, tooth: int, gear: Member, roll_length: Floats, z: Floats
 ) -> Floats:
-    """Profile arc [mm] from the nominal contact line to points at roll lengths ρ and heights z of a gear, positive
-    towards the pinion's tip and the wheel's root; s = (ρ² − ρ_line²)/2r_b on an involute."""
+    """Arc length s along the profile [mm] from the nominal contact line to points of a gear's flank, positive towards
+    the pinion's tip and the wheel's root; s = (ρ² − ρ_line²)/2r_b on an involute. roll_length, z: ρ and heights of the
+    points [mm], of shapes that broadcast."""
     base = pair.gears[gear].base_radius
     line = pair.pitch_point_roll_lengths[gear] + gear.sign * result.stand.roll_distance(tooth, z)
     return np.asarray(gear.sign * (roll_length**2 - np.sign(line) * line**2) / (2.0 * base))
@@ -74,14 +77,17 @@ def line_distance(
 
 @dataclass(frozen=True)
 class Patch:
-    """A rectangle of the exact flank of one gear's tooth 0: roll lengths ρ (n,) and heights z (m,) [mm]."""
+    """A rectangular grid on the exact flank of a gear's tooth 0."""
 
     gear: Member
+    """The gear."""
     roll_length: Floats
+    """(n,), roll lengths ρ of the rows [mm]."""
     z: Floats
+    """(m,), heights of the columns [mm]."""
 
     def polygons(self, run: RunData) -> Polygons:
-        """Its surface in the gear's own frame, points in the order of (ρ, z) rows."""
+        """Surface of the patch in the gear's own frame, its points row by row."""
         ρ, z = np.meshgrid(self.roll_length, self.z, indexing="ij")
         points = Flank(run.pair.gears[self.gear]).point(ρ, z).reshape(-1, 3)
         number = np.arange(ρ.size).reshape(ρ.shape)
@@ -89,13 +95,13 @@ class Patch:
         return Polygons(points, (quads.reshape(-1, 4),))
 
     def values(self, run: RunData, result: PositionResult, tooth: int, field: FlankField) -> Floats:
-        """The field (n, m) on it."""
+        """Pressure (n, m) [MPa] of a tooth pair's field on the patch."""
         ρ, z = np.meshgrid(self.roll_length, self.z, indexing="ij")
         return field.at(line_distance(run.pair, result, tooth, self.gear, ρ, z), self.z)
 
 
 def flank_patch(run: RunData, gear: Member, count: tuple[int, int] = (420, 160)) -> Patch:
-    """The whole meshed flank of a gear as `count` (profile, width) points."""
+    """The whole meshed flank of a gear. count: numbers of points along the profile and across the face."""
     shape = run.shapes[gear]
     points = shape.points[shape.flank_nodes]
     base = run.pair.gears[gear].base_radius

@@ -1,16 +1,20 @@
-"""Fields for ParaView: a time series of the loaded flanks with their pressures, and of the gears around them.
+"""Fields for ParaView: a time series of the loaded flanks with their pressures, and of the teeth around them.
 
-    OUT/fields/contact.pvd      open this one in ParaView, or with pyvista.get_reader; time is the pinion rotation in °
-    OUT/fields/flanks_0003.vtp  the pinion's and the wheel's loaded flanks in contact, placed where they stand
+    OUT/fields/contact.pvd      to open in ParaView or with pyvista.get_reader; time is the pinion rotation in °
+    OUT/fields/flanks_0003.vtp  loaded flanks of pinion and wheel in contact, at their place
     OUT/fields/gears_0003.vtp   the modelled teeth around them, without these flanks
 
-Arrays of the flanks, one set for each friction coefficient, are named "pressure_MPa (mu=0.07)" and so on: pressure_MPa;
-traction_MPa: the contact traction on the pinion (pressure and friction) in space; slip_mm_per_rad: velocity of the
-pinion's flank over the wheel's per rad/s of pinion speed; sticks: 1 where it sticks. Pressures are averages about the
-nodes, which keep the force; the peaks are in summary.json. Where a layer of cells bears on a tip edge the pressure is
-singular, ten times that of the flanks: there pressure_MPa and traction_MPa are NaN, and edge_pressure_MPa, 0 elsewhere,
-has the pressure. The wheel's flanks carry pressures only. Arrays without a coefficient: gear (0 pinion, 1 wheel), tooth
-(pair), roll_distance_mm.
+Arrays of the flanks for each friction coefficient, with names such as "pressure_MPa (mu=0.07)":
+
+    pressure_MPa       contact pressure; NaN in layers of cells that bear on a tip edge
+    edge_pressure_MPa  contact pressure in these layers, 0 elsewhere
+    traction_MPa       contact traction on the pinion, pressure and friction, as a vector in space; NaN as pressure_MPa
+    slip_mm_per_rad    velocity of the pinion's flank relative to the wheel's per rad/s of pinion speed
+    sticks             1 at sticking nodes, else 0
+
+Arrays for all friction coefficients: gear (0 pinion, 1 wheel), tooth (index of the pair), roll_distance_mm. Pressures
+are nodal averages that preserve the force; peaks are in summary.json. On a tip edge the pressure is singular, ten times
+that of the flanks. Flanks of the wheel have pressures only.
 """
 
 from __future__ import annotations
@@ -43,10 +47,11 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.vtk_xml import xml_bytes
 
 Arrays = dict[str, Floats]
+"""Name -> values (n,) or (n, 3) at the nodes of a surface."""
 
 
 def write_fields(run: RunData, folder: RunFolder) -> Path:
-    """Writes the series of a run into OUT/fields; gives the .pvd file. Raises WriteError, FolderError."""
+    """Writes the series of a run to OUT/fields; returns the .pvd file. Raises WriteError, FolderError."""
     collection = ElementTree.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
     series = ElementTree.SubElement(collection, "Collection")
     for k, each in enumerate(run.positions):
@@ -63,7 +68,8 @@ def write_fields(run: RunData, folder: RunFolder) -> Path:
 
 
 def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Polygons, Arrays]:
-    """The loaded flanks of both gears' teeth in contact at a position, and their arrays; placed for the first μ."""
+    """Loaded flanks of the teeth in contact at a position, and their arrays. solved: the results at all friction
+    coefficients; flanks are placed as for the first."""
     first = solved[0].result
     parts, columns = [], []
     for gear in Member:
@@ -75,7 +81,7 @@ def flank_fields(run: RunData, solved: tuple[SolvedPosition, ...]) -> tuple[Poly
 
 
 def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member, tooth: int) -> Arrays:
-    """The arrays of one tooth's flank."""
+    """The arrays of the flank of one tooth."""
     shape, nodes = run.shapes[gear], flank_nodes(run.pair.gears[gear], run.shapes[gear])
     ξ = gear.sign * (nodes.roll_length - run.pair.pitch_point_roll_lengths[gear])
     arrays = {
@@ -84,14 +90,14 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member
         "roll_distance_mm": ξ,
     }
     for each in solved:
-        own = _pinion_values if gear == Member.PINION else _wheel_values
-        values = _without_edges(own(run, each.result, tooth), on_tip_edge(each.cut, tooth, nodes.z))
+        values_of = _pinion_values if gear == Member.PINION else _wheel_values
+        values = _without_edges(values_of(run, each.result, tooth), on_tip_edge(each.cut, tooth, nodes.z))
         arrays |= {f"{name} (mu={each.result.friction:g})": value for name, value in values.items()}
     return {name: on_flank(shape, value) for name, value in arrays.items()}
 
 
 def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:
-    """The arrays with the pressure of nodes in `edge` (n,) bool apart."""
+    """The arrays with the pressures on tip edges in an array of their own. edge: (n,) bool, nodes on a tip edge."""
     pressure = values["pressure_MPa"]
     bears = edge & (pressure > 0.0)
     return values | {
@@ -102,6 +108,7 @@ def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:
 
 
 def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
+    """Pressure, traction, slip and state of friction at the flank nodes of a pinion tooth."""
     pressure = nodal(run, result, tooth, result.pressure)
     touching = pressure > 0.0
     return {
@@ -113,18 +120,19 @@ def _pinion_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
 
 
 def _sticking(run: RunData, result: PositionResult, tooth: int) -> Floats:
-    """1 at the flank nodes whose nearest contact point sticks."""
+    """1 at the flank nodes (n,) whose nearest contact point sticks, else 0."""
     points, nodes = result.contact, run.flank
-    mine = points.tooth == tooth
-    if not np.any(points.sticks[mine]):
+    here = points.tooth == tooth
+    if not np.any(points.sticks[here]):
         return np.zeros(len(nodes.points))
     s = line_distance(run.pair, result, tooth, Member.PINION, nodes.roll_length, nodes.z)
-    _, nearest = cKDTree(np.column_stack([points.across, points.z])[mine]).query(np.column_stack([s, nodes.z]))
-    return points.sticks[mine][nearest].astype(float)
+    _, nearest = cKDTree(np.column_stack([points.across, points.z])[here]).query(np.column_stack([s, nodes.z]))
+    return points.sticks[here][nearest].astype(float)
 
 
 def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
-    """The pinion's pressure carried over along the contact line; the vectors stay with the pinion."""
+    """The pinion's pressure at the flank nodes of the mating wheel tooth; zero vectors, which are given on the
+    pinion."""
     nodes = flank_nodes(run.pair.wheel, run.shapes[1])
     n = len(nodes.points)
     pressure = np.zeros(n)
@@ -139,7 +147,7 @@ def _wheel_values(run: RunData, result: PositionResult, tooth: int) -> Arrays:
 
 
 def surrounding(run: RunData, result: PositionResult) -> Polygons:
-    """The teeth in contact without their loaded flanks, and one more on each side, of both gears."""
+    """Teeth of both gears: those in contact without their loaded flanks, and one more on either side."""
     bare = {int(tooth) for tooth in np.unique(result.tooth)}
     teeth = list(range(min(bare) - 1, max(bare) + 2))
     placed = [placed_teeth(run, result, gear, teeth, bare) for gear in Member]
@@ -147,7 +155,7 @@ def surrounding(run: RunData, result: PositionResult) -> Polygons:
 
 
 def vtp_bytes(surface: Polygons, arrays: Arrays) -> bytes:
-    """The content of a .vtp in single precision."""
+    """The content of a .vtp file in single precision."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     mesh: Any = poly_data(Polygons(surface.points.astype(np.float32), surface.faces))
@@ -157,7 +165,7 @@ def vtp_bytes(surface: Polygons, arrays: Arrays) -> bytes:
 
 
 def poly_data(surface: Polygons) -> Any:
-    """A pyvista surface; pyvista, slow to load, is only loaded for it."""
+    """The surface as pyvista's PolyData. pyvista is imported here because its import is slow."""
     import pyvista
 
     faces = [np.column_stack([np.full(len(face), face.shape[1]), face]).ravel() for face in surface.faces]

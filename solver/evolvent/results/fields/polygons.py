@@ -1,6 +1,6 @@
-"""Gears as polygons in space, with nodal values on their loaded flanks: what pictures and fields are drawn from.
+"""Surfaces of gears as polygons in space, with nodal values on their loaded flanks, for pictures and fields.
 
-A gear that was solved in 2D is drawn over its face width, the same in every section.
+A gear that was solved in 2D is extruded over its face width.
 """
 
 from __future__ import annotations
@@ -19,26 +19,29 @@ from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
 
 CUTS = ("cut_low", "cut_high")
+"""Groups of facets on the cut faces between sectors."""
 FINE = {
     9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
     6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
     4: ((0, 1, 2, 3),),
     3: ((0, 1, 2),),
 }
-"""Nodes of a facet in gmsh's order -> its polygons on all nodes."""
+"""Number of nodes of a facet -> its subdivision into polygons on all nodes, in gmsh's order of nodes."""
 CORNERS = {9: 4, 6: 3, 4: 4, 3: 3}
-"""Nodes of a facet -> its corners."""
+"""Number of nodes of a facet -> number of its corners."""
 
 
 @dataclass(frozen=True)
 class Polygons:
-    """A surface: points (n, 3) [mm] and faces, arrays (m, k) of k-cornered polygons."""
+    """A surface of polygons."""
 
     points: Floats
+    """(n, 3), its points [mm]."""
     faces: tuple[Ints, ...]
+    """Arrays (m, k), the points of m polygons with k corners."""
 
     def moved(self, rotation: Floats, translation: Floats) -> Polygons:
-        """After x -> rotation (3, 3) x + translation (3,)."""
+        """The surface after x -> R x + t. rotation: R (3, 3); translation: t (3,) [mm]."""
         return Polygons(self.points @ rotation.T + translation, self.faces)
 
 
@@ -55,7 +58,7 @@ def joined(parts: list[Polygons]) -> Polygons:
 
 
 def compact(points: Floats, faces: tuple[Ints, ...]) -> Polygons:
-    """Only the points that faces use."""
+    """The surface with only those points (n, 3) [mm] that its faces use."""
     used = np.unique(np.concatenate([face.ravel() for face in faces]))
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
@@ -63,8 +66,8 @@ def compact(points: Floats, faces: tuple[Ints, ...]) -> Polygons:
 
 
 def flank_surface(shape: GearShape, face_width: float) -> Polygons:
-    """Tooth 0's loaded flank on all its nodes, in the order of GearShape.flank_nodes; of a plane shape first all at
-    −b/2, then all at +b/2."""
+    """The loaded flank of tooth 0 on all its nodes, in the order of GearShape.flank_nodes; for a plane shape first
+    those at −b/2, then those at +b/2. face_width: b [mm]."""
     number = np.full(len(shape.points), -1)
     number[shape.flank_nodes] = np.arange(len(shape.flank_nodes))
     facets, points = number[shape.facets["flank"]], shape.points[shape.flank_nodes]
@@ -74,12 +77,13 @@ def flank_surface(shape: GearShape, face_width: float) -> Polygons:
 
 
 def on_flank(shape: GearShape, values: Floats) -> Floats:
-    """Nodal values (n, ...) for the points of `flank_surface`."""
+    """Values at the points of `flank_surface` from values (n, ...) at the flank nodes."""
     return np.concatenate([values, values]) if is_plane(shape) else values
 
 
 def sector_surface(shape: GearShape, face_width: float, with_flank: bool) -> Polygons:
-    """A sector's outside (without its cuts), by the corners of its facets."""
+    """Surface of a sector without its cut faces, from the corners of its facets. with_flank: whether it has the loaded
+    flank."""
     names = [name for name in shape.facets if name not in CUTS and (with_flank or name != "flank")]
     if is_plane(shape):
         sides = np.concatenate([_segments(shape.facets[name]) for name in names])
@@ -89,31 +93,31 @@ def sector_surface(shape: GearShape, face_width: float, with_flank: bool) -> Pol
 
 
 def _polygons(facets: Ints) -> Ints:
-    """Facets (m, nodes) as polygons on all their nodes."""
+    """Facets (m, nodes) as polygons (p, k) on all their nodes."""
     return np.concatenate([facets[:, list(part)] for part in FINE[facets.shape[1]]])
 
 
 def _segments(lines: Ints) -> Ints:
-    """Line facets (m, 2 or 3) as segments (…, 2)."""
+    """Line facets (m, 2 or 3) as segments (s, 2)."""
     return lines if lines.shape[1] == 2 else np.concatenate([lines[:, [0, 2]], lines[:, [2, 1]]])
 
 
 def _extruded(points: Floats, segments: Ints, face_width: float) -> Polygons:
-    """Segments over the face width: points twice, quadrilaterals."""
+    """Segments extruded over the face width: quadrilaterals between the points at −b/2 and at +b/2."""
     n, half = len(points), np.array([0.0, 0.0, 0.5 * face_width])
     quads = np.column_stack([segments, segments[:, ::-1] + n])
     return Polygons(np.concatenate([points - half, points + half]), (quads,))
 
 
 def _with_lids(shape: GearShape, sides: Polygons, face_width: float) -> Polygons:
-    """Closes the two ends of an extruded sector with its whole outline."""
+    """The extruded sides of a sector with both end faces, each a polygon along the sector's outline."""
     outline = _loop(np.concatenate([_segments(facets) for facets in shape.facets.values()]))
     lids = np.stack([outline, outline[::-1] + len(shape.points)])
     return compact(sides.points, (*sides.faces, lids))
 
 
 def _loop(segments: Ints) -> Ints:
-    """The nodes of a closed line of segments (m, 2), in order."""
+    """The nodes (m,) of a closed line, in order. segments: (m, 2)."""
     neighbours: dict[int, list[int]] = {}
     for a, b in segments.tolist():
         neighbours.setdefault(a, []).append(b)
@@ -125,14 +129,15 @@ def _loop(segments: Ints) -> Ints:
 
 
 def place(result: PositionResult, gear: Member, tooth: int, surface: Polygons) -> Polygons:
-    """Tooth 0's surface of a gear where tooth pair `tooth` has it at a position."""
+    """The surface of a gear's tooth 0 moved to the place of tooth pair `tooth` at a position."""
     return surface.moved(result.stand.rotation(gear, 3, tooth), result.stand.centre(gear, 3))
 
 
 def placed_teeth(
     run: RunData, result: PositionResult, gear: Member, teeth: list[int], bare: set[int]
 ) -> Polygons | None:
-    """Sectors of a gear at a position as one surface; those in `bare` without their loaded flanks. None: no teeth."""
+    """Sectors of a gear at a position as one surface; None without teeth. bare: teeth whose loaded flanks are left
+    out."""
     kinds = [
         (
             sector_surface(run.shapes[gear], run.pair.face_width, with_flank),
@@ -145,13 +150,13 @@ def placed_teeth(
 
 
 def all_teeth(run: RunData, gear: Member) -> list[int]:
-    """Every tooth of a gear, by the tooth pairs' numbers around 0."""
+    """All teeth of a gear, as indices of tooth pairs around 0."""
     z = run.pair.gears[gear].z
     return list(range(-(z // 2), z - z // 2))
 
 
 def nodal(run: RunData, result: PositionResult, tooth: int, values: Floats) -> Floats:
-    """Values (n, ...) of a position's nodes as values of all flank nodes of pinion tooth `tooth`; 0 elsewhere."""
+    """Values at all flank nodes of a pinion tooth from values (n, ...) at the nodes of a position; 0 at other nodes."""
     everywhere = np.zeros((len(run.shapes[0].flank_nodes), *values.shape[1:]))
     here = result.tooth == tooth
     everywhere[result.node[here]] = values[here]
@@ -159,15 +164,15 @@ def nodal(run: RunData, result: PositionResult, tooth: int, values: Floats) -> F
 
 
 def space_vectors(run: RunData, result: PositionResult, local: Floats) -> Floats:
-    """Vectors (n, k) in the local frames of a position's nodes (normal, transverse, third) as (n, 3) in space.
+    """Vectors (n, 3) in space from components (n, k) in the nodal frames (normal, transverse, third) of a position.
 
-    The frames are rebuilt from the exact flank's normals, which differ from the mesh's by less than a picture shows.
+    The frames are made from normals of the exact flank; their difference to those of the mesh is too small to be seen.
     """
     vectors = np.zeros((len(local), 3))
-    own, d, k = flank_normals(run), 2 if run.plane else 3, local.shape[1]
+    flank, d, k = flank_normals(run), 2 if run.plane else 3, local.shape[1]
     for tooth in np.unique(result.tooth):
         here = result.tooth == tooth
-        normals = own[result.node[here]] @ result.stand.rotation(Member.PINION, 3, int(tooth)).T
+        normals = flank[result.node[here]] @ result.stand.rotation(Member.PINION, 3, int(tooth)).T
         vectors[here, :d] = np.einsum("jia,ji->ja", tangent_frames(normals[:, :d])[:, :k], local[here])
     return vectors
 
@@ -178,8 +183,8 @@ def flank_normals(run: RunData) -> Floats:
 
 
 def sliding(run: RunData, result: PositionResult, tooth: int) -> Floats:
-    """Velocity (n, 3) of the pinion's flank nodes over the wheel, in space, per rad/s of pinion speed [mm/rad]: the
-    tangential part of e_z × (x − c_1) + (z_1/z_2) e_z × (x − c_2)."""
+    """Sliding velocity (n, 3) of the pinion's flank nodes relative to the wheel, in space, per rad/s of pinion speed
+    [mm/rad]: the tangential part of e_z × (x − c_1) + (z_1/z_2) e_z × (x − c_2)."""
     R = result.stand.rotation(Member.PINION, 3, tooth)
     x, normals = run.flank.points @ R.T, flank_normals(run) @ R.T
     v = spin(x, np.zeros(3)) + spin(x, result.stand.centre(Member.WHEEL, 3)) / run.pair.ratio

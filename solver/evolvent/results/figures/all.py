@@ -1,4 +1,4 @@
-"""All pictures of a run, drawn from what the run has left on disk."""
+"""List of all pictures of a run."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from evolvent.results.figures.trend import friction_trend
 from evolvent.results.run_data import RunData
 
 Draw = Callable[[RunData], Figure]
+"""Function that draws a figure of a run."""
 
 
 def pictures(run: RunData) -> Iterator[Picture]:
-    """The pictures and the animation, unless the scene's [output] says otherwise."""
+    """The pictures and the animation for which the scene's [output] asks."""
     if run.scene.output.pictures:
         yield Picture("01_loaded_pair.png", partial(_loaded_pair, run))
         for name, draw in figures(run):
@@ -32,7 +33,7 @@ def pictures(run: RunData) -> Iterator[Picture]:
 
 
 def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
-    """(file name, drawing) of every flat figure that this run has the data for."""
+    """Name, without ending, and drawing function of every plane figure for which the run has data."""
     several, helical = len(run.frictions) > 1, run.pair.pinion.helix_angle > 0.0
     if not run.plane:
         yield "02_flank_pressure", pressure_map
@@ -54,18 +55,21 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
 
 
 def _flat(draw: Draw, run: RunData) -> bytes:
+    """PNG of a plane figure."""
     with styled():
         return png(draw(run))
 
 
 def _loaded_pair(run: RunData) -> bytes:
-    from evolvent.results.figures.space import loaded_pair  # pyvista takes a second: only where it renders
+    """PNG of the loaded pair in space."""
+    from evolvent.results.figures.space import loaded_pair  # imported here because the import of pyvista is slow
 
     with styled(), off_screen():
         return png(loaded_pair(run))
 
 
 def _animation(run: RunData) -> bytes:
+    """GIF of the pair over a pitch."""
     from evolvent.results.figures.space import animation
 
     with styled(), off_screen():

@@ -1,4 +1,4 @@
-"""What the pair does as a drive: load sharing, transmission error, losses, line load and sliding."""
+"""Figures of the pair as a drive: load sharing, transmission error, losses, line load and sliding."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, sheet
 from evolvent.results.engagement import engagements
-from evolvent.results.figures.stress import OWN_ANGLE
+from evolvent.results.figures.stress import TOOTH_ANGLE
 from evolvent.results.position_figures import loss_percent
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -22,21 +22,23 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
 
 PINION_ANGLE = "pinion rotation φ [°]"
-EVEN = 600  # rotations at which rigid flanks share: the share of a spur pair jumps
+EVEN = 600
+"""Number of rotations in a pitch for the load sharing of rigid flanks, which jumps on a spur pair."""
 MOST_SLIDING = 8.0
-"""Specific sliding is drawn down to its negative: near a base circle it has no bound."""
+"""The axis of specific sliding ends at its negative: near a base circle specific sliding is unbounded."""
 
 
 def load_sharing(run: RunData) -> Figure:
-    """Share of the normal force that a tooth carries over its engagement."""
+    """Figure of the share of the normal force on a tooth over its engagement."""
     curves = engagements(run)
     most = [float(c.share.max()) for c in curves]
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     counts = [len(each[0].teeth) for each in run.positions]
-    see = f"A tooth carries at most {100 * most[low]:.0f} % of the load; {min(counts)} to {max(counts)} teeth share it"
+    subtitle = f"A tooth carries at most {100 * most[low]:.0f} % of the load; "
+    subtitle += f"{min(counts)} to {max(counts)} teeth share it"
     changed = round(100 * most[high]) != round(100 * most[low])
-    see += f"; μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if changed else "."
-    figure = sheet("Load sharing", see)
+    subtitle += f"; μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if changed else "."
+    figure = sheet("Load sharing", subtitle)
     axes = figure.subplots()
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         first, last = curve.ends
@@ -45,14 +47,15 @@ def load_sharing(run: RunData) -> Figure:
     angle, share = even_share(run)
     angle, share = np.degrees(angle[[0, *range(len(angle)), -1]]), np.array([0.0, *share, 0.0])
     axes.plot(angle, 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line")
-    axes.set(xlabel=OWN_ANGLE, ylabel="share of the normal force [%]")
+    axes.set(xlabel=TOOTH_ANGLE, ylabel="share of the normal force [%]")
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper right")
     return figure
 
 
 def even_share(run: RunData) -> tuple[Floats, Floats]:
-    """(own rotation, share) of a tooth if the load lay evenly on the contact lines of rigid flanks."""
+    """Rotations (n,) [rad] of a tooth and its shares (n,) of the load for an even load on the contact lines of rigid
+    flanks."""
     rows = []
     for angle in np.linspace(0.0, run.pitch, EVEN, endpoint=False):
         lines = contact_lines(run.pair, float(angle))
@@ -63,19 +66,19 @@ def even_share(run: RunData) -> tuple[Floats, Floats]:
 
 
 def transmission_error(run: RunData) -> Figure:
-    """Loaded transmission error over a pitch."""
+    """Figure of the loaded transmission error over a pitch."""
     rows = friction_rows(run)
     bars = [run.errors.bar("transmission_error_peak_to_peak_um", k) for k in range(len(rows))]
     sizes = [plus_minus(row.transmission_error_peak_to_peak_um, bar, 2) for row, bar in zip(rows, bars)]
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
-    see = f"Peak to peak {sizes[low]} µm at μ = {run.frictions[low]:g}"
-    see += f", {sizes[high]} µm at μ = {run.frictions[high]:g}" if low != high else ""
+    subtitle = f"Peak to peak {sizes[low]} µm at μ = {run.frictions[low]:g}"
+    subtitle += f", {sizes[high]} µm at μ = {run.frictions[high]:g}" if low != high else ""
     stiffness = rows[low].mesh_stiffness_N_per_mm_um
     if np.isfinite(stiffness):
         bar = run.errors.bar("mesh_stiffness_N_per_mm_um", low)
-        see += f"; mean mesh stiffness {plus_minus(stiffness, bar, 1)} N/(mm·µm)"
-    see += "."
-    figure = sheet("Loaded transmission error over a pitch", see)
+        subtitle += f"; mean mesh stiffness {plus_minus(stiffness, bar, 1)} N/(mm·µm)"
+    subtitle += "."
+    figure = sheet("Loaded transmission error over a pitch", subtitle)
     axes = figure.subplots()
     foot(figure, _between(len(run.positions), rows[low], bars[low]))
     for index, colour in enumerate(friction_colours(run.frictions)):
@@ -87,7 +90,8 @@ def transmission_error(run: RunData) -> Figure:
 
 
 def _between(positions: int, row: FrictionRow, bar: float) -> str:
-    """What the curve may do between the positions; bar: of the peak to peak [µm], of which that is a part, or NaN."""
+    """Footnote on the spacing error of the peak-to-peak value. bar: its error bar [µm], which holds that part, or
+    NaN."""
     missed = row.spacing_error.transmission_error_peak_to_peak_um
     if np.isfinite(bar):
         part = f"Of the error bar at μ = {row.friction:g}, {brief(missed)} µm"
@@ -96,13 +100,13 @@ def _between(positions: int, row: FrictionRow, bar: float) -> str:
 
 
 def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
-    """φ [°] and values over the pitch, the first position repeated at its end: a pitch later all teeth are alike."""
+    """Rotations φ [°] and values over the closed pitch: the first position is repeated at the end."""
     angles = np.append(run.angles, run.angles[0] + run.pitch)
     return np.degrees(angles), np.append(values, values[0])
 
 
 def losses(run: RunData) -> Figure:
-    """Power lost to friction over a pitch, and the efficiency over μ."""
+    """Figure of the friction power over a pitch, and of the mean loss over μ."""
     rows = sorted(friction_rows(run), key=lambda row: row.friction)
     ends = " and ".join(
         f"{_efficiency(row)} at μ = {row.friction:g}" for row in {r.friction: r for r in (rows[0], rows[-1])}.values()
@@ -113,7 +117,7 @@ def losses(run: RunData) -> Figure:
         x, y = _closed(run, np.array([loss_percent(run, each[index]) for each in run.positions]))
         over.plot(x, y, color=colour, label=f"μ = {run.frictions[index]:g}")
     over.set(xlabel=PINION_ANGLE, ylabel="friction power over input power [%]")
-    over.set_ylim(bottom=-0.02 * over.get_ylim()[1])  # a line at 0 is seen
+    over.set_ylim(bottom=-0.02 * over.get_ylim()[1])  # a line at 0 is visible
     over.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     bars = [0.0 if row.estimated_error is None else row.estimated_error.loss_percent for row in rows]
     points = [row.friction for row in rows], [row.loss_percent for row in rows]
@@ -126,13 +130,14 @@ def losses(run: RunData) -> Figure:
 
 
 def _efficiency(row: FrictionRow) -> str:
-    """With its error bar, which is the loss's [%]."""
+    """Efficiency [%] with its error bar, which is that of the loss."""
     bar = math.nan if row.estimated_error is None else row.estimated_error.loss_percent
     return f"{plus_minus(100.0 - row.loss_percent, bar, 2)} %"
 
 
 def line_load(run: RunData, index: int = 0) -> Figure:
-    """Line load and sliding along the path of contact."""
+    """Figure of line load and specific sliding along the path of contact, at the friction coefficient with this
+    index."""
     start, end = run.pair.path_of_contact
     cut = Slices.joined([each[index].cut for each in run.positions])
     ξ, load, edge = cut.roll_distance, cut.line_load, cut.edge
@@ -141,9 +146,9 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0])
     )
     inside = load[(ξ > start) & (ξ < end) & ~edge]
-    see = f"Between the tip edges from {inside.min():.0f} to {inside.max():.0f} N/mm"
-    see += f", at most {inside.max() / mean:.2f} times the even load (μ = {run.frictions[index]:g})."
-    figure = sheet("Line load and sliding along the path of contact", see, (10.0, 6.2))
+    subtitle = f"Between the tip edges from {inside.min():.0f} to {inside.max():.0f} N/mm"
+    subtitle += f", at most {inside.max() / mean:.2f} times the even load (μ = {run.frictions[index]:g})."
+    figure = sheet("Line load and sliding along the path of contact", subtitle, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(
         ξ[~edge],
@@ -171,7 +176,7 @@ def line_load(run: RunData, index: int = 0) -> Figure:
 
 
 def _sliding(axes: Axes, run: RunData) -> None:
-    """Specific sliding of both gears, (v_1 − v_2)/v_1 and (v_2 − v_1)/v_2."""
+    """Curves of the specific sliding of both gears, (v_1 − v_2)/v_1 and (v_2 − v_1)/v_2."""
     ξ = np.linspace(*run.pair.path_of_contact, 300)
     ρ1, ρ2 = run.pair.curvature_radii(ξ)
     v1, v2 = ρ1, ρ2 / run.pair.ratio
@@ -185,11 +190,11 @@ def _sliding(axes: Axes, run: RunData) -> None:
     axes.set_ylabel("specific sliding [–]")
     least = max(-MOST_SLIDING, min(float(sliding.min()) for _, _, sliding, _ in curves))
     axes.set_ylim(1.08 * least, 1.3)
-    axes.legend(loc="lower center")  # both curves fall towards an end of the path
+    axes.legend(loc="lower center")  # both curves decrease towards an end of the path
 
 
 def _cut_off(axes: Axes, ξ: float, sliding: float, colour: str) -> None:
-    """An arrow where a curve leaves the axes, with the value at its end."""
+    """Arrow where a curve leaves the axes, with the value at its end."""
     value = f"{signed(sliding)} at the end" if np.isfinite(sliding) else "without bound"
     inwards = 1.0 if ξ < 0.0 else -1.0
     axes.annotate(

@@ -1,4 +1,4 @@
-"""Pressure on the unrolled flank: its envelope over the engagement, and single positions."""
+"""Maps of the pressure on the unrolled flank: envelope over the engagement, and single positions."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ ROLL = "roll distance ξ from the pitch point [mm]"
 
 
 def pressure_map(run: RunData, index: int = 0) -> Figure:
-    """The envelope of the pressure over the engagement, and single positions with the nominal contact lines."""
+    """Figure of the pressure's envelope over the engagement, and of single positions with nominal contact lines."""
     steps = [round(k * len(run.positions) / 3) for k in range(3)]
     top = pressure_top(run, index)
-    see = _see_map(run, index)
-    figure = sheet(f"Pressure on the unrolled pinion flank, μ = {run.frictions[index]:g}", see, (12.0, 6.2))
+    subtitle = _map_subtitle(run, index)
+    figure = sheet(f"Pressure on the unrolled pinion flank, μ = {run.frictions[index]:g}", subtitle, (12.0, 6.2))
     axes = figure.subplots(1, 4, sharey=True, width_ratios=(1.5, 1, 1, 1))
     shown = _envelope_map(axes[0], run, index, top)
     axes[0].set_title("envelope between the tip-edge zones", fontsize=10)
@@ -50,28 +50,28 @@ def pressure_map(run: RunData, index: int = 0) -> Figure:
 
 
 def pressure_top(run: RunData, index: int) -> float:
-    """Upper end of the colours [MPa]: of the headline, the envelope and the nodes' pressures between the tip-edge zones
-    the largest, rounded up. Layers that bear on a tip edge do not count: their pressure is singular, also beside it."""
+    """Upper end of the colour scale [MPa]: the largest of the reported pressure, the envelope, and nodal pressures
+    between the tip-edge zones, rounded up. Layers that bear on a tip edge are left out, since their pressure is
+    singular beside the edge too."""
     low, high = run.inner_path
     headline = largest_peak(run, index).pressure
-    found = [headline if np.isfinite(headline) else 0.0]
+    largest = [headline if np.isfinite(headline) else 0.0]
     _, over_face = envelope(run, index, _path(run))
-    found.append(float(over_face[np.isfinite(over_face)].max(initial=0.0)))
+    largest.append(float(over_face[np.isfinite(over_face)].max(initial=0.0)))
     for cut, result in ((each[index].cut, each[index].result) for each in run.positions):
         ξ = run.flank.roll_length[result.node] - run.pair.pitch_point_roll_lengths[0]
         for tooth in np.unique(result.tooth):
             away = (result.tooth == tooth) & (low <= ξ) & (ξ <= high)
             away &= ~on_tip_edge(cut, int(tooth), run.flank.z[result.node])
-            found.append(float(result.pressure[away].max(initial=0.0)))
-    return float(100.0 * max(1.0, np.ceil(max(found) / 100.0)))
+            largest.append(float(result.pressure[away].max(initial=0.0)))
+    return float(100.0 * max(1.0, np.ceil(max(largest) / 100.0)))
 
 
 def envelope(run: RunData, index: int, ξ: Floats) -> tuple[Floats, Floats]:
-    """(heights (h,), fitted peak pressure (len(ξ), h) [MPa]) that a line at ξ leaves at each height; NaN where
-    no position came near, or only with a tip edge.
+    """Heights (h,) [mm] and fitted peak pressures (len(ξ), h) [MPa] at roll distances ξ (n,) [mm] over the engagement.
 
-    The contact line passes every height once in an engagement, so the peaks of all positions of the pitch are one
-    curve over ξ there.
+    The contact line passes each height once in an engagement, so that the peaks of all positions of the pitch form one
+    curve over ξ there. NaN where no position lies near, or only on a tip edge.
     """
     cuts = [each[index].cut for each in run.positions]
     whole = Slices.joined(cuts)
@@ -95,6 +95,7 @@ def _path(run: RunData) -> Floats:
 
 
 def _envelope_map(axes: Axes, run: RunData, index: int, top: float) -> QuadMesh:
+    """Map of the envelope with labelled contours and nominal contact lines."""
     ξ = _path(run)
     z = np.linspace(-0.5, 0.5, 320) * run.pair.face_width
     fine = envelope_between(run, index, ξ, z)
@@ -110,8 +111,8 @@ def _envelope_map(axes: Axes, run: RunData, index: int, top: float) -> QuadMesh:
 
 
 def envelope_between(run: RunData, index: int, ξ: Floats, z: Floats) -> Floats:
-    """The envelope (len(ξ), len(z)) [MPa] also between the slices' heights. The rims of what is known are straight
-    lines from slice to slice; NaN beyond them, and in holes."""
+    """The envelope (len(ξ), len(z)) [MPa] interpolated between the heights of slices. ξ, z: (n,), (m,) [mm]. The region
+    of known values ends at straight lines from slice to slice; NaN beyond it and in its holes."""
     heights, peak = envelope(run, index, ξ)
     known = np.isfinite(peak)
     sliced = known.any(axis=0)
@@ -119,7 +120,7 @@ def envelope_between(run: RunData, index: int, ξ: Floats, z: Floats) -> Floats:
         return np.full((len(ξ), len(z)), np.nan)
     heights, peak, known = heights[sliced], peak[:, sliced], known[:, sliced]
     first, last = ξ[known.argmax(axis=0)], ξ[len(ξ) - 1 - known[::-1].argmax(axis=0)]
-    filled = np.column_stack([np.interp(ξ, ξ[own], column[own]) for own, column in zip(known.T, peak.T)])
+    filled = np.column_stack([np.interp(ξ, ξ[here], column[here]) for here, column in zip(known.T, peak.T)])
     holes = ~known & (first < ξ[:, None]) & (ξ[:, None] < last)
     fine, hole = (np.stack([np.interp(z, heights, row) for row in rows]) for rows in (filled, holes.astype(float)))
     low, high = np.interp(z, heights, first), np.interp(z, heights, last)
@@ -127,8 +128,8 @@ def envelope_between(run: RunData, index: int, ξ: Floats, z: Floats) -> Floats:
 
 
 def _label_places(lines: ContourSet, run: RunData) -> list[tuple[float, float]]:
-    """A place (z, ξ) for the label of each level where its longest line comes nearest to mid-face; none where that is
-    in the outer fifths of the face or near the tip-edge zones, nor for short lines."""
+    """Places (z, ξ) [mm] of contour labels: for each level the point of its longest line nearest to mid-face. Short
+    lines have no label, nor places in the outer fifths of the face or near the tip-edge zones."""
     places, reach = [], 0.3 * run.pair.face_width
     low, high = run.inner_path
     margin = 0.06 * (high - low)
@@ -156,13 +157,14 @@ def _position_map(axes: Axes, run: RunData, solved: SolvedPosition, top: float) 
 
 
 def _nominal_lines(axes: Axes, run: RunData, angle: float, only: int | None = None) -> None:
-    """The contact lines of rigid flanks."""
+    """Contact lines of rigid flanks at a pinion rotation [rad]. only: of this tooth pair."""
     for line in contact_lines(run.pair, angle):
         if only is None or line.tooth == only:
             axes.plot(line.z, line.roll_distance, color=INK, linewidth=0.8, linestyle=(0, (4, 3)))
 
 
 def _flank_axes(axes: Axes, run: RunData) -> None:
+    """Labels and limits of a flank's axes, its pitch line and the limits of the tip-edge zones."""
     half, (start, end) = 0.5 * run.pair.face_width, run.pair.path_of_contact
     axes.axhline(0.0, color="#2e7d6b", linewidth=1.0)
     for limit in run.inner_path:
@@ -172,7 +174,7 @@ def _flank_axes(axes: Axes, run: RunData) -> None:
 
 
 def _diameters(axes: Axes, run: RunData) -> None:
-    """A second scale: the pinion's diameter."""
+    """Second scale with the diameter on the pinion."""
     base, pitch = run.pair.pinion.base_radius, run.pair.pitch_point_roll_lengths[0]
 
     def to_diameter(ξ: Floats) -> Floats:
@@ -184,10 +186,11 @@ def _diameters(axes: Axes, run: RunData) -> None:
     axes.secondary_yaxis("right", functions=(to_diameter, to_roll)).set_ylabel("pinion diameter [mm]")
 
 
-def _see_map(run: RunData, index: int) -> str:
+def _map_subtitle(run: RunData, index: int) -> str:
+    """Subtitle: the largest pressure and its place."""
     top = largest_peak(run, index)
     ξ = top.roll_distance
     side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
     where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
-    see = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
-    return see + "; dashed: contact lines of rigid flanks."
+    subtitle = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
+    return subtitle + "; dashed: contact lines of rigid flanks."

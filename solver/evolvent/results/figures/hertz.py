@@ -1,4 +1,4 @@
-"""Peak pressures beside Hertz for the same loads, and beside estimates."""
+"""Comparison of peak pressures with Hertz for the same loads, and with estimates."""
 
 from __future__ import annotations
 
@@ -22,24 +22,25 @@ from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 
 YANG_PRINTS = 1788.0
-"""Yang et al. 2022, Table 4 [MPa]; their Eq. 4 gives it neither with nor without their factors."""
+"""Contact stress of Yang et al. 2022, Table 4 [MPa]; their Eq. 4 yields another value, with and without its factors."""
 HERTZ = "#c98a1b"
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 
 
 def hertz_comparison(run: RunData, index: int = 0) -> Figure:
-    """Peak pressures of all slices beside Hertz for their own line load, and beside estimates."""
+    """Figure of the peak pressures of all slices with Hertz for their line loads, and with estimates."""
     cut = Slices.joined([each[index].cut for each in run.positions])
     ξ, peak, hertz = cut.roll_distance, cut.peak, cut.hertz
     start, end = run.pair.path_of_contact
     inside = np.isfinite(peak) & (ξ > start) & (ξ < end)
     ratio = peak[inside] / hertz[inside] - 1.0
     middle, most = signed(100 * float(np.median(ratio))), 100 * np.quantile(np.abs(ratio), 0.9)
-    see = f"Difference from Hertz for a slice's own line load: median {middle} %"
-    see += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
+    subtitle = f"Difference from Hertz for a slice's own line load: median {middle} %"
+    subtitle += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
     if few_cells_across(run):
-        see += f" For looking only: {cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}."
-    figure = sheet("Contact stress beside Hertz", see, (11.4, 5.4))
+        few = f"{cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}"
+        subtitle += f" For looking only: {few}."
+    figure = sheet("Contact stress beside Hertz", subtitle, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(
         ξ[inside],
@@ -76,7 +77,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
 
 
 def _largest(axes: Axes, run: RunData, index: int) -> None:
-    """The largest pressure that the run reports, with its error bar; it may lie between two positions."""
+    """Marker of the largest pressure that the run reports, with its error bar; it may lie between two positions."""
     top, bar = largest_peak(run, index), run.errors.bar("max_pressure_MPa", index)
     face = {"markerfacecolor": "white" if top.at_zone_end else INK}
     label = "computed, largest" + (f": {AT_ZONE_END}" if top.at_zone_end else "")
@@ -86,7 +87,7 @@ def _largest(axes: Axes, run: RunData, index: int) -> None:
 
 
 def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -> None:
-    """Bars: a study's estimates, Hertz at the pitch point, and what was computed there."""
+    """Bars of a study's estimates, of Hertz at the pitch point, and of computed pressures."""
     estimate = run.scene.hertz_estimate()
     near = np.isfinite(peak) & (np.abs(ξ) < 0.25 * run.pair.pinion.normal_module)
     shortest = float(estimate.peak_pressure(0.0, estimate.line_lengths[0]))
@@ -116,7 +117,7 @@ def _estimates(axes: Axes, run: RunData, index: int, ξ: Floats, peak: Floats) -
 
 
 def _yang_estimates(estimate: HertzEstimate) -> list[tuple[str, float, str]]:
-    """Eq. 4 of Yang et al. 2022 with and without its load factors."""
+    """Label, value [MPa] and colour of Eq. 4 of Yang et al. 2022 with and without its load factors."""
     factors = LoadFactors()
     named = f"{factors.application:g}·{factors.dynamic:g}·{factors.transverse:g}·{factors.face:g}"
     return [

@@ -1,5 +1,7 @@
-"""Pressure along contact lines, and over the friction coefficient at single points: those of the path of contact by ISO
-21771, or those of a published study."""
+"""Pressure along contact lines, and at single points over the friction coefficient.
+
+The points are those of the path of contact by ISO 21771, or those of a published study.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +24,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 MOST_LINES = 4
+"""Largest number of contact lines in a figure."""
 PATH_POINTS = {
     "A": "start of the path of contact",
     "AC": "halfway from A to C",
@@ -31,34 +34,38 @@ PATH_POINTS = {
     "D": "outer point of single pair contact",
     "E": "end of the path of contact",
 }
-"""In the transverse section (ISO 21771)."""
-BESIDE = 0.06  # of the width of the axes, between labels that stand side by side
+"""Points of the path of contact in the transverse section (ISO 21771)."""
+BESIDE = 0.06
+"""Smallest distance of labels side by side, over the width of the axes."""
 COLOURS, MARKERS = ("#3b7a57", "#2d6fb0", "#8a5a9e", "#c98a1b", "#b03a5b"), "osD^v"
 
 
 @dataclass(frozen=True)
 class Series:
-    """A point's pressures (frictions,) [MPa], its row of the table by name, and how it is called."""
+    """Pressure at a point over the friction coefficient."""
 
     name: str
+    """Name of the point."""
     cells: tuple[str, ...]
+    """Its coordinates in the table, as text."""
     values: Floats
+    """(frictions,), pressure [MPa]."""
 
 
 def has_lines(run: RunData) -> bool:
-    """Whether there is something to draw along the lines; of a study's teeth if one is compared."""
-    return has_two_lines(run) if compares_yang(run.scene) else bool(_teeth_at(run, telling_position(run)))
+    """Whether there are contact lines to draw; in a comparison with a study, those of its teeth."""
+    return has_two_lines(run) if compares_yang(run.scene) else bool(_teeth_at(run, shown_position(run)))
 
 
-def telling_position(run: RunData) -> int:
-    """The position to look at: the study's, or the one at which most slices of all lines have a fitted peak."""
+def shown_position(run: RunData) -> int:
+    """Index of the position to draw: that of the study, or that at which most slices have a fitted peak."""
     if compares_yang(run.scene):
         return paper_position(run)
     return int(np.argmax([np.isfinite(each[0].cut.peak).sum() for each in run.positions]))
 
 
 def _teeth_at(run: RunData, k: int) -> list[int]:
-    """Tooth pairs with fitted peaks at a position, the one ahead first; of Yang's study teeth 2 and 3."""
+    """Tooth pairs with fitted peaks at position k, the leading pair first; teeth 2 and 3 of Yang's study."""
     if compares_yang(run.scene):
         return [0, -1]
     teeth = {tooth.tooth for tooth in run.positions[k][0].teeth}
@@ -66,10 +73,10 @@ def _teeth_at(run: RunData, k: int) -> list[int]:
 
 
 def line_pressure_over_z(run: RunData) -> Figure:
-    """Fitted peak pressure over z along the contact lines of a position, for every μ."""
-    k = telling_position(run)
+    """Figure of the fitted peak pressure over z along the contact lines of a position, for every μ."""
+    k = shown_position(run)
     teeth, title = _teeth_at(run, k), f"Pressure along the contact lines at φ = {np.degrees(run.angles[k]):.2f}°"
-    figure = sheet(title, _see_lines(run, k, teeth), (11.0, 5.2))
+    figure = sheet(title, _lines_subtitle(run, k, teeth), (11.0, 5.2))
     axes, shown = figure.subplots(1, len(teeth), sharey=True, squeeze=False)[0], set[str]()
     for ax, tooth in zip(axes, teeth):
         for solved, colour in zip(run.positions[k], friction_colours(run.frictions)):
@@ -87,13 +94,13 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes[0].set_ylabel("peak pressure across the line [MPa]")
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
-    said = [] if compares_yang(run.scene) or not shown else [_points_named(shown)]
-    foot(figure, *said, "Nothing is drawn where a line bears on a tip edge.")
+    legend = [] if compares_yang(run.scene) or not shown else [_points_named(shown)]
+    foot(figure, *legend, "Nothing is drawn where a line bears on a tip edge.")
     return figure
 
 
 def label_rows(places: Sequence[float], beside: float) -> list[int]:
-    """The row, 0 the first, in which each place's label stands, so that no two in a row are nearer than `beside`."""
+    """Row, from 0, for the label at each place, so that no two labels of a row are nearer than `beside`."""
     rows: list[int] = []
     for k, place in enumerate(places):
         taken = {rows[j] for j in range(k) if abs(places[j] - place) < beside}
@@ -102,13 +109,13 @@ def label_rows(places: Sequence[float], beside: float) -> list[int]:
 
 
 def _points_named(names: Collection[str]) -> str:
-    """What the letters of these points mean."""
-    said = "; ".join(f"{name}: {what}" for name, what in PATH_POINTS.items() if name in names)
-    return f"{said}; in the transverse section (ISO 21771)."
+    """Footnote with the meaning of these points."""
+    meanings = "; ".join(f"{name}: {what}" for name, what in PATH_POINTS.items() if name in names)
+    return f"{meanings}; in the transverse section (ISO 21771)."
 
 
 def _marks(run: RunData, k: int, tooth: int) -> list[tuple[str, float]]:
-    """(name, z [mm]) of the points on a contact line."""
+    """Names and heights z [mm] of the points on a tooth pair's contact line at position k."""
     if compares_yang(run.scene):
         return [(point.name, point.z) for point in paper_points(run, k) if point.tooth == tooth]
     z, ξ, _ = line_of(run.positions[k][0].cut, tooth)
@@ -118,21 +125,23 @@ def _marks(run: RunData, k: int, tooth: int) -> list[tuple[str, float]]:
 
 
 def path_points(pair: GearPair) -> list[tuple[str, float]]:
-    """Names and roll distances [mm] of the points A to E of the path of contact in the transverse section (ISO 21771):
-    A, E its start and end; C the pitch point; B and D the inner and outer point of single pair contact, which there are
-    with a transverse contact ratio above 1 and a total one below 2 only."""
+    """Names and roll distances [mm] of the points A to E of the path of contact in the transverse section (ISO 21771).
+
+    A and E are its start and end, C is the pitch point. B and D are the inner and outer point of single pair contact;
+    they exist only if the transverse contact ratio is above 1 and the total contact ratio below 2.
+    """
     (start, end), pitch = pair.path_of_contact, pair.pinion.transverse_base_pitch
     single = [("B", end - pitch), ("D", start + pitch)] if _single_pair(pair) else []
     return sorted([("A", start), ("C", 0.0), ("E", end), *single], key=lambda point: point[1])
 
 
 def _single_pair(pair: GearPair) -> bool:
-    """Whether a single tooth pair bears at times."""
+    """Whether a single tooth pair is in contact during a part of the pitch."""
     return pair.transverse_contact_ratio > 1.0 and pair.total_contact_ratio < 2.0
 
 
 def points_over_friction(run: RunData) -> Figure:
-    """Pressure at points over μ, with the table of their changes."""
+    """Figure of the pressure at points over μ, with a table of their changes."""
     order = np.argsort(run.frictions)
     μ = np.array(run.frictions)[order]
     heads: tuple[str, ...]
@@ -145,8 +154,8 @@ def points_over_friction(run: RunData) -> Figure:
         title = "Pressure at points of the path of contact over the friction coefficient, mid-face"
     spread = {each.name: float(np.ptp(each.values)) for each in series}
     ranked = sorted(spread, key=lambda name: -spread[name])
-    see = "Largest change with friction: " + ", ".join(f"{n} {spread[n]:.0f} MPa" for n in ranked) + "."
-    figure = sheet(title, see, (10.6, 6.0))
+    subtitle = "Largest change with friction: " + ", ".join(f"{n} {spread[n]:.0f} MPa" for n in ranked) + "."
+    figure = sheet(title, subtitle, (10.6, 6.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.35, 1.0))
     above, below, side = (figure.add_subplot(grid[place]) for place in ((0, 0), (1, 0), (slice(None), 1)))
     for each, colour, marker in zip(series, COLOURS, MARKERS):
@@ -164,38 +173,41 @@ def points_over_friction(run: RunData) -> Figure:
 
 
 def _of_study(run: RunData, k: int, point: Point, order: np.ndarray) -> Series:
+    """Pressure at a point of the study. order: friction coefficients, ascending."""
     values = np.array([at_point(run.positions[k][i].cut, point) for i in order])
-    return Series(point.name, (f"{2 - point.tooth}", signed(point.z, 2), signed(point.ξ, 2)), values)
+    return Series(point.name, (f"{2 - point.tooth}", signed(point.z, 2), signed(point.roll_distance, 2)), values)
 
 
 def _points_to_follow(pair: GearPair) -> list[tuple[str, float]]:
-    """The points of the path of contact; where there are no B and D, those halfway from its pitch point to its ends in
-    their place."""
+    """Names and roll distances [mm] of the points of the path of contact; without B and D, the points halfway from the
+    pitch point to its ends instead."""
     points, (start, end) = path_points(pair), pair.path_of_contact
     halfway = [] if _single_pair(pair) else [("AC", 0.5 * start), ("CE", 0.5 * end)]
     return sorted([*points, *halfway], key=lambda point: point[1])
 
 
 def _of_path(run: RunData, order: np.ndarray) -> list[Series]:
-    """Those of the points to follow that have a pressure at mid-face: A and E often bear on a tip edge."""
+    """Pressure at those points that have one at mid-face; A and E often lie on a tip edge. order: friction
+    coefficients, ascending."""
     names, ξ = zip(*_points_to_follow(run.pair))
     maps = [envelope(run, int(index), np.array(ξ)) for index in order]
     middle = int(np.argmin(np.abs(maps[0][0])))
-    found = np.array([peak[:, middle] for _, peak in maps])
+    peaks = np.array([peak[:, middle] for _, peak in maps])
     base, pitch = run.pair.pinion.base_radius, run.pair.pitch_point_roll_lengths[0]
     return [
         Series(name, (f"{2.0 * np.hypot(base, pitch + at):.2f}", signed(at, 2)), values)
-        for name, at, values in zip(names, ξ, found.T)
+        for name, at, values in zip(names, ξ, peaks.T)
         if np.isfinite(values).all()
     ]
 
 
 def has_path_points(run: RunData) -> bool:
-    """Whether a point has a pressure at all coefficients."""
+    """Whether a point has a pressure at all friction coefficients."""
     return compares_yang(run.scene) or bool(_of_path(run, np.arange(len(run.frictions))))
 
 
 def _table(axes: Axes, series: Sequence[Series], heads: tuple[str, ...]) -> None:
+    """Table of the points and of the change of their pressures. heads: heads of the coordinates' columns."""
     axes.axis("off")
     spread = [float(np.ptp(each.values)) for each in series]
     rows = [
@@ -210,7 +222,8 @@ def _table(axes: Axes, series: Sequence[Series], heads: tuple[str, ...]) -> None
 
 
 def line_of(cut: Slices, tooth: int) -> tuple[Floats, Floats, Floats]:
-    """(z, ξ, fitted peak pooled with its neighbours') of a tooth's slices, z ascending; tip edges left out."""
+    """Heights z (n,) [mm], ascending, roll distances (n,) [mm] and fitted peaks (n,) [MPa], averaged with neighbours,
+    of a tooth pair's slices off the tip edges."""
     peak = pooled_peaks(cut)
     here = np.flatnonzero((cut.tooth == tooth) & np.isfinite(peak))
     here = here[np.argsort(cut.z[here])]
@@ -218,18 +231,19 @@ def line_of(cut: Slices, tooth: int) -> tuple[Floats, Floats, Floats]:
 
 
 def at_point(cut: Slices, point: Point) -> float:
-    """Fitted peak pressure at a point of the contact line [MPa], linear between slices; NaN off the line."""
+    """Fitted peak pressure at a point of the contact line [MPa], interpolated between slices; NaN outside the line."""
     z, _, peak = line_of(cut, point.tooth)
     return float(np.interp(point.z, z, peak, left=np.nan, right=np.nan)) if len(z) else float("nan")
 
 
-def _see_lines(run: RunData, k: int, teeth: Sequence[int]) -> str:
+def _lines_subtitle(run: RunData, k: int, teeth: Sequence[int]) -> str:
+    """Subtitle: range of the pressure along each line, and its mean change with friction."""
     lowest, highest = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     texts = []
     for tooth in teeth:
         (z, _, peak), (places, _, other) = (line_of(run.positions[k][i].cut, tooth) for i in (lowest, highest))
-        _, mine, its = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
-        change = f" ({signed(100 * (other[its].mean() / peak[mine].mean() - 1))} %)" if highest != lowest else ""
+        _, first, second = np.intersect1d(np.round(z, 9), np.round(places, 9), return_indices=True)
+        change = f" ({signed(100 * (other[second].mean() / peak[first].mean() - 1))} %)" if highest != lowest else ""
         texts.append(f"{short_name(run, tooth)}, {peak.min():.0f} to {peak.max():.0f} MPa{change}")
     more = f", in brackets the mean change to μ = {run.frictions[highest]:g}" if highest != lowest else ""
     return f"At μ = {run.frictions[lowest]:g}{more}: " + "; ".join(texts) + "."

@@ -1,4 +1,4 @@
-"""The gear pair in space, rendered off-screen by pyvista; only this file and `fields`, which writes files, know it."""
+"""Off-screen rendering of the gear pair in space by pyvista, which only this module and `fields` use."""
 
 from __future__ import annotations
 
@@ -20,32 +20,37 @@ from evolvent_meshes.gears.flank import action_plane_points
 from evolvent_meshes.gears.member import Member
 
 Image = NDArray[np.uint8]
-"""(height, width, 3)."""
+"""RGB image (height, width, 3)."""
 BODY = (PINION_BODY, WHEEL_BODY)
-NEAR = 3  # teeth on either side of the mesh are seen from close by
+NEAR = 3
+"""Number of teeth on either side of the mesh that are visible at close range."""
 LIGHT = {"ambient": 0.28, "diffuse": 0.75, "specular": 0.15, "specular_power": 20.0}
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Looks at `target` [mm] from the direction `along`, `reach` [mm] being half the height that is seen; `up`."""
+    """A camera of parallel projection."""
 
     target: tuple[float, float, float]
+    """Point in the middle of the image [mm]."""
     along: tuple[float, float, float]
+    """Direction from the target to the camera."""
     reach: float
+    """Half the height of the visible field [mm]."""
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    """Upward direction of the image."""
 
 
 def contact_teeth(result: PositionResult) -> list[int]:
-    """The tooth pairs under pressure, ascending."""
+    """Tooth pairs in contact, ascending."""
     return sorted(set(result.tooth[result.pressure > 0.0].tolist()))
 
 
 def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[int, int], close: float = 0.0) -> Image:
-    """Both gears at a position; the wheel as glass, so that the contact lines on the pinion's flanks are seen.
+    """Image of both gears at a position; the wheel is transparent, so that the pinion's contact lines are visible.
 
-    top: the pressure at the upper end of the colours [MPa]; size: width and height in pixels; close: 0 shows the whole
-    pinion, 1 the mesh.
+    top: pressure at the upper end of the colour scale [MPa]; size: width and height in pixels; close: from 0 for a view
+    of the whole pinion to 1 for the mesh.
     """
     pinion, pitch = run.pair.pinion, 0.5 * run.pair.working_pitch_diameters[0]
     scene = _plotter(size)
@@ -58,7 +63,8 @@ def pair_picture(run: RunData, result: PositionResult, top: float, size: tuple[i
 
 
 def gear_picture(run: RunData, result: PositionResult, gear: Member, top: float, size: tuple[int, int]) -> Image:
-    """One gear's loaded flanks, the other gear taken away; seen from where that stood."""
+    """Image of the loaded flanks of one gear, from the place of the other gear, which is left out. top, size: see
+    `pair_picture`."""
     scene = _plotter(size)
     _add_gear(scene, run, result, gear, all_teeth(run, gear), opacity=1.0)
     _add_flanks(scene, run, result, gear, top)
@@ -67,8 +73,8 @@ def gear_picture(run: RunData, result: PositionResult, gear: Member, top: float,
 
 def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Floats, top: float,
                   size: tuple[int, int]) -> Image:  # fmt: skip
-    """The gear of a patch, the other one taken away, with `values` (n, m) on the patch of its loaded flanks, which are
-    all alike; top: the value at the upper end of the colours."""
+    """Image of one gear with the same values on all its loaded flanks, without the other gear. values: (n, m) on the
+    patch; top: value at the upper end of the colour scale; size: width and height in pixels."""
     scene, gear, near = _plotter(size), patch.gear, list(range(-NEAR, NEAR + 1))
     _add_gear(scene, run, result, gear, all_teeth(run, gear), 1.0, set(near))
     surface = patch.polygons(run)
@@ -78,7 +84,7 @@ def flank_picture(run: RunData, result: PositionResult, patch: Patch, values: Fl
 
 
 def _at_the_mesh(run: RunData, gear: Member) -> Camera:
-    """On a gear's teeth at the pitch point, from where the other gear stood."""
+    """Camera at the place of the other gear, with this gear's teeth at the pitch point as its target."""
     middle = action_plane_points(run.pair, 0.0, 0.0)
     width = max(run.pair.face_width, 6.0 * run.pair.pinion.normal_module)
     along = (0.75, 1.0, 0.3) if gear == Member.PINION else (-0.75, -1.0, 0.3)
@@ -86,6 +92,7 @@ def _at_the_mesh(run: RunData, gear: Member) -> Camera:
 
 
 def _plotter(size: tuple[int, int]) -> Any:
+    """An empty pyvista plotter."""
     scene = pv.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
     scene.set_background("white")
     scene.enable_parallel_projection()
@@ -97,7 +104,7 @@ def _add_gear(
     scene: Any, run: RunData, result: PositionResult, gear: Member, teeth: list[int], opacity: float,
     bare: set[int] | None = None,
 ) -> None:  # fmt: skip
-    """bare: the teeth whose loaded flanks are left out; those in contact unless said otherwise."""
+    """Adds the teeth of a gear. bare: teeth whose loaded flanks are left out, by default those in contact."""
     placed = placed_teeth(run, result, gear, teeth, set(contact_teeth(result)) if bare is None else bare)
     assert placed is not None
     surface = poly_data(placed).triangulate().clean(tolerance=1e-6, absolute=True)
@@ -109,7 +116,7 @@ def _add_gear(
 
 
 def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: Member, top: float) -> None:
-    """The loaded flanks of the teeth in contact, coloured by pressure."""
+    """Adds the loaded flanks of the teeth in contact, coloured by pressure up to `top` [MPa]."""
     patch = flank_patch(run, gear)
     surface = patch.polygons(run)
     for tooth in contact_teeth(result):
@@ -118,7 +125,8 @@ def _add_flanks(scene: Any, run: RunData, result: PositionResult, gear: Member, 
 
 
 def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> None:
-    """Without light: a shaded colour would be another value's on the scale."""
+    """Adds a surface coloured by values at its points, without lighting: a shaded colour would represent another
+    value."""
     mesh = poly_data(surface)
     mesh["values"] = values.ravel()
     scene.add_mesh(
@@ -130,6 +138,7 @@ def _add_coloured(scene: Any, surface: Polygons, values: Floats, top: float) -> 
 
 
 def _picture(scene: Any, camera: Camera) -> Image:
+    """Renders the scene and closes its plotter."""
     target, along = np.array(camera.target), np.array(camera.along)
     eye = target + 500.0 * along / np.linalg.norm(along)
     scene.camera_position = [tuple(eye), camera.target, camera.up]

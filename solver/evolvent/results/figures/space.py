@@ -1,4 +1,4 @@
-"""The figure of the loaded pair in space, and the animation of a pitch: rendered views set into matplotlib figures."""
+"""Figure of the loaded pair in space, and animation of a pitch: rendered views in matplotlib figures."""
 
 from __future__ import annotations
 
@@ -17,24 +17,25 @@ from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, p
 from evolvent.results.engagement import Engagement, engagement
 from evolvent.results.figures.flank import pressure_top
 from evolvent.results.figures.scene3d import gear_picture, pair_picture
-from evolvent.results.figures.stress import OWN_ANGLE, STRESS
+from evolvent.results.figures.stress import STRESS, TOOTH_ANGLE
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import position_row
 from evolvent_meshes.gears.member import Member
 
 FRAME_MS = 110
+"""Time of a frame of the animation [ms]."""
 
 
 def loaded_pair(run: RunData, index: int = 0) -> Figure:
-    """The pair with the pressure on its flanks, and both gears' flanks by themselves."""
-    k = loudest(run, index)
+    """Figure of the pair with the pressure on its flanks, and of the flanks of each gear."""
+    k = most_loaded_position(run, index)
     result, top = run.positions[k][index].result, pressure_top(run, index)
     teeth = run.positions[k][index].teeth
     peak = position_row(run, run.positions[k][index]).max_pressure_MPa
     load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
-    see = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
-    see += f", μ = {run.frictions[index]:g}."
-    figure = sheet(f"{run.scene.title}: pressure on the flanks", see, (12.4, 7.0))
+    subtitle = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
+    subtitle += f", μ = {run.frictions[index]:g}."
+    figure = sheet(f"{run.scene.title}: pressure on the flanks", subtitle, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
     _image(
         figure.add_subplot(grid[:, 0]),
@@ -64,21 +65,22 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     return figure
 
 
-def loudest(run: RunData, index: int) -> int:
-    """The position at which most teeth carry load, and of these the one of the largest pressure."""
+def most_loaded_position(run: RunData, index: int) -> int:
+    """Index of the position with most teeth in contact, and among these with the largest pressure."""
     keys = [(len(each[index].teeth), position_row(run, each[index]).max_pressure_MPa) for each in run.positions]
     return max(range(len(keys)), key=keys.__getitem__)
 
 
 def _image(axes: Axes, image: np.ndarray, title: str) -> None:
+    """Shows a rendered image without axes."""
     axes.imshow(image)
     axes.set_title(title, fontsize=10)
     axes.axis("off")
 
 
 def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: None) -> bytes:
-    """The content of a GIF of one pitch that runs on without a seam: a pitch later every tooth stands where the one
-    before it stood.
+    """The content of a GIF file with one pitch. It repeats without a seam, since after a pitch every tooth has reached
+    the place of the one ahead of it.
 
     step: called after each frame.
     """
@@ -96,10 +98,10 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
 
 
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
-    """A frame: the pair, and where its teeth stand on the curve of contact stress."""
+    """A frame: the pair, and its teeth in contact on the curve of contact stress."""
     result = run.positions[k][index].result
-    see = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
-    figure = sheet(run.scene.title, see, (9.0, 5.0))
+    subtitle = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
+    figure = sheet(run.scene.title, subtitle, (9.0, 5.0))
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))
     left.axis("off")
@@ -109,12 +111,13 @@ def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> I
     right.plot(np.degrees(curve.angle), curve.max_pressure, color=FAINT)
     here = curve.position == k
     right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)
-    right.set(xlabel=OWN_ANGLE.split("   ")[0], ylabel=STRESS)
+    right.set(xlabel=TOOTH_ANGLE.split("   ")[0], ylabel=STRESS)
     right.set_ylim(bottom=0.0)
     return _drawn(figure)
 
 
 def _drawn(figure: Figure) -> Image.Image:
+    """The figure as an image."""
     canvas = FigureCanvasAgg(figure)
     figure.set_dpi(100)
     canvas.draw()

@@ -1,8 +1,8 @@
 """Contact stress of a tooth over its engagement and over the friction coefficient (Yang et al. 2022, Figs 8 and 9).
 
-Where the contact is fewer than two elements wide, peaks scatter with the way it lies in the cells. Then the pictures
-say so, show points as computed, and as a line Hertz's stress for the same loads times the median of five ratios to it:
-loads are known well, and what they do, as where a single pair bears, stays.
+Where the contact is fewer than two elements wide, peaks scatter with its place in the cells. Pictures then have a note
+and show computed values as points. The line is Hertz' stress for the same loads times the running median of the ratio
+of computed stress to Hertz': loads are accurate, and features such as single pair contact are preserved.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, foot, friction_colours, sheet
 from evolvent.results.drawing.teeth import long_name, short_name, shown_teeth
-from evolvent.results.engagement import Engagement, TurnPeak, crossing, engagement, engagements, with_hertz
+from evolvent.results.engagement import Engagement, EngagementPeak, crossing, engagement, engagements, with_hertz
 from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
@@ -27,17 +27,19 @@ from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 
 STRESS = "maximum contact stress [MPa]"
-OWN_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
-MEDIAN = 5  # positions that a running median takes where the mesh does not resolve the contact
+TOOTH_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
+MEDIAN = 5
+"""Number of positions of the running median where the mesh does not resolve the contact."""
 
 
 def engagement_stress(run: RunData) -> Figure:
-    """Maximum contact stress of one tooth over its whole engagement for every μ; the crossing enlarged (Fig. 9)."""
+    """Figure of the maximum contact stress of a tooth over its engagement for every μ, with their crossing enlarged
+    (Fig. 9)."""
     curves = engagements(run)
     cross = _crossing_deg(run, curves)
     bar = run.errors.bar("max_pressure_MPa", int(np.argmin(run.frictions)))
-    see = _see_engagement(run, curves, cross, bar)
-    figure = sheet("Contact stress of a tooth over its engagement", see, (10.4, 6.2))
+    subtitle = _engagement_subtitle(run, curves, cross, bar)
+    figure = sheet("Contact stress of a tooth over its engagement", subtitle, (10.4, 6.2))
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
@@ -47,7 +49,7 @@ def engagement_stress(run: RunData) -> Figure:
             main.plot(np.degrees(end.angle), end.pressure, color=colour, **HOLLOW)
     _largest(main, _lowest(curves), bar)
     _pitches(main, run, curves[0])
-    main.set(xlabel=OWN_ANGLE, ylabel=STRESS)
+    main.set(xlabel=TOOTH_ANGLE, ylabel=STRESS)
     values = np.concatenate([c.pressure_curve[1] for c in curves])
     largest = _lowest(curves).peak.pressure + np.array([-1.0, 1.0]) * bar  # NaN: no bar
     bottom, top = np.nanmin([0.6 * np.nanmin(values), largest[0]]), np.nanmax([np.nanmax(values), largest[1]])
@@ -64,10 +66,10 @@ def engagement_stress(run: RunData) -> Figure:
 
 
 def tooth_stress(run: RunData) -> Figure:
-    """Each tooth over one pitch of pinion rotation for every μ; below, the spread over μ (Fig. 8)."""
+    """Figure of the stress of each tooth over one pitch for every μ, and of its change with μ (Fig. 8)."""
     curves = engagements(run)
-    see = _see_teeth(run, smoothed(run, curves))
-    figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", see, (11.6, 6.6))
+    subtitle = _teeth_subtitle(run, smoothed(run, curves))
+    figure = sheet("Contact stress of the teeth over a pitch of pinion rotation", subtitle, (11.6, 6.6))
     teeth = shown_teeth(run, curves)
     grid = figure.subplots(2, len(teeth), sharex=True, height_ratios=(1.5, 1.0), squeeze=False)
     for column, tooth in enumerate(teeth):
@@ -87,7 +89,8 @@ def tooth_stress(run: RunData) -> Figure:
 def _curves(
     axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
 ) -> None:
-    """Maximum pressure over rotation; over the pinion's own φ where one tooth is picked out."""
+    """Curves of the maximum pressure over the tooth's rotation. members: for each curve, the entries (n,) bool of tooth
+    pair `tooth`, drawn over φ; None for all entries."""
     coarse, lines = few_cells_across(run), smoothed(run, curves)
     for curve, line, here, colour in zip(curves, lines, members, friction_colours(run.frictions)):
         label = f"μ = {curve.friction:g}"
@@ -97,13 +100,13 @@ def _curves(
             axes.plot(*_shown(run, line, here, tooth), color=colour, label=label)
 
 
-def _zone_ends(curve: Engagement) -> list[TurnPeak]:
-    """The pressures where a tip-edge zone begins: a spur pair's, and the largest if it is one."""
+def _zone_ends(curve: Engagement) -> list[EngagementPeak]:
+    """Peaks at the limits of tip-edge zones: those of a spur pair, and the largest pressure if it is one."""
     return list(dict.fromkeys([*curve.zone_ends, *([curve.peak] if curve.peak.at_zone_end else [])]))
 
 
 def _keys(run: RunData, zone_ends: bool) -> list[Line2D]:
-    """What the legend says of dots, lines and hollow dots."""
+    """Entries of the legend for points, lines and hollow markers."""
     coarse = [
         Line2D([], [], color=FAINT, linestyle="", marker=".", markersize=6.0, label="computed"),
         Line2D([], [], color=FAINT, label="Hertz × running median"),
@@ -113,16 +116,16 @@ def _keys(run: RunData, zone_ends: bool) -> list[Line2D]:
 
 
 def smoothed(run: RunData, curves: Sequence[Engagement]) -> list[Engagement]:
-    """The curves themselves; where the mesh does not resolve the contact, their maximum pressures by Hertz's."""
+    """The curves; where the mesh does not resolve the contact, with smoothed maximum pressures, see the module."""
     if not few_cells_across(run):
         return list(curves)
-    exact = with_hertz(run)
-    hertz = [engagement(exact, run.frictions.index(c.friction), run.inner_path).max_pressure for c in curves]
-    return [replace(c, max_pressure=own * running_median(c.max_pressure / own)) for c, own in zip(curves, hertz)]
+    by_hertz = with_hertz(run)
+    hertz = [engagement(by_hertz, run.frictions.index(c.friction), run.inner_path).max_pressure for c in curves]
+    return [replace(c, max_pressure=exact * running_median(c.max_pressure / exact)) for c, exact in zip(curves, hertz)]
 
 
 def _resolved(run: RunData) -> list[str]:
-    """What is to be said where the mesh does not resolve the contact."""
+    """Footnote where the mesh does not resolve the contact, else none."""
     if not few_cells_across(run):
         return []
     return [
@@ -132,22 +135,24 @@ def _resolved(run: RunData) -> list[str]:
 
 
 def _sampled(run: RunData) -> list[str]:
-    """What is to be said where positions are too few."""
-    said = few_positions(friction_rows(run)[int(np.argmin(run.frictions))])
-    return [said] if said else []
+    """Footnote where positions are too few, else none."""
+    sentence = few_positions(friction_rows(run)[int(np.argmin(run.frictions))])
+    return [sentence] if sentence else []
 
 
 def running_median(values: Floats) -> Floats:
-    """Of `MEDIAN` values (n,) about each, fewer at the ends; NaN stays."""
+    """Median (n,) of the `MEDIAN` values around each of the values (n,), of fewer at the ends; NaN where the value
+    is."""
     known = np.flatnonzero(np.isfinite(values))
-    reach, found = MEDIAN // 2, np.full(len(values), np.nan)
+    reach, medians = MEDIAN // 2, np.full(len(values), np.nan)
     for place, index in enumerate(known):
-        span = min(reach, place, len(known) - 1 - place)  # as many on either side: an end keeps its own value
-        found[index] = np.median(values[known[place - span : place + span + 1]])
-    return found
+        span = min(reach, place, len(known) - 1 - place)  # as many on either side: the values at the ends are unchanged
+        medians[index] = np.median(values[known[place - span : place + span + 1]])
+    return medians
 
 
 def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
+    """Rotations [°] and pressures [MPa] to draw, see `_curves`."""
     if here is None:
         angle, pressure = curve.pressure_curve
         return np.degrees(angle), pressure
@@ -155,7 +160,7 @@ def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int)
 
 
 def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray], tooth: int) -> None:
-    """Change of the maximum pressure against the smallest μ [%]."""
+    """Curves of the change of the maximum pressure against the smallest μ [%]."""
     lowest = _lowest(curves)
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
     for curve, colour in zip(curves, friction_colours(run.frictions)):
@@ -164,11 +169,12 @@ def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Seq
 
 
 def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> tuple[Floats, Floats]:
-    """(angles [rad], relative change of the maximum pressure) against another friction coefficient's curve."""
+    """Rotations (m,) [rad] and relative change (m,) of the maximum pressure against the curve `lowest` of another
+    friction coefficient. here: (n,) bool, entries of the curve to compare."""
     key = np.round(curve.angle, 9)
     _, first, second = np.intersect1d(key[here], np.round(lowest.angle, 9), return_indices=True)
-    mine = np.flatnonzero(here)[first]
-    return curve.angle[mine], curve.max_pressure[mine] / lowest.max_pressure[second] - 1.0
+    entries = np.flatnonzero(here)[first]
+    return curve.angle[entries], curve.max_pressure[entries] / lowest.max_pressure[second] - 1.0
 
 
 def _lowest(curves: Sequence[Engagement]) -> Engagement:
@@ -180,15 +186,15 @@ def _highest(curves: Sequence[Engagement]) -> Engagement:
 
 
 def _crossing_deg(run: RunData, curves: Sequence[Engagement]) -> float:
-    """Where the curves of the least and of the most friction cross [°]; NaN: nowhere, or not known, because the scatter
-    of the peaks moves it by degrees."""
+    """Rotation [°] at which the curves of least and most friction cross; NaN where they do not, or where it is unknown
+    because scatter of the peaks would move it by degrees."""
     if len(curves) == 1 or few_cells_across(run):
         return float("nan")
     return float(np.degrees(crossing(_lowest(curves), _highest(curves))))
 
 
 def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: float, half: float) -> None:
-    """The curves near `middle` [°]."""
+    """The curves within `half` [°] of the rotation `middle` [°]."""
     _curves(axes, run, curves, [None] * len(curves))
     inside = [c.max_pressure[np.abs(np.degrees(c.angle) - middle) <= half] for c in curves]
     values = np.concatenate(inside)
@@ -200,7 +206,7 @@ def _detail(axes: Axes, run: RunData, curves: Sequence[Engagement], middle: floa
 
 
 def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
-    """Marks the rotations at which the next tooth pair comes to the same place, and names the teeth."""
+    """Marks of each pitch of rotation, with the names of the tooth pairs between them."""
     low, high = np.degrees(curve.angle[np.isfinite(curve.max_pressure)][[0, -1]])
     pitch = np.degrees(run.pitch)
     for k in range(int(np.floor(low / pitch)), int(np.ceil(high / pitch)) + 1):
@@ -214,14 +220,15 @@ def _pitches(axes: Axes, run: RunData, curve: Engagement) -> None:
 
 
 def _largest(axes: Axes, curve: Engagement, bar: float) -> None:
-    """The error bar [MPa] of the largest pressure, where there is one."""
+    """Error bar of the largest pressure. bar: [MPa], NaN where it is unknown."""
     if np.isfinite(bar):
         place = np.degrees(curve.peak.angle), curve.peak.pressure
         axes.errorbar(*place, yerr=bar, color=INK, linewidth=1.2, capsize=4.0, zorder=5.0)
 
 
-def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float, bar: float) -> str:
-    """bar: of the largest pressure [MPa], NaN where it is not known."""
+def _engagement_subtitle(run: RunData, curves: Sequence[Engagement], cross: float, bar: float) -> str:
+    """Subtitle: the largest pressure, and the effect of friction. cross: rotation of the crossing [°]; bar: error bar
+    of the largest pressure [MPa]; both NaN where unknown."""
     lowest, highest = _lowest(curves), _highest(curves)
     top = lowest.peak
     place = signed(float(np.degrees(top.angle)))
@@ -235,7 +242,8 @@ def _see_engagement(run: RunData, curves: Sequence[Engagement], cross: float, ba
     return f"{peak}; {means}" + ("." if few_cells_across(run) else f"; {where}.")
 
 
-def _see_teeth(run: RunData, curves: Sequence[Engagement]) -> str:
+def _teeth_subtitle(run: RunData, curves: Sequence[Engagement]) -> str:
+    """Subtitle: range of the change of stress with friction for each tooth."""
     if len(curves) == 1:
         return f"One friction coefficient, μ = {curves[0].friction:g}."
     lowest, highest = _lowest(curves), _highest(curves)

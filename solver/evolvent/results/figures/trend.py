@@ -1,4 +1,4 @@
-"""Average and maximum contact stress of the teeth over the friction coefficient (Yang et al. 2022, Fig. 10)."""
+"""Mean and maximum contact stress of the teeth over the friction coefficient (Yang et al. 2022, Fig. 10)."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from evolvent_meshes.arrays import Floats
 
 
 def friction_trend(run: RunData) -> Figure:
-    """Average and maximum contact stress of the teeth over μ, and their changes (Fig. 10)."""
+    """Figure of mean and maximum contact stress of the teeth over μ, and of their changes (Fig. 10)."""
     curves = sorted(engagements(run), key=lambda c: c.friction)
-    found, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
-    each = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in found]
-    changes = ", ".join(f"{name} by {signed(change)} %" for name, change in each)
-    see = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
-    figure = sheet("Contact stress over the friction coefficient", see, (10.4, 6.4))
+    each_tooth, μ = trends(curves, shown_teeth(run, curves)), [c.friction for c in curves]
+    change = [(short_name(run, t.tooth), 100 * (t.largest[-1] / t.largest[0] - 1)) for t in each_tooth]
+    changes = ", ".join(f"{name} by {signed(percent)} %" for name, percent in change)
+    subtitle = f"The maximum changes from μ = {μ[0]:g} to {μ[-1]:g}: {changes}."
+    figure = sheet("Contact stress over the friction coefficient", subtitle, (10.4, 6.4))
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(1.2, 1.0))
-    for trend, colour, marker in zip(found, TEETH, "osD^"):
+    for trend, colour, marker in zip(each_tooth, TEETH, "osD^"):
         for column, values in enumerate((trend.average, trend.largest)):
             grid[0, column].plot(μ, values, color=colour, marker=marker, label=long_name(run, trend.tooth))
             grid[1, column].plot(μ, 100.0 * (values / values[0] - 1.0), color=colour, marker=marker)
@@ -34,36 +34,40 @@ def friction_trend(run: RunData) -> Figure:
         grid[0, 1].plot(*zip(*ends), color=colour, **{**HOLLOW, "marker": marker}) if ends else None
     for column, title in enumerate(("average along the contact line, over the pitch", "maximum over the pitch")):
         grid[0, column].set_title(title, fontsize=10)
-        grid[0, column].set_ylim(0.0, (1.3 + 0.09 * len(found)) * max(np.max(t.largest) for t in found))
+        grid[0, column].set_ylim(0.0, (1.3 + 0.09 * len(each_tooth)) * max(np.max(t.largest) for t in each_tooth))
         grid[1, column].axhline(0.0, color=FAINT, linewidth=1.0)
         grid[1, column].set_xlabel("friction coefficient μ")
         grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
     grid[0, 0].set_ylabel("contact stress [MPa]")
     grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
     handles, _ = grid[0, 1].get_legend_handles_labels()
-    hollow = [Line2D([], [], color=INK, label=AT_ZONE_END, **HOLLOW)] if any(t.at_zone_end.any() for t in found) else []
+    at_end = any(trend.at_zone_end.any() for trend in each_tooth)
+    hollow = [Line2D([], [], color=INK, label=AT_ZONE_END, **HOLLOW)] if at_end else []
     grid[0, 1].legend(handles=[*handles, *hollow], loc="upper right")
     return figure
 
 
 @dataclass(frozen=True)
 class Trend:
-    """A tooth over the pitch, entries (n,) over μ ascending: average and maximum contact stress [MPa], and whether the
-    maximum lies where a tip-edge zone begins."""
+    """Contact stress of one tooth pair in a pitch, at n friction coefficients in ascending order."""
 
     tooth: int
+    """Index of the tooth pair."""
     average: Floats
+    """(n,), mean along the contact line and over the positions [MPa]."""
     largest: Floats
+    """(n,), maximum [MPa]."""
     at_zone_end: np.ndarray
+    """(n,) bool, whether the maximum lies at the limit of a tip-edge zone."""
 
 
 def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
-    """Of these teeth; the average is along the contact line, then over the positions."""
+    """Trends of these tooth pairs. curves: one a friction coefficient, ascending."""
     return [_trend(curves, tooth) for tooth in teeth]
 
 
 def _trend(curves: Sequence[Engagement], tooth: int) -> Trend:
     average = [np.nanmean(c.mean_pressure[c.tooth == tooth]) for c in curves]
-    peaks = [c.peak_of(tooth) for c in curves]
+    peaks = [c.tooth_peak(tooth) for c in curves]
     largest, at_end = [peak.pressure for peak in peaks], [peak.at_zone_end for peak in peaks]
     return Trend(tooth, np.array(average), np.array(largest), np.array(at_end))

@@ -1,4 +1,4 @@
-"""The moment and the points of Yang et al. 2022 (Figs 11 to 13, Table 5) in a run."""
+"""Position and points of Yang et al. 2022 (Figs 11 to 13, Table 5) in a run."""
 
 from __future__ import annotations
 
@@ -12,39 +12,45 @@ from evolvent_meshes.gears.flank import contact_lines
 
 @dataclass(frozen=True)
 class Point:
-    """A point of the paper's Fig. 11: on the contact line of tooth pair `tooth` at height z, roll distance ξ [mm]."""
+    """A point of the paper's Fig. 11 on a contact line."""
 
     name: str
+    """Name in the paper."""
     tooth: int
+    """Index of the tooth pair."""
     z: float
-    ξ: float
+    """Height [mm]."""
+    roll_distance: float
+    """Roll distance ξ from the pitch point [mm]."""
 
 
 def paper_position(run: RunData) -> int:
-    """The position nearest to the paper's moment, 5.25e-5 s at 1500 r/min or 0.47° after the start of its pitch."""
+    """Index of the position nearest to that of the paper: 5.25e-5 s at 1500 r/min, or 0.47° after the start of its
+    pitch."""
     return int(np.argmin(np.abs(np.degrees(run.angles) - 0.4725)))
 
 
 def has_two_lines(run: RunData) -> bool:
-    """True if teeth 2 and 3 both have a contact line at the paper's moment, tooth 2's across the pitch line."""
+    """Whether teeth 2 and 3 both have a contact line at the paper's position, that of tooth 2 across the pitch line."""
     lines = {line.tooth: line for line in contact_lines(run.pair, float(run.angles[paper_position(run)]))}
     return -1 in lines and 0 in lines and min(lines[0].roll_distance) < 0.0 < max(lines[0].roll_distance)
 
 
 def paper_points(run: RunData, k: int) -> list[Point]:
-    """A, B, C on tooth 2's contact line: halfway from its root end to the pitch line, at the pitch line, halfway to its
-    tip end; D in the middle of tooth 3's line, near the root. The paper gives no coordinates, only these words."""
+    """Points A to D at position k. A, B and C lie on tooth 2's contact line: halfway from its root end to the pitch
+    line, on the pitch line, and halfway to its tip end. D is the middle of tooth 3's line, near the root. The paper
+    describes these places without coordinates."""
     lines = {line.tooth: line for line in contact_lines(run.pair, float(run.angles[k]))}
     second, third = lines[0], lines[-1]
     root, tip = sorted(second.roll_distance)
-    wanted = [
+    places = [
         ("A", second, 0.5 * root),
         ("B", second, 0.0),
         ("C", second, 0.5 * tip),
         ("D", third, float(np.mean(third.roll_distance))),
     ]
     points = []
-    for name, line, ξ in wanted:
+    for name, line, ξ in places:
         (ξ0, ξ1), (z0, z1) = line.roll_distance, line.z
         z = z0 + (z1 - z0) * (ξ - ξ0) / (ξ1 - ξ0)
         points.append(Point(name, line.tooth, z, ξ))

@@ -1,1 +1,1 @@
-"""summary.json, positions.csv, teeth.csv, and the warnings that stand beside them."""
+"""Tables of a run (summary.json, positions.csv, teeth.csv) and its warnings."""

@@ -1,4 +1,4 @@
-"""The figures of a run: a row a position, a row a friction coefficient, in the units that reports use."""
+"""Engineering figures of a run in reporting units: one row a position, one row a friction coefficient."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from evolvent.results.tables.summary_rows import FrictionRow, PositionRow, Tooth
 from evolvent_meshes.gears.member import Member
 
 DEGREES = 6
-"""Decimals of an angle: a hundredth of a micrometre on a flank; beyond them stands the round-off of its conversion."""
+"""Decimals of an angle in degrees: a hundredth of a micrometre on a flank, and above the conversion's round-off."""
 
 
 def degrees(angle: float) -> float:
-    """Of an angle [rad], without the round-off of the conversion."""
+    """An angle [rad] in degrees, without the round-off of the conversion."""
     return round(math.degrees(angle), DEGREES) + 0.0
 
 
 def position_rows(run: RunData) -> list[PositionRow]:
-    """All positions of the pitch, all friction coefficients."""
+    """Rows of all positions at all friction coefficients."""
     return [position_row(run, solved) for each in run.positions for solved in each]
 
 
 def position_row(run: RunData, solved: SolvedPosition) -> PositionRow:
-    """One position."""
+    """The row of one position at one friction coefficient."""
     result, width = solved.result, run.width
     teeth = tuple(_tooth_row(run, solved, tooth) for tooth in solved.teeth)
     return PositionRow(
@@ -61,7 +61,7 @@ def _tooth_row(run: RunData, solved: SolvedPosition, tooth: ToothSummary) -> Too
 
 
 def friction_rows(run: RunData, inner: tuple[float, float] | None = None) -> list[FrictionRow]:
-    """One row per friction coefficient, in the scene's order; inner: see `engagement.engagement`."""
+    """One row a friction coefficient, in the scene's order. inner: see `engagement.engagement`."""
     curves = engagements(run, inner)
     lowest = curves[int(np.argmin(run.frictions))]
     return [_friction_row(run, index, curve, lowest) for index, curve in enumerate(curves)]
@@ -71,7 +71,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
     results = [each[index].result for each in run.positions]
     errors = 1e3 * np.array([result.transmission_error for result in results])
     top = curve.peak
-    crosses = curve is not lowest and not few_cells_across(run)  # on few cells curves scatter about each other
+    crosses = curve is not lowest and not few_cells_across(run)  # on few cells scatter causes crossings
     loss = sum(r.friction_loss for r in results) / sum(r.torques[0] for r in results)
     return FrictionRow(
         friction=curve.friction,

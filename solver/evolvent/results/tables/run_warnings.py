@@ -1,4 +1,4 @@
-"""What a reader has to know before trusting a number of a run: sentences that stand where numbers are printed."""
+"""Warnings of a finished run: what limits the accuracy of its figures, as sentences for the user."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from evolvent.scene.checking.scene_warnings import FEWEST_CELLS, FINER, few_cell
 from evolvent.scene.plain_text import brief, signed
 
 WORST_CELL = 0.05
-"""Least scaled Jacobian that needs no word: hexahedra of a sector have 0.3 and more, what is cut from them may not."""
-
+"""Smallest scaled Jacobian without a warning: hexahedra of a sector have 0.3 and more, tetrahedra cut from them
+less."""
 FEWEST_NARROW = 1.0
-"""Cells across the narrowest tenth of the contact that need no word: with fewer, peaks were found twice too large."""
+"""Fewest cells across the narrowest tenth of the contact without a warning: with fewer, peaks may be twice too
+large."""
 LARGE_BAR = 0.5
-"""Of a figure, beyond which it is not known."""
+"""Ratio of error bar and figure above which the figure counts as unknown."""
 SPACING_SAID = 0.03
-"""Share of a figure that may lie between the positions without a word."""
+"""Largest ratio of spacing error and figure without a warning."""
 NAMES = {
     "max_pressure_MPa": ("largest pressure", "MPa"),
     "mean_pressure_MPa": ("mean pressure", "MPa"),
@@ -32,11 +33,11 @@ NAMES = {
     "mesh_stiffness_N_per_mm_um": ("mesh stiffness", "N/(mm·µm)"),
     "loss_percent": ("loss", "% of the input"),
 }
-"""Of the figures that have an error bar, and their units; the secant stiffness goes with the tangent."""
+"""Key of a figure with an error bar -> its name and unit in messages; the secant stiffness follows the tangent."""
 
 
 def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
-    """Of a finished run."""
+    """Warnings of a finished run, a sentence each. mesh: quality of its meshes."""
     rows = friction_rows(run)
     about = (
         _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run), _about_large_bars(rows),
@@ -46,6 +47,7 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
 
 
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
+    """Warnings of few cells across the contact and of distorted cells."""
     cells, narrow = mesh.cells_across_contact_width, mesh.cells_across_narrow_contact
     if not (cells >= FEWEST_CELLS and narrow >= FEWEST_NARROW):
         wide = f"{cells:.1f} elements wide (median; {narrow:.1f} in its narrowest tenth)"
@@ -55,7 +57,7 @@ def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
 
 
 def bad_cells(quality: float) -> str:
-    """What a scaled Jacobian below `WORST_CELL` means."""
+    """The warning of a smallest scaled Jacobian below `WORST_CELL`."""
     return (
         f"The least scaled Jacobian of a cell is {quality:.1g}, below {WORST_CELL:g}: long thin cells, of which none "
         'is inverted, but which bend too little, above all of order 1; mesh.shape = "hexahedron" has better ones.'
@@ -63,7 +65,7 @@ def bad_cells(quality: float) -> str:
 
 
 def _few_cells(run: RunData) -> str:
-    """What fewer cells than `FEWEST_CELLS` mean for this run's figures."""
+    """The consequence of fewer cells than `FEWEST_CELLS` across the contact, with the error bar where there is one."""
     if not run.errors.figures:
         return few_cells()
     largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
@@ -76,6 +78,7 @@ def _few_cells(run: RunData) -> str:
 
 
 def _about_tip_edges(run: RunData) -> Iterator[str]:
+    """Warnings of contact on tip edges, and of a largest pressure at the limit of a tip-edge zone."""
     bears = [any(tooth.edge_pressure > 0.0 for solved in each for tooth in solved.teeth) for each in run.positions]
     if not any(bears):
         return
@@ -95,80 +98,83 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
 
 
 def _edge_share(solved: SolvedPosition) -> float:
-    """Of the load, on the tooth that carries most of those that bear on a tip edge."""
+    """Largest share of the normal force on one tooth pair that bears on a tip edge; 0 where none does."""
     edges = [tooth.force for tooth in solved.teeth if tooth.edge_pressure > 0.0]
     return max(edges, default=0.0) / sum(tooth.force for tooth in solved.teeth)
 
 
 def _about_relief(run: RunData) -> Iterator[str]:
-    curves = engagements(run)
-    found = [
-        peak_over_kink(run, k, curve.peak) for k, curve in enumerate(curves) if np.isfinite(curve.max_pressure).any()
-    ]
-    kinks = [kink for kink in found if kink is not None]
+    """Warning of a largest pressure at the start of a linear tip relief."""
+    curves = [(k, curve) for k, curve in enumerate(engagements(run)) if np.isfinite(curve.max_pressure).any()]
+    kinks = [kink for k, curve in curves if (kink := peak_over_kink(run, k, curve.peak)) is not None]
     if not kinks:
         return
     kink = max(kinks, key=lambda kink: kink.pressure)
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     yield (
         f"The largest pressure stands, or may stand between positions, where a linear tip relief begins "
-        f"(ξ = {signed(kink.ξ, 2)} mm): over that kink of the flank Hertz' pressure rises from {brief(kink.hertz)} to "
-        f"about {brief(kink.pressure)} MPa within {2.0 * kink.way:.2g} mm, positions are {step:.2g} mm apart, and how "
-        'far it rises is a matter of how sharp the kink is made; take tip_relief_form = "parabolic", or more positions '
-        "(sweep.positions)."
+        f"(ξ = {signed(kink.roll_distance, 2)} mm): over that kink of the flank Hertz' pressure rises from "
+        f"{brief(kink.hertz)} to about {brief(kink.pressure)} MPa within {2.0 * kink.half_range:.2g} mm, positions are "
+        f"{step:.2g} mm apart, and how far it rises is a matter of how sharp the kink is made; take "
+        'tip_relief_form = "parabolic", or more positions (sweep.positions).'
     )
 
 
 def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:
-    said = [words for row in rows for name in NAMES if (words := _unknown(row, name))]
-    if said:
+    """Warning of figures with an error bar above `LARGE_BAR` of their value."""
+    unknown = [text for row in rows for name in NAMES if (text := _unknown(row, name))]
+    if unknown:
         yield (
-            f"Not known, for the error bar is more than half of it: {', '.join(said)}; nor is where a largest pressure "
-            "occurs. Take a finer mesh (mesh.level), or more positions (sweep.positions) where spacing_error is large."
+            f"Not known, for the error bar is more than half of it: {', '.join(unknown)}; nor is where a largest "
+            "pressure occurs. Take a finer mesh (mesh.level), or more positions (sweep.positions) where spacing_error "
+            "is large."
         )
 
 
 def _unknown(row: FrictionRow, name: str) -> str:
+    """The figure with its error bar if that is too large, else an empty text."""
     value, bars = getattr(row, name), row.estimated_error
     if bars is None or not getattr(bars, name) > LARGE_BAR * abs(value) > 0.0:
         return ""
-    words, unit = NAMES[name]
-    return f"{words} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
+    label, unit = NAMES[name]
+    return f"{label} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
 
 
 def _about_error_bars(run: RunData) -> Iterator[str]:
+    """Warning of error bars that were asked for and could not be estimated."""
     if run.scene.output.error_bars and not run.errors.figures:
         yield f"There are no error bars. {run.errors.missing}"
 
 
 def _about_spacing(run: RunData, rows: Sequence[FrictionRow]) -> Iterator[str]:
-    said = [words for name in NAMES if (words := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
-    if said:
+    """Warning of figures whose error is mostly due to the spacing of positions."""
+    figures = [text for name in NAMES if (text := _spaced(max(rows, key=lambda row: _share(row, name)), name))]
+    if figures:
         step = math.degrees(run.pitch) / len(run.positions)
         yield (
             f"Positions are {brief(step)}° apart, and what may lie between them makes "
-            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(said)}; more of them "
+            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(figures)}; more of them "
             "(sweep.positions) make that less."
         )
 
 
 def _spaced(row: FrictionRow, name: str) -> str:
-    """The part of a figure's bar that comes from the spacing of positions, where it is large and most of it."""
+    """The spacing error of a figure if it is large and most of the error bar, else an empty text."""
     part, bars = getattr(row.spacing_error, name), row.estimated_error
     if not _share(row, name) > SPACING_SAID or (bars is not None and part < 0.5 * getattr(bars, name)):
         return ""
-    words, unit = NAMES[name]
-    return f"± {brief(part)} {unit} of the {words} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
+    label, unit = NAMES[name]
+    return f"± {brief(part)} {unit} of the {label} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
 
 
 def _share(row: FrictionRow, name: str) -> float:
-    """Of a figure that its spacing error is; 0 where there is none."""
+    """Ratio of spacing error and figure; 0 where either is unknown or the figure is zero."""
     part, value = getattr(row.spacing_error, name), getattr(row, name)
     return part / abs(value) if value and math.isfinite(part) else 0.0
 
 
 def few_positions(row: FrictionRow) -> str:
-    """What has to be said below a picture of pressures where positions are too few for it; nothing where not."""
+    """Footnote for a picture of pressures with too few positions; empty where they are enough."""
     share = _share(row, "max_pressure_MPa")
     if not share > SPACING_SAID:
         return ""

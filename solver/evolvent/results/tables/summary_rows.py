@@ -1,4 +1,8 @@
-"""What summary.json, positions.csv and teeth.csv hold: every key and column, and what it means."""
+"""Every key of summary.json and column of positions.csv and teeth.csv, with its meaning.
+
+The descriptions of docs/outputs.md and docs/summary.schema.json are made from the docstrings below the fields. Units
+stand in the names.
+"""
 
 from __future__ import annotations
 
@@ -12,29 +16,30 @@ from evolvent.results.shaft_forces import ShaftForces
 from evolvent.scene.skips import Skipped
 
 SCHEMA_VERSION = 1
-"""Of summary.json: one more where a key goes, is named anew or means something else; new keys leave it as it is."""
+"""Version of the form of summary.json: raised where a key is removed, renamed or changes its meaning, not for new
+keys."""
 
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What a run knows beside its results."""
+    """Facts on a run beside its results."""
 
     versions: Mapping[str, str]
-    """What the results depend on: program or library, and its version."""
+    """Program or library on which the results depend -> its version."""
     ranks: int
-    """MPI processes."""
+    """Number of MPI processes."""
     dofs: int
     """Degrees of freedom of one sector of both gears."""
     cells: int
-    """Cells of these."""
+    """Number of cells of one sector of both gears."""
     mesh: MeshFacts
-    """What the meshes are worth."""
+    """Quality of the meshes."""
     skipped: Sequence[Skipped]
-    """What the scene did not need, see docs/scene.md."""
+    """Simplifications that the scene permitted, see docs/scene.md."""
     timings_s: Timings
-    """Wall time of the run's parts, summed over all its parts where it was resumed."""
+    """Wall time of each stage of the run, summed over all parts of a resumed run."""
     peak_memory_MB: float
-    """Largest resident memory, summed over the ranks; of a resumed run its largest part's."""
+    """Largest resident memory, summed over the ranks; for a resumed run that of its largest part."""
 
 
 @dataclass(frozen=True)
@@ -42,16 +47,18 @@ class ToothRow:
     """One tooth pair at a position."""
 
     tooth: int
-    """The tooth pair: 0 passes the pitch point at the pinion angle 0, 1 is one pitch ahead of it, −1 one behind."""
+    """Index of the tooth pair: 0 passes the pitch point at pinion angle 0, 1 is one pitch ahead of it, −1 one
+    behind."""
     force_N: float
     """Normal force on the pair."""
     max_pressure_MPa: float
-    """Largest contact pressure between the tip-edge zones, fitted over each slice and, on a helical line, averaged with
-    the slices beside it (1:2:1); null where no slice lies there."""
+    """Largest contact pressure between the tip-edge zones, fitted in each slice and, on a helical line, averaged with
+    the neighbouring slices (1:2:1); null where no slice lies between these zones."""
     contact_length_mm: float
-    """Length of the contact line that bears."""
+    """Length of the contact line under load."""
     edge_pressure_MPa: float
-    """Largest pressure at a tip's edge, 0 where none bears: singular there, and a matter of the mesh."""
+    """Largest pressure on a tip edge, 0 where no edge bears. The pressure there is singular: its value depends on the
+    mesh."""
 
 
 @dataclass(frozen=True)
@@ -59,105 +66,105 @@ class PositionRow:
     """One position at one friction coefficient."""
 
     pinion_angle_deg: float
-    """Rotation of the pinion; 0: the flanks of tooth pair 0 touch at the pitch point at mid-face."""
+    """Rotation of the pinion; at 0 the flanks of tooth pair 0 touch at the pitch point at mid-face."""
     friction: float
-    """Coulomb's coefficient μ."""
+    """Coulomb friction coefficient μ."""
     torque_pinion_Nm: float
-    """On the pinion's shaft."""
+    """Torque on the pinion's shaft."""
     torque_gear_Nm: float
-    """On the wheel's shaft."""
+    """Torque on the wheel's shaft."""
     transmission_error_um: float
-    """r_b1 φ_1 − r_b2 φ_2: by how much the wheel lags behind the pinion, along the path of contact."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2: lag of the wheel behind the pinion along the path of contact."""
     mesh_stiffness_N_per_mm_um: float
-    """Slope of the force over the deflection along the line of action, over the face width: the tangent at this load,
-    without friction."""
+    """Tangent stiffness at this load without friction: derivative of the force by the deflection along the line of
+    action, over the face width."""
     secant_stiffness_N_per_mm_um: float
-    """Force over face width and transmission error, in which modifications of the flanks count as deflection; null
-    where a flank has a chart."""
+    """Secant stiffness: force over face width and transmission error, in which flank modifications count as deflection;
+    null where a flank has a chart."""
     max_pressure_MPa: float
-    """The largest of the teeth's."""
+    """Largest contact pressure of all teeth between the tip-edge zones."""
     tip_edge: bool
-    """Whether a tooth bears on a tip's edge, where the pressure is singular."""
+    """Whether a tooth bears on a tip edge, where the pressure is singular."""
     loss_percent: float
-    """Friction power, of the input power, with the sliding of rigid gears; where a contact lies across the pitch line a
-    few hundredths of a per cent below 0 may be found."""
+    """Friction power over input power, with the sliding velocities of rigid gears; it may fall a few hundredths of a
+    per cent below 0 where a contact lies across the pitch line."""
     newton_iterations: int
-    """Iterations of Newton's method at this position."""
+    """Number of Newton iterations at this position."""
     balance_error: float
-    """Imbalance of the forces, or the power that the teeth store or give back over the input: the larger one. A run
-    ends with status 3 above 0.1."""
+    """The larger of two ratios: force residual over load, and power stored or released by the teeth over input power. A
+    run ends with status 3 if it exceeds 0.1."""
     seconds: float
-    """Wall time."""
+    """Wall time of the position."""
     teeth: tuple[ToothRow, ...]
-    """The tooth pairs that bear; in positions.csv their number, `teeth_in_contact`."""
+    """The tooth pairs in contact; in positions.csv their number, `teeth_in_contact`."""
 
 
 @dataclass(frozen=True)
 class FrictionRow:
-    """A pitch at one friction coefficient."""
+    """Figures of one pitch at one friction coefficient."""
 
     friction: float
-    """Coulomb's coefficient μ."""
+    """Coulomb friction coefficient μ."""
     max_pressure_MPa: float
-    """Largest contact pressure of a tooth's whole engagement between the tip-edge zones."""
+    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones."""
     max_pressure_angle_deg: float
-    """The tooth's rotation where it occurs; 0 is the pitch point at mid-face."""
+    """Pinion rotation of the tooth at which it occurs; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
-    """Whether it lies where a tip-edge zone begins, so that its size is a matter of where that is."""
+    """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit."""
     max_pressure_at_relief_start: bool
-    """Whether it lies, or may lie between two positions, where a linear tip relief begins: over that kink of the flank
-    its size is a matter of how sharp the kink is."""
+    """Whether it lies, or may lie between two positions, at the start of a linear tip relief. Over that kink of the
+    flank its value depends on how sharp the kink is."""
     mean_pressure_MPa: float
-    """Mean over the engagement of the mean pressure between the tip-edge zones."""
+    """Mean over the engagement of the mean contact pressure along the line between the tip-edge zones."""
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangent, mean of the pitch. As c_γ of ISO 6336-1, but of the whole gears, rims, webs and their tilting under the
-    axial force included, on rigid bores; ISO's is that of the teeth."""
+    """Tangent stiffness, mean over the pitch. It corresponds to c_γ of ISO 6336-1, which covers the teeth alone: here
+    the whole gears on rigid bores count, with rims, webs and tilting under the axial force."""
     secant_stiffness_N_per_mm_um: float
-    """Secant, mean of the pitch; null where a flank has a chart."""
+    """Secant stiffness, mean over the pitch; null where a flank has a chart."""
     loss_percent: float
-    """Friction work of the pitch, of the input."""
+    """Friction work over input work of the pitch."""
     crossing_deg: float
-    """The tooth's rotation at which its curve of maximum pressure crosses that of the smallest coefficient; null where
-    it does not, or where the contact is less than two elements wide."""
+    """Pinion rotation of the tooth at which its curve of maximum pressure crosses that of the smallest friction
+    coefficient; null where it does not cross, or where the contact is less than two elements wide."""
     balance_error: float
-    """Input less output less friction work, over the input, of the pitch. A run ends with status 3 above 0.01."""
+    """Input less output less friction work of the pitch, over the input work. A run ends with status 3 if it exceeds
+    0.01."""
     forces_on_pinion: ShaftForces
-    """What the mesh does to the pinion and its shaft."""
+    """Loads of the mesh on the pinion and its shaft."""
     forces_on_wheel: ShaftForces
-    """The same of the wheel."""
+    """Loads of the mesh on the wheel and its shaft."""
     estimated_error: FigureErrors | None
-    """Error bars of the figures of the same names, those of the mesh and of the spacing of positions added; null where
-    there are none."""
+    """Error bars of the figures with the same names: sum of the parts of the mesh and of the spacing of positions; null
+    where there are none."""
     spacing_error: FigureErrors
-    """The part of the error bars that comes from the spacing of positions (`sweep.positions`), also where there are no
-    error bars."""
+    """The part of the error bars due to the spacing of positions (`sweep.positions`); known without error bars too."""
 
 
 @dataclass(frozen=True)
 class ErrorBars:
-    """How error bars were estimated, or why there are none."""
+    """Method of the error bars, or the reason why there are none."""
 
     method: str
-    """How they were estimated; empty where there are none."""
+    """Method of their estimation; empty where there are none."""
     missing: str | None
-    """Why there are none; null where there are some."""
+    """Reason why there are none; null where there are some."""
 
 
 @dataclass(frozen=True)
 class Summary(RunFacts):
-    """summary.json."""
+    """The content of summary.json."""
 
     schema_version: int
-    """Of this file's form, docs/summary.schema.json: larger where a key is gone or means something else."""
+    """Version of this file's form, docs/summary.schema.json: raised where a key is removed or changes its meaning."""
     scene: Mapping[str, object]
     """The scene with all its defaults, docs/scene.md."""
     warnings: tuple[str, ...]
-    """What makes figures doubtful, a sentence each."""
+    """Limits on the accuracy of the figures, a sentence each."""
     estimated_error: ErrorBars
-    """How error bars were estimated."""
+    """Method of the error bars."""
     frictions: tuple[FrictionRow, ...]
-    """The figures of the pitch, one entry a friction coefficient."""
+    """Figures of the pitch, one entry a friction coefficient."""
     positions: tuple[PositionRow, ...]
-    """One entry a position and friction coefficient."""
+    """Figures of the positions, one entry a position and friction coefficient."""

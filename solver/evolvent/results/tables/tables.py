@@ -1,7 +1,7 @@
 """The tables of a run: summary.json, positions.csv, teeth.csv.
 
-`summary` gives plain values in the units that reports use (N·m, µm, MPa, degrees); files are written under another
-name and renamed, so that a reader never sees half a table.
+Values are in reporting units (N·m, µm, MPa, degrees). Files are written atomically, so that a reader never sees an
+incomplete table.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, RunF
 
 
 def summary(run: RunData, facts: RunFacts) -> Summary:
-    """What summary.json holds."""
+    """The content of summary.json."""
     return Summary(
         **vars(facts),
         schema_version=SCHEMA_VERSION,
@@ -33,9 +33,9 @@ def summary(run: RunData, facts: RunFacts) -> Summary:
     )
 
 
-def write_tables(folder: RunFolder, found: Summary) -> None:
+def write_tables(folder: RunFolder, content: Summary) -> None:
     """Writes summary.json, positions.csv and teeth.csv. Raises WriteError, FolderError."""
-    rows = found.positions
+    rows = content.positions
     folder.write_text("positions.csv", csv_text([_flat(asdict(row)) for row in rows]))
     teeth = [
         {"pinion_angle_deg": row.pinion_angle_deg, "friction": row.friction, **asdict(tooth)}
@@ -43,39 +43,39 @@ def write_tables(folder: RunFolder, found: Summary) -> None:
         for tooth in row.teeth
     ]
     folder.write_text("teeth.csv", csv_text(teeth))
-    write_summary(folder, found)
+    write_summary(folder, content)
 
 
-def write_summary(folder: RunFolder, found: Summary) -> None:
+def write_summary(folder: RunFolder, content: Summary) -> None:
     """Writes summary.json. Raises WriteError, FolderError."""
-    values = {"schema_version": found.schema_version, **asdict(found)}
+    values = {"schema_version": content.schema_version, **asdict(content)}
     text = json.dumps(_without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
     folder.write_text("summary.json", text + "\n")
 
 
 def _flat(row: dict[str, object]) -> dict[str, object]:
-    """A position without its list of teeth, but with their number."""
+    """A row of positions.csv: the number of teeth in place of their list."""
     teeth = row.pop("teeth")
     assert isinstance(teeth, (list, tuple))
     return row | {"teeth_in_contact": len(teeth)}
 
 
 def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
-    """Rows with the same keys as a CSV file."""
+    """Text of a CSV file. rows: at least one, all with the same keys."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows({key: _shown(value) for key, value in row.items()} for row in rows)
+    writer.writerows({key: _rounded(value) for key, value in row.items()} for row in rows)
     return stream.getvalue()
 
 
-def _shown(value: object) -> object:
-    """Nine digits are enough for people and for comparing two runs."""
+def _rounded(value: object) -> object:
+    """A number with nine digits, enough for reading and for comparing two runs."""
     return f"{value:.9g}" if isinstance(value, float) else value
 
 
 def _without_nan(value: object) -> object:
-    """JSON knows no NaN: null."""
+    """The value with null in place of numbers that are not finite, which JSON does not have."""
     if isinstance(value, Mapping):
         return {str(key): _without_nan(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

@@ -19,7 +19,7 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
 from evolvent.results.archive.archive import Archive, Meshes, gear_shapes, read_arrays
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.scene_files import keep_scene
+from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.tables.tables import csv_text
 from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
@@ -44,7 +44,7 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
     }  # fmt: skip
     if checkpoint.rows:
         archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
-    archive.keep(FILE, arrays)
+    archive.write_arrays(FILE, arrays)
 
 
 def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
@@ -52,7 +52,7 @@ def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
     if not (archive.folder / FILE).exists():
         return None
     arrays = read_arrays(archive.folder / FILE)
-    archive.require_own(arrays)
+    archive.require_scene(arrays)
     rate = arrays["last_rate"]
     previous = PreviousBlock(rate, float(arrays["last_length"])) if len(rate) else None
     searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
@@ -84,7 +84,7 @@ def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Sc
         path = files.write_text(f"flank_{gear.label}.csv", chart_of(gears, gear, nodal).text())
         worn[gear.label] = getattr(scene, gear.label).model_copy(update={"flank_csv": str(path)})
     worn_scene = scene.model_copy(update=worn)
-    keep_scene(worn_scene, files)
+    write_scene(worn_scene, files)
     return worn_scene
 
 

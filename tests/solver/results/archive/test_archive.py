@@ -73,7 +73,7 @@ def whole(run_script: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def test_whole_run(whole: Path) -> None:
+def test_finished_run_has_all_its_files(whole: Path) -> None:
     """All files are there, none is half-written, and the log tells the positions: the pitch, and the first of it
     again, which closes it."""
     names = {path.name for path in (whole / "results").glob("*.npz")}
@@ -92,7 +92,9 @@ def test_whole_run(whole: Path) -> None:
         ("kill-before-11", 1),
     ],
 )
-def test_killed_and_resumed(how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_killed_run_resumes_to_the_same_results(
+    how: str, ranks: int, whole: Path, run_script: Run, tmp_path: Path
+) -> None:
     """kill -9 while meshing, between a position and its state, amid writing, at the position that closes the pitch:
     resumed it is the undisturbed run. One is resumed on two ranks."""
     out = tmp_path / "out"
@@ -103,7 +105,7 @@ def test_killed_and_resumed(how: str, ranks: int, whole: Path, run_script: Run, 
     assert_same(out, whole)
 
 
-def test_friction_is_remembered(tmp_path: Path) -> None:
+def test_archived_friction_history_continues_the_sweep(tmp_path: Path) -> None:
     """Problem: two positions of a helical pair at μ = 0.3, parts of whose contact stick; on a spur pair all slides. The
     second one after the first as it was archived is the second one of the sweep; it is another one without a past."""
     scene, μ = helical_scene("contact.friction=0.3"), [0.3]
@@ -119,7 +121,7 @@ def test_friction_is_remembered(tmp_path: Path) -> None:
     assert bare.results[0].friction_loss != pytest.approx(wanted, rel=1e-5)
 
 
-def test_complete_run_is_only_drawn_again(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_resuming_a_complete_run_solves_nothing(whole: Path, run_script: Run, tmp_path: Path) -> None:
     """--resume of a complete run condenses nothing, searches nothing, and writes the tables again; another title or
     other output is no other scene."""
     out = tmp_path / "out"
@@ -148,7 +150,7 @@ def test_resuming_another_scene_changes_nothing(ranks: int, whole: Path, run_scr
     assert snapshot(whole) == before
 
 
-def test_fresh_run_removes_what_an_earlier_one_left(whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_overwriting_run_removes_files_of_the_earlier_run_only(whole: Path, run_script: Run, tmp_path: Path) -> None:
     """Another scene into a used folder with --overwrite, killed after its second position: only its own results are
     there, files that are not Evolvent's stay, and --resume goes on with it."""
     out = tmp_path / "out"
@@ -168,7 +170,7 @@ def test_fresh_run_removes_what_an_earlier_one_left(whole: Path, run_script: Run
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_full_disk(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
+def test_full_disk_leaves_a_run_that_resumes(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> None:
     """No space for the fourth file: status 1 and the reason, no half-written file, the positions before it intact, and
     once there is room --resume completes the run."""
     out = tmp_path / "out"
@@ -184,7 +186,7 @@ def test_full_disk(ranks: int, whole: Path, run_script: Run, tmp_path: Path) -> 
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounting a small file system wants root")
-def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
+def test_full_file_system_ends_with_status_1(run_script: Run, tmp_path: Path) -> None:
     """On a file system of 64 kB: status 1 and the reason."""
     small = tmp_path / "small"
     small.mkdir()
@@ -201,7 +203,7 @@ def test_really_full_disk(run_script: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_folder_that_cannot_be_made(ranks: int, run_script: Run, tmp_path: Path) -> None:
+def test_impossible_output_folder_ends_with_status_2(ranks: int, run_script: Run, tmp_path: Path) -> None:
     """A file where a folder is wanted: status 2 and the reason, on any number of ranks."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     done = run_script(BROKEN_RUN, "ok", *arguments(tmp_path / "file" / "out"), ranks=ranks)
@@ -209,7 +211,7 @@ def test_folder_that_cannot_be_made(ranks: int, run_script: Run, tmp_path: Path)
     assert "(Not a directory); allowed: a directory that can be made and written to" in done.stderr
 
 
-def test_fingerprint() -> None:
+def test_fingerprint_depends_on_results_only() -> None:
     """Whatever changes the results changes it; the title and the output do not."""
     scene = spur_scene()
     assert fingerprint(scene) == fingerprint(spur_scene("title='other'", "output.fields=true"))
@@ -217,7 +219,7 @@ def test_fingerprint() -> None:
     assert len({fingerprint(scene), *(fingerprint(spur_scene(other)) for other in others)}) == 5
 
 
-def test_broken_file_is_refused(tmp_path: Path) -> None:
+def test_truncated_archive_is_refused(tmp_path: Path) -> None:
     """ArchiveError with the file's name, for every truncation of an archive and for rubbish."""
     path = tmp_path / "state.npz"
     write_bytes(path, arrays_bytes({"a/b": np.arange(5), "text": "x"}))
@@ -229,7 +231,7 @@ def test_broken_file_is_refused(tmp_path: Path) -> None:
             read_arrays(path)
 
 
-def test_other_mesh_is_refused(whole: Path) -> None:
+def test_results_on_other_meshes_are_refused(whole: Path) -> None:
     """Results on meshes that differ from the present ones by 1e-6 mm are not gone on with."""
     scene = spur_scene()
     archive = Archive(whole, scene)

@@ -15,7 +15,7 @@ import pytest
 
 from evolvent.cli import Exit, main
 from evolvent.results.archive.archive import Archive, ArchiveError
-from evolvent.results.archive.run_cost import FILE, Cost, Timings, keep_cost, kept_cost
+from evolvent.results.archive.run_cost import FILE, Cost, Timings, read_cost, write_cost
 from evolvent.results.archive.run_folder import RunFolder
 from tests.support.checkout import ROOT
 
@@ -30,27 +30,27 @@ def summary(out: Path) -> dict[str, Any]:
     return found
 
 
-def test_parts_are_added() -> None:
+def test_cost_of_two_parts_adds_times_and_takes_the_larger_memory() -> None:
     """Times add up, memory is that of the larger part."""
     one = Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0)
     other = Cost(Timings(positions=1.0, output=2.0, total=3.5), 70.0)
     assert one + other == Cost(Timings(1.0, 2.0, 3.0, 5.0, 5.0, 8.0, 24.5), 100.0) == other + one
 
 
-def test_kept_and_read(tmp_path: Path) -> None:
+def test_cost_is_read_as_written(tmp_path: Path) -> None:
     """Nothing kept is nothing spent; what was kept comes back; what cannot be read is said, not counted as nothing."""
     folder, cost = RunFolder(tmp_path), Cost(Timings(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 21.0), 100.0)
-    assert kept_cost(folder) == Cost()
-    keep_cost(folder, cost)
-    assert kept_cost(folder) == cost
+    assert read_cost(folder) == Cost()
+    write_cost(folder, cost)
+    assert read_cost(folder) == cost
     for text in ("", "[]", '{"timings": {}, "memory_MB": 1.0}', '{"timings": null}'):
         (tmp_path / FILE).write_text(text, encoding="utf-8")
         with pytest.raises(ArchiveError, match=r"cost\.json: wanted what the run has cost so far, found .*; remove"):
-            kept_cost(folder)
+            read_cost(folder)
 
 
 @pytest.mark.parametrize("more", [(), WEARS], ids=["sweep", "wear"])
-def test_finished_run_resumed(more: tuple[str, ...], tmp_path: Path) -> None:
+def test_resumed_finished_run_keeps_its_cost(more: tuple[str, ...], tmp_path: Path) -> None:
     """A finished run and a finished study keep what they measured; only output was made again."""
     command = ["run", *HE, *more, "--out", str(tmp_path)]
     assert main(command) == Exit.DONE
@@ -66,7 +66,7 @@ def test_finished_run_resumed(more: tuple[str, ...], tmp_path: Path) -> None:
     assert after["peak_memory_MB"] >= before["peak_memory_MB"]
 
 
-def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_resumed_stopped_run_adds_its_cost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped before its second position: what it has spent by then is there. Set to 1000 s of each part and 1 TB, it
     is in what the resumed run says."""
     write = Archive.write_position
@@ -80,10 +80,10 @@ def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     with monkeypatch.context() as patch:
         patch.setattr(Archive, "write_position", stopped)
         assert main(command) == Exit.FAILED
-    spent = kept_cost(RunFolder(tmp_path)).timings
+    spent = read_cost(RunFolder(tmp_path)).timings
     assert min(spent.mesh, spent.assemble, spent.factor, spent.positions) > 0.0
     assert spent.total >= sum(astuple(spent)[:-1])
-    keep_cost(RunFolder(tmp_path), Cost(Timings(*[1e3] * len(astuple(spent))), 1e6))
+    write_cost(RunFolder(tmp_path), Cost(Timings(*[1e3] * len(astuple(spent))), 1e6))
     assert main([*command, "--resume"]) == Exit.DONE
     found = summary(tmp_path)
     for part in ("mesh", "assemble", "factor", "positions", "total"):
@@ -91,7 +91,7 @@ def test_stopped_run_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert found["peak_memory_MB"] == 1e6
 
 
-def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cost_of_the_companion_is_kept_with_the_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped once the bars are kept, before any table: the companion, which is not solved again, is counted, and part
     of the total."""
     def stopped(*_: object) -> None:
@@ -101,7 +101,7 @@ def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.Monkey
     with monkeypatch.context() as patch:
         patch.setattr("evolvent.run.output.write_tables", stopped)
         assert main(command) == Exit.FAILED
-    spent = kept_cost(RunFolder(tmp_path)).timings
+    spent = read_cost(RunFolder(tmp_path)).timings
     assert spent.error_bars > 0.0
     assert main([*command, "--resume"]) == Exit.DONE
     found = summary(tmp_path)["timings_s"]
@@ -109,11 +109,11 @@ def test_stopped_after_its_error_bars(tmp_path: Path, monkeypatch: pytest.Monkey
     assert found["total"] > spent.total >= sum(astuple(spent)[:-1])
 
 
-def test_overwritten_run_begins_anew(tmp_path: Path) -> None:
+def test_overwriting_run_starts_with_no_cost(tmp_path: Path) -> None:
     """What a run has cost that is replaced does not count."""
     command = ["run", *HE, "--set", "output.error_bars=false", "--out", str(tmp_path)]
     assert main(command) == Exit.DONE
-    keep_cost(RunFolder(tmp_path), Cost(Timings(mesh=1e6, total=1e6), 1e9))
+    write_cost(RunFolder(tmp_path), Cost(Timings(mesh=1e6, total=1e6), 1e9))
     assert main([*command, "--overwrite"]) == Exit.DONE
     assert summary(tmp_path)["timings_s"]["total"] < 1e6
     assert summary(tmp_path)["peak_memory_MB"] < 1e9

@@ -1,4 +1,4 @@
-"""What a run may touch in its folder: files that our runs have made and nobody has changed, and nothing else."""
+"""A run removes and replaces only unchanged files written by runs; the lock of its folder."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ THEIRS = ("photo.png", "pictures/photo.png", "results/measured.npz", "fields/con
 
 @pytest.fixture
 def folder(tmp_path: Path) -> RunFolder:
-    """A run's files, and beside them, in the same folders, somebody else's."""
+    """Files written by a run, with foreign files in the same folders."""
     made = RunFolder(tmp_path)
     for name in ("scene.toml", "results/state.npz", "pictures/02_flank_pressure.png", "fields/flanks_0007.vtp"):
         made.write_text(name, f"our {name}")
@@ -33,32 +33,32 @@ def folder(tmp_path: Path) -> RunFolder:
     return made
 
 
-def test_clear_removes_ours_only(folder: RunFolder) -> None:
-    """Also of worn pairs, also fields of a longer run; a photo among the pictures and measured data stay."""
+def test_clear_removes_written_files_only(folder: RunFolder) -> None:
+    """Files of worn pairs and fields of a longer run are removed; a photo among the pictures and measured data stay."""
     before = hashes(folder.out)
     folder.clear()
     assert hashes(folder.out) == {name: before[name] for name in THEIRS}
     assert not (folder.out / MANIFEST).exists()
 
 
-def test_clear_removes_folders_that_were_ours_alone(tmp_path: Path) -> None:
-    """OUT/results and the like go with their last file."""
+def test_clear_removes_empty_folders(tmp_path: Path) -> None:
+    """OUT/results and other folders of a run are removed with their last file."""
     made = RunFolder(tmp_path)
     made.write_text("results/state.npz", "a")
     made.clear()
     assert not list(tmp_path.iterdir())
 
 
-def test_clear_keeps_what_it_is_told_to(folder: RunFolder) -> None:
-    """The scene stays, and stays ours."""
+def test_clear_keeps_the_files_named(folder: RunFolder) -> None:
+    """The scene stays, and still counts as written by a run."""
     scene = folder.out / "scene.toml"
     folder.clear(keep=[scene])
     assert scene.read_text() == "our scene.toml"
-    assert folder.is_ours(scene)
+    assert folder.is_written(scene)
 
 
-def test_a_changed_file_is_theirs(folder: RunFolder) -> None:
-    """A picture that somebody has painted over is neither written over nor removed."""
+def test_changed_file_is_foreign(folder: RunFolder) -> None:
+    """A picture that was edited after the run is neither replaced nor removed."""
     path = folder.out / "pictures/02_flank_pressure.png"
     path.write_text("painted over", encoding="utf-8")
     with pytest.raises(FolderError, match=r"02_flank_pressure\.png, found a file of this name that no run has made"):
@@ -67,8 +67,8 @@ def test_a_changed_file_is_theirs(folder: RunFolder) -> None:
     assert path.read_text(encoding="utf-8") == "painted over"
 
 
-def test_a_link_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
-    """A link in place of a file of ours, even to the same content: not written through, not removed."""
+def test_link_is_foreign(folder: RunFolder, tmp_path: Path) -> None:
+    """A link in place of a written file, even to the same content: its target is not written, the link not removed."""
     target = tmp_path / "elsewhere.toml"
     (folder.out / "scene.toml").rename(target)
     (folder.out / "scene.toml").symlink_to(target)
@@ -79,7 +79,7 @@ def test_a_link_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
     assert (folder.out / "scene.toml").is_symlink()
 
 
-def test_a_linked_folder_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
+def test_linked_folder_is_refused(folder: RunFolder, tmp_path: Path) -> None:
     """A link named results to the results of another run: neither removed, nor written over, nor added to."""
     other = RunFolder(tmp_path / "other")
     (other.out).mkdir()
@@ -95,42 +95,42 @@ def test_a_linked_folder_is_theirs(folder: RunFolder, tmp_path: Path) -> None:
     assert (folder.out / MANIFEST).read_bytes() == listed
 
 
-def test_the_same_content_is_not_written_again(folder: RunFolder) -> None:
-    """Ours with this very content keeps its date."""
+def test_file_with_the_same_content_is_not_written_again(folder: RunFolder) -> None:
+    """A written file with the same content keeps its modification time."""
     path = folder.out / "scene.toml"
     os.utime(path, (1.0, 1.0))
     folder.write_text("scene.toml", "our scene.toml")
     assert path.stat().st_mtime == 1.0
 
 
-def test_others_are_named(folder: RunFolder) -> None:
-    """In the folders where runs write, also below worn pairs; files that are being written are nobody's."""
+def test_foreign_files_are_found_in_all_folders_of_a_run(folder: RunFolder) -> None:
+    """They are found in the folders where runs write, those of worn pairs among them; temporary files do not count."""
     write_text(folder.out / "deep/in/there.txt", "x")
     part_of(folder.out / "results/state.npz").write_text("half", encoding="utf-8")
-    names = {path.relative_to(folder.out).as_posix() for path in folder.theirs()}
+    names = {path.relative_to(folder.out).as_posix() for path in folder.foreign_files()}
     assert names == set(THEIRS)
 
 
-def test_parts_of_a_killed_run_go(folder: RunFolder) -> None:
-    """A file that was being written when a run was killed."""
+def test_temporary_files_of_a_killed_run_are_removed(folder: RunFolder) -> None:
+    """A temporary file of a killed run is removed."""
     part_of(folder.out / "results/state.npz").write_text("half", encoding="utf-8")
     folder.remove_parts()
     assert not [path for path in folder.out.rglob("*") if PART in path.name]
 
 
 @pytest.mark.parametrize("cut", [1, 20, 60])
-def test_half_a_line_of_the_list_is_no_harm(cut: int, folder: RunFolder) -> None:
-    """A run killed while it lists a file: what is listed before and after is known."""
+def test_incomplete_line_of_the_manifest_is_skipped(cut: int, folder: RunFolder) -> None:
+    """A run killed while it lists a file: entries before and after the incomplete line are read."""
     path = folder.out / MANIFEST
     folder.write_text("results/gears.npz", "last")
     path.write_bytes(path.read_bytes()[:-cut])
     folder.write_text("summary.json", "next")
-    assert folder.is_ours(folder.out / "summary.json")
-    assert folder.is_ours(folder.out / "fields/flanks_0007.vtp")
+    assert folder.is_written(folder.out / "summary.json")
+    assert folder.is_written(folder.out / "fields/flanks_0007.vtp")
 
 
-def test_the_list_reaches_no_other_folder(tmp_path: Path) -> None:
-    """A list that names ../mine, from whomever it comes, does not make that file ours."""
+def test_manifest_names_no_file_outside_its_folder(tmp_path: Path) -> None:
+    """A file outside the folder does not count as written, even if the manifest lists it as ../mine."""
     (tmp_path / "mine").write_text("x", encoding="utf-8")
     out = tmp_path / "out"
     made = RunFolder(out)
@@ -142,8 +142,8 @@ def test_the_list_reaches_no_other_folder(tmp_path: Path) -> None:
     assert (tmp_path / "mine").exists()
 
 
-def test_no_room_in_the_list(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No room for a file's line: WriteError, neither the line nor the file is there, and what was listed is."""
+def test_full_disk_leaves_the_manifest_as_it_was(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No space for a file's line: WriteError; neither the line nor the file is written, and earlier lines stay."""
     before = (folder.out / MANIFEST).read_bytes()
 
     def full(_: int) -> None:
@@ -167,7 +167,7 @@ with locked(Path(sys.argv[1])):
 
 
 def test_lock_names_its_owner_and_ends_with_it(tmp_path: Path) -> None:
-    """A second run is refused and told whose the folder is; after kill -9 of the first one it is free."""
+    """A second run is refused with the name of the first; after kill -9 of the first one the lock is free."""
     out, root = tmp_path / "out", ROOT
     with subprocess.Popen(
         [sys.executable, "-c", HOLD, str(out)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=root
@@ -184,7 +184,7 @@ def test_lock_names_its_owner_and_ends_with_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("place", ["dangling", "file/out", "/dev/null", "/proc/out", "x" * 300, "a\0b", "file"])
-def test_impossible_folders(place: str, tmp_path: Path) -> None:
+def test_lock_refuses_impossible_folders(place: str, tmp_path: Path) -> None:
     """Below a file, a device, where nobody may, a name that is too long: InputError, and nothing is made."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
@@ -194,8 +194,8 @@ def test_impossible_folders(place: str, tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["dangling", "file"]
 
 
-def test_lock_leaves_no_folder_that_was_not_there(tmp_path: Path) -> None:
-    """A run that writes nothing leaves nothing."""
+def test_lock_removes_the_empty_folder_that_it_created(tmp_path: Path) -> None:
+    """A folder that was created for a run that writes nothing is removed."""
     with locked(tmp_path / "a" / "b"):
         pass
     assert not list(tmp_path.iterdir())

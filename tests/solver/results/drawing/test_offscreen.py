@@ -29,7 +29,7 @@ with off_screen():
 """
 
 
-def test_two_pictures_without_a_screen_and_without_a_word() -> None:
+def test_two_pictures_without_a_display_print_nothing() -> None:
     """An unlit red sphere on white is red in the middle and white in the corner; the next, blue; nothing on stderr."""
     bare = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     run = subprocess.run(
@@ -41,7 +41,7 @@ def test_two_pictures_without_a_screen_and_without_a_word() -> None:
 
 
 @pytest.mark.skipif(shutil.which("Xvfb") is None, reason="no virtual X server is installed")
-def test_the_server_stays_when_its_last_window_closes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_virtual_server_keeps_running_without_windows(monkeypatch: pytest.MonkeyPatch) -> None:
     """Problem: a VTK that draws through X only; a program that connects, names an atom and leaves, then another one.
     Exact: the atom is still known. A server that starts anew when nobody is connected has forgotten it; VTK, which asks
     for its next window meanwhile, aborts the process."""

@@ -22,13 +22,13 @@ from evolvent.results.archive.error_bar_data import (
     NOT_ESTIMATED,
     EstimatedErrors,
     FigureErrors,
-    keep_errors,
-    kept_errors,
     plus_minus,
+    read_error_bars,
+    write_error_bars,
 )
 from evolvent.results.engagement import engagement
-from evolvent.results.error_bars.estimation import Curve, difference, errors_between, estimated_errors
-from evolvent.results.run_data import Companion, RunData, SolvedPosition, read_run
+from evolvent.results.error_bars.estimation import Companion, Curve, difference, errors_between, estimated_errors
+from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run import coarse_run
 from evolvent.run.coarse_run import coarser, companion_mesh, solved_run
 from evolvent.run.pitch_run import pitch_of
@@ -54,7 +54,7 @@ def rows() -> list[BarRow]:
 
 
 @pytest.mark.slow
-def test_true_errors_are_inside(rows: list[BarRow]) -> None:
+def test_nine_in_ten_error_bars_hold_the_true_error(rows: list[BarRow]) -> None:
     """Problem: He's spur pair on 12 meshes (1.7, 3 and 6 elements across the contact, quadrilaterals and triangles,
     orders 1 and 2), μ = 0 and 0.2. Exact: 48 second-order elements across, within a few per cent of the bars. Nine in
     ten bars hold the true error, of all figures together and of each."""
@@ -66,7 +66,7 @@ def test_true_errors_are_inside(rows: list[BarRow]) -> None:
 
 
 @pytest.mark.slow
-def test_bars_are_of_use(rows: list[BarRow]) -> None:
+def test_error_bars_are_not_far_too_wide(rows: list[BarRow]) -> None:
     """A bar that is always far too wide would hold everything: of second-order meshes, with 3 and 6 elements across,
     no bar is above 6 % of its figure, and in the median one is at most 6 times the true error."""
     good = [row for row in rows if "order=2" in row.case and "width=1.7" not in row.case]
@@ -74,7 +74,7 @@ def test_bars_are_of_use(rows: list[BarRow]) -> None:
     assert np.median([row.bar / row.error for row in good]) < 6.0
 
 
-def test_bars_shrink_with_the_mesh() -> None:
+def test_error_bars_shrink_with_the_mesh() -> None:
     """He's pair at standard, and with every element halved in its own grading. Bars of transmission error and secant
     shrink to a quarter at least (p >= 2), those of pressures, loss and tangent, which jumps where a quadrature point
     opens or closes, to two thirds at least."""
@@ -103,7 +103,7 @@ def solved(scene: Scene, mesh: coarse_run.Mesher) -> RunData:
     return run
 
 
-def test_difference() -> None:
+def test_difference_of_curves_is_the_larger_of_figure_and_rms() -> None:
     """Exact: 3 + sin over a whole turn against the same shifted by 0.3: peak-to-peak agrees, the relative rms
     difference is 0.3/√9.5; against twice itself the figure's own difference is the larger one. NaN in one curve and
     rotations of one alone do not count."""
@@ -117,7 +117,7 @@ def test_difference() -> None:
     assert difference(np.mean, Curve(at, 0.0 * at), Curve(at, 0.0 * at)) == 0.0
 
 
-def test_hertz_has_no_error() -> None:
+def test_hertz_pressures_have_no_error() -> None:
     """Problem: a made-up run of the Yang pair whose slices carry Hertz's pressure exactly, with itself as companion.
     Exact: no error in transmission error, stiffness and loss; in the pressures only that of sampling the ellipse."""
     run = synthetic_run("contact.friction=[0.0, 0.1]")
@@ -127,7 +127,7 @@ def test_hertz_has_no_error() -> None:
         assert errors.max_pressure_MPa < 0.02 * 1500.0
 
 
-def test_zones_of_the_companion_do_not_count() -> None:
+def test_wider_tip_edge_zones_of_the_companion_make_no_error() -> None:
     """Problem: the same, but the companion sees the tip edges from half a millimetre further away, as larger cells do,
     and has no fitted peak there. Exact: its loads are the same, so there is no error still; the peak at the end of its
     own zone is 4 % lower."""
@@ -147,7 +147,7 @@ def test_zones_of_the_companion_do_not_count() -> None:
         assert errors.mean_pressure_MPa < 0.02 * 1500.0
 
 
-def test_companion_without_contact() -> None:
+def test_companion_without_contact_gives_no_error_bars() -> None:
     """A companion in which nothing touches has no figures: no bars, and the reason, but no exception."""
     run = synthetic_run("contact.friction=[0.0, 0.1]")
     bare = tuple(tuple(replace(solved, teeth=()) for solved in each) for each in run.positions)
@@ -155,7 +155,7 @@ def test_companion_without_contact() -> None:
     assert found.figures == () and "cannot be compared" in found.missing
 
 
-def test_coarser_halves_all_directions() -> None:
+def test_companion_resolution_is_halved_in_all_directions() -> None:
     """Exact: twice the thickness, half the counts; profile elements stay a multiple of 3."""
     own = SectorResolution(profile_elements=54, face_elements=12, fillet_elements=8, back_elements=6, neck_elements=4)
     half = coarser(own)
@@ -164,7 +164,7 @@ def test_coarser_halves_all_directions() -> None:
     assert half.layer_depths == pytest.approx([2.0 * depth for depth in own.layer_depths])
 
 
-def test_halved_keeps_the_body() -> None:
+def test_halved_mesh_keeps_the_body() -> None:
     """Exact: four times the cells and twice the facets of each group; the old nodes are nodes still."""
     scene = spur_scene("mesh.level=quick")
     own = gear_mesh(gear_problem(scene), Member.PINION)
@@ -175,7 +175,7 @@ def test_halved_keeps_the_body() -> None:
     assert all(tuple(p) in places for p in np.round(own.points, 7))
 
 
-def test_written_with_their_sign() -> None:
+def test_plus_minus_rounds_the_bar_up() -> None:
     """A bar is rounded up, never down; none is written where it is not known, or where the figure is exact."""
     assert plus_minus(594.87, 12.1, 0) == "595 ± 13"
     assert plus_minus(2.5799, 0.0883, 2) == "2.58 ± 0.09"
@@ -185,25 +185,25 @@ def test_written_with_their_sign() -> None:
     assert plus_minus(0.5925, 1e-9, 1) == "0.5925 ± 0.0001"
 
 
-def test_come_back_from_disk(tmp_path: Path) -> None:
+def test_error_bars_are_read_as_archived(tmp_path: Path) -> None:
     """What is kept is read again number by number, NaN too, but not by another scene, nor where it was estimated
     in another way; no bars leave no file, and a broken file is none."""
     archive = Archive(tmp_path, spur_scene())
     archive.folder.mkdir()
-    keep_errors(archive, EstimatedErrors(missing="It rained."))
-    assert kept_errors(archive) is None
+    write_error_bars(archive, EstimatedErrors(missing="It rained."))
+    assert read_error_bars(archive) is None
     errors = EstimatedErrors((FigureErrors(1.0, 2.0, float("nan"), 4.0, 5.0, 0.1 + 0.2),), METHOD, "")
-    keep_errors(archive, errors)
-    assert repr(kept_errors(archive)) == repr(errors)
-    keep_errors(archive, replace(errors, method="guessed"))
-    assert kept_errors(archive) is None
-    keep_errors(archive, errors)
-    assert kept_errors(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
+    write_error_bars(archive, errors)
+    assert repr(read_error_bars(archive)) == repr(errors)
+    write_error_bars(archive, replace(errors, method="guessed"))
+    assert read_error_bars(archive) is None
+    write_error_bars(archive, errors)
+    assert read_error_bars(Archive(tmp_path, spur_scene("load.torque_Nm=99"))) is None
     (archive.folder / "errors.npz").write_bytes(b"PK half")
-    assert kept_errors(archive) is None
+    assert read_error_bars(archive) is None
 
 
-def test_in_the_summary_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_reports_and_archives_its_error_bars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run gives every figure its bar and names the method; going on with a finished run solves nothing again."""
     scene = spur_scene(*SHORT)
     run_scene(scene, tmp_path, quiet=True)
@@ -220,7 +220,7 @@ def test_in_the_summary_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert summary(tmp_path)["frictions"] == found["frictions"]
 
 
-def test_without_a_companion(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_without_companion_gives_the_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the companion does not converge the run is complete all the same, without bars and with the reason; so it
     is where none are asked for."""
     scene = spur_scene(*SHORT)
@@ -233,7 +233,7 @@ def test_without_a_companion(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert summary(tmp_path)["estimated_error"]["missing"] == "Error bars were not asked for."
 
 
-def test_bars_are_there_where_the_scene_asks_for_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_bars_follow_the_output_that_the_scene_asks_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run with bars resumed without: summary.json, whose scene asks for none, and the run as `plot` reads it have
     none. Resumed with them: the same bars, and no companion is solved for them."""
     with_bars, without = spur_scene(*SHORT, *OUTPUT), spur_scene(*SHORT, *OUTPUT, "output.error_bars=false")
@@ -256,7 +256,7 @@ def fails(*_: object) -> None:
 
 
 @pytest.mark.mpi
-def test_ranks_agree(run_script: Run, tmp_path: Path) -> None:
+def test_error_bars_agree_between_numbers_of_ranks(run_script: Run, tmp_path: Path) -> None:
     """He's pair, two friction coefficients on 1 and 2 ranks: the same bars within 1e-6 of them."""
     settings = [part for setting in (*SHORT, *OUTPUT) for part in ("--set", setting)]
     found = []

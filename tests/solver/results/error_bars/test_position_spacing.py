@@ -12,28 +12,29 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import hit_rate
 from evidence.benchmarks.accuracy.spacing import PLASTIC, SpacingProblem, measure_spacing
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.results.archive.error_bar_data import added
+from evolvent.results.archive.error_bar_data import summed_errors
 from evolvent.results.drawing.style import styled
-from evolvent.results.error_bars.estimation import errors_between, estimated_errors
+from evolvent.results.error_bars.estimation import Companion, errors_between, estimated_errors
 from evolvent.results.error_bars.position_spacing import (
     bends,
     every_other,
     missed_peaks,
-    reach,
     roundness,
     scatter,
     shares,
     spacing_errors,
     thinned_mean,
+    tops,
 )
 from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.stress import engagement_stress
-from evolvent.results.run_data import Companion, RunData
+from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import SPACING_SAID, warnings_of
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import load_scene
+from evolvent_meshes.arrays import Floats
 from tests.support.run_parts import GOOD
 from tests.support.synthetic_run import synthetic_run
 
@@ -47,49 +48,54 @@ def plastic(positions: int) -> RunData:
     return run
 
 
+def largest_value(x: Floats, y: Floats, jumps: bool) -> float:
+    """The largest value that a curve with these samples may have at them and between them."""
+    return float(np.nanmax(np.append(tops((x, y), jumps), y)))
+
+
 @pytest.fixture(scope="module")
 def run() -> RunData:
     """A pitch in twenty positions."""
     return plastic(20)
 
 
-def test_kink_between_samples() -> None:
+def test_tops_find_a_kink_between_samples() -> None:
     """Two straight lines that meet at x = 2.4, 3.2 high, sampled at whole numbers: found exactly, and nothing where
     the kink is a valley or lies on a sample."""
     x = np.arange(6.0)
     for top in (2.4, 2.0):
         y = 3.2 - np.where(x < top, 1.0, 0.5) * np.abs(x - top)
-        assert reach((x, y), jumps=False) == pytest.approx(3.2)
-        assert reach((x, -y), jumps=False) == pytest.approx(-y.min())
+        assert largest_value(x, y, jumps=False) == pytest.approx(3.2)
+        assert largest_value(x, -y, jumps=False) == pytest.approx(-y.min())
 
 
-def test_smooth_top_between_samples() -> None:
+def test_tops_find_a_smooth_top_between_samples() -> None:
     """A parabola with its top, 0, halfway between samples a step apart: a bend that is as large all around is no kink,
     and the top is found exactly, a quarter of the way up to where straight lines meet. Half of a step's bend is seen at
     either sample of a kink, and none beside them: the lines meet in it."""
     x = np.arange(8.0)
-    assert reach((x, -((x - 3.5) ** 2)), jumps=False) == pytest.approx(0.0, abs=1e-12)
+    assert largest_value(x, -((x - 3.5) ** 2), jumps=False) == pytest.approx(0.0, abs=1e-12)
     assert roundness(np.diff(-((x - 3.5) ** 2)))[2] == 1.0 and roundness(np.diff(-np.abs(x - 3.5)))[2] == 0.0
 
 
-def test_lines_go_no_further_than_their_step() -> None:
+def test_tops_extrapolate_by_no_more_than_their_step() -> None:
     """Two samples a hundredth of a step apart, as where a position stands beside the end of a tip-edge zone, the second
     0.1 higher, then a fall: no line rises by more than that 0.1, which would be 10 over a whole step, and the jump that
     it may be goes half of it up."""
     x, y = np.array([0.0, 0.99, 1.0, 2.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.1, 0.9, 0.88, 0.86])
-    assert reach((x, y), jumps=True) == pytest.approx(1.15)
+    assert largest_value(x, y, jumps=True) == pytest.approx(1.15)
 
 
-def test_jump_between_samples() -> None:
+def test_tops_continue_to_the_middle_of_a_jump() -> None:
     """A curve that falls with slope 1 after a jump somewhere between 2 and 3: continued to the middle; a continuous
     curve cannot. NaN before and after do not matter."""
     x, y = np.arange(8.0), np.array([np.nan, 0.0, 0.0, 5.0, 4.0, 3.0, 2.0, np.nan])
-    assert reach((x, y), jumps=True) == pytest.approx(5.5)
-    assert reach((x, y), jumps=False) == 5.0
+    assert largest_value(x, y, jumps=True) == pytest.approx(5.5)
+    assert largest_value(x, y, jumps=False) == 5.0
 
 
 @pytest.mark.parametrize("n", [12, 20, 40])
-def test_extremes_and_means(n: int) -> None:
+def test_missed_peaks_and_bends_bound_the_error_of_waves(n: int) -> None:
     """Triangles and sines with their peaks anywhere between samples: the reach holds the peak, and is not further than
     a step's rise above it. A step of height 1 of any length: the mean is off by at most its bends at both ends."""
     for shift in np.linspace(0.0, 1.0, 11):
@@ -104,7 +110,7 @@ def test_extremes_and_means(n: int) -> None:
         assert abs(box.mean() - share) <= np.abs(bends(closed)).sum() * 0.5 / n + 1e-12
 
 
-def test_a_thinned_pitch_closes() -> None:
+def test_thinned_pitch_is_periodic() -> None:
     """Exact: of five positions every other one from the second on is 1, 3 and, round the pitch, 0; the first, between
     neighbours one and two steps away, has 1.5 of the five steps. A constant has no error, whatever is left out."""
     assert every_other(5, 1).tolist() == [0, 1, 3] and every_other(6, 1).tolist() == [1, 3, 5]
@@ -115,7 +121,7 @@ def test_a_thinned_pitch_closes() -> None:
 
 
 @pytest.mark.parametrize("n", [20, 21, 32, 33, 34, 49, 50, 51])
-def test_means_of_even_and_odd_numbers(n: int) -> None:
+def test_thinned_mean_has_the_error_of_the_trapezoidal_rule(n: int) -> None:
     """Exact: the mean of a sine over its period is 0, that of a triangle 1/2, from 0 to 1; an odd number of positions
     that is thinned is off by what one even spacing of two steps and one of one leave out, no more than the trapezoidal
     rule's own error of a step (h²/12n of the curvature or h/8n of a kink each), not by a sample's share, 1/n."""
@@ -125,7 +131,7 @@ def test_means_of_even_and_odd_numbers(n: int) -> None:
     assert thinned_mean(triangle) <= 2.0 * 4.0 * (2.0 * step) ** 2 / 8.0
 
 
-def test_an_odd_number_of_positions_has_no_wider_bars() -> None:
+def test_odd_number_of_positions_has_no_wider_error_bars() -> None:
     """Problem: a made-up pair whose transmission error is a sine. Exact: the mean secant stiffness has next to no
     error, and 21 positions no wider a bar for it than 20."""
     bars = [
@@ -135,7 +141,7 @@ def test_an_odd_number_of_positions_has_no_wider_bars() -> None:
     assert bars[1] <= bars[0]
 
 
-def test_scatter() -> None:
+def test_scatter_of_noise_about_a_parabola() -> None:
     """Noise of 1 % about a parabola with a spike in it: found within a third; none without it."""
     x = np.linspace(-1.0, 1.0, 60)
     smooth = 100.0 - 20.0 * x**2
@@ -145,7 +151,7 @@ def test_scatter() -> None:
     assert scatter(smooth) < 1e-9
 
 
-def test_a_plastic_pinion() -> None:
+def test_spacing_errors_of_a_plastic_pinion_hold_the_true_error() -> None:
     """Problem: an unrelieved plastic pinion, whose pressure rises by 8 % from one of 20 positions to the next where it
     leaves the tip-edge zone, and whose transmission error has a corner half a degree wide, at quick. Exact: the same
     mesh at 80 positions. Nine in ten of the parts hold the true error; at 12 and 20 positions that of the largest
@@ -158,18 +164,18 @@ def test_a_plastic_pinion() -> None:
     assert 0.4 > shares[0] > shares[-1] > 1e-3
 
 
-def test_bars_are_mesh_and_spacing(run: RunData) -> None:
+def test_error_bars_sum_mesh_and_spacing(run: RunData) -> None:
     """A run with itself as its companion has no error in its transmission error but what lies between the positions;
     the parts are added, and stand in the figures by themselves without any companion too."""
     (bars,) = estimated_errors(run, Companion(run, "", 0.0)).figures
     (mesh,), spacing = errors_between(run, run), spacing_errors(run, 0)
     assert mesh.transmission_error_peak_to_peak_um == 0.0 < bars.transmission_error_peak_to_peak_um
-    assert bars == added(mesh, spacing)
+    assert bars == summed_errors(mesh, spacing)
     (row,) = friction_rows(run)
     assert row.estimated_error is None and row.spacing_error == spacing
 
 
-def test_few_positions_are_said(run: RunData) -> None:
+def test_few_positions_are_warned_of(run: RunData) -> None:
     """Without a companion, and with one where most of the bar is the spacing's: the figure, its share and the setting
     that helps; nothing of it where there are enough positions, as on a made-up smooth run."""
     (row,) = friction_rows(run)
@@ -182,13 +188,13 @@ def test_few_positions_are_said(run: RunData) -> None:
     assert not any("sweep.positions" in sentence for sentence in warnings_of(smooth, GOOD))
 
 
-def test_a_single_position_has_no_spacing(run: RunData) -> None:
+def test_single_position_has_no_spacing_error(run: RunData) -> None:
     """NaN, which is null in summary.json: nothing is known of what lies beside it."""
     alone = spacing_errors(replace(run, positions=run.positions[:1]), 0)
     assert np.isnan(alone.max_pressure_MPa) and np.isnan(alone.loss_percent)
 
 
-def test_extremes_between_positions() -> None:
+def test_missed_peaks_of_a_sawtooth_between_samples() -> None:
     """Exact: of a sawtooth with corners halfway between samples, half a step's rise and fall is missed at each end;
     where samples meet the corners nothing is, and of a sine hardly anything."""
     x = np.arange(20) / 20.0
@@ -199,7 +205,7 @@ def test_extremes_between_positions() -> None:
     assert missed_peaks(x[:4]) == 0.0
 
 
-def test_few_positions_are_said_below_pressures() -> None:
+def test_few_positions_are_noted_below_pressures() -> None:
     """Problem: a made-up pitch whose pressures three positions cannot follow, and 24 can. Exact: one sentence below 02
     and 03 of the first, with the share that summary.json has as spacing error; none of the second."""
     few, many = (synthetic_run("contact.friction=0.1", f"sweep.positions={n}") for n in (3, 24))

@@ -31,7 +31,7 @@ def case(request: pytest.FixtureRequest) -> Case:
     return model, swept, Deformation.of(model.bodies, [position.results[0] for position in swept])
 
 
-def test_flanks_move_as_contact_saw_them(case: Case) -> None:
+def test_recovered_flank_displacement_is_that_of_the_compliance(case: Case) -> None:
     """Exact: on the flanks the recovered field is what the gears' compliance gives there under the same forces, on
     every tooth that carries load and at every position, to the tolerance of the coupling of teeth."""
     model, swept, deformation = case
@@ -52,7 +52,7 @@ def test_flanks_move_as_contact_saw_them(case: Case) -> None:
                 assert np.abs(found - wanted).max() < 1e-8 * np.abs(wanted).max()
 
 
-def test_forces_are_those_of_the_torques(case: Case) -> None:
+def test_forces_on_the_gears_balance_the_torques(case: Case) -> None:
     """Exact: the moments of what both gears carry about their axes are the torques of the position."""
     model, swept, _ = case
     for result in (position.results[0] for position in swept):
@@ -66,7 +66,7 @@ def test_forces_are_those_of_the_torques(case: Case) -> None:
             assert abs(moment) == pytest.approx(result.torques[gear], rel=0.01)
 
 
-def test_teeth_bend_as_teeth(case: Case) -> None:
+def test_stress_is_largest_at_flank_or_fillet(case: Case) -> None:
     """The stress is the largest of its gear near the flank or in the fillets, not at the bore's side, and the flank
     that bears moves by micrometres."""
     _, _, deformation = case
@@ -77,7 +77,7 @@ def test_teeth_bend_as_teeth(case: Case) -> None:
         assert 1e-4 < np.abs(tooth.displacement).max() < 0.1
 
 
-def test_paraview_opens_it(tmp_path: Path) -> None:
+def test_deformed_series_opens_in_pyvista(tmp_path: Path) -> None:
     """A run of He's pair that asks for it: one time a position, displacement at the nodes, stress in the cells of both
     gears; the bore stays where it is. A run that does not ask has none."""
     scene = spur_scene("mesh.level=quick", "sweep.positions=3", "output.deformation=true", "contact.friction=0")

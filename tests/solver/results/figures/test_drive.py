@@ -28,7 +28,7 @@ def sliding_of(run: RunData) -> tuple[Axes, Axes]:
     return figure.axes[0], figure.axes[1]
 
 
-def test_no_slice_is_cut_off() -> None:
+def test_line_load_shows_every_slice() -> None:
     """Every slice of 12, also one on a tip edge beyond the path of contact of rigid flanks, lies within the axes by
     half of its mark. Problem: they are moved out by a millimetre, as deflected teeth meet early."""
     run = synthetic_run("contact.friction=[0.0, 0.1]", file=YANG)
@@ -44,7 +44,7 @@ def test_no_slice_is_cut_off() -> None:
         assert inside.x0 + 3.0 < x.min() and x.max() < inside.x1 - 3.0
 
 
-def test_sliding_is_drawn_whole() -> None:
+def test_sliding_is_drawn_completely() -> None:
     """Exact: Yang's pinion slides by −4.4 at A, and the axes of 12 go further."""
     _, lower = sliding_of(synthetic_run("contact.friction=[0.0, 0.1]", file=YANG))
     least = min(float(np.min(line.get_ydata())) for line in lower.lines[:2])
@@ -52,7 +52,7 @@ def test_sliding_is_drawn_whole() -> None:
     assert not lower.texts
 
 
-def test_sliding_that_is_cut_off_says_so() -> None:
+def test_sliding_beyond_the_axes_is_marked() -> None:
     """Problem: a pinion of 16 teeth, whose path of contact begins near its base circle. Exact: specific sliding
     falls to −10.4 there; the axes end a little below the bound, and the value stands there."""
     small = ["pinion.teeth=16", "pinion.bore_diameter_mm=15", "contact.friction=0.0"]
@@ -64,7 +64,7 @@ def test_sliding_that_is_cut_off_says_so() -> None:
 
 
 @pytest.mark.parametrize("bar", [0.35, np.nan])
-def test_peak_to_peak_is_said_once(bar: float) -> None:
+def test_peak_to_peak_transmission_error_is_given_once(bar: float) -> None:
     """In 09 the peak to peak of a coefficient stands in the line below the title alone, and what may lie between the
     positions in one sentence, as a part of the error bar where there is one; the legend takes none of the width."""
     run = synthetic_run("contact.friction=[0.0, 0.1, 0.2]", file=YANG)

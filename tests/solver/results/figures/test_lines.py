@@ -49,7 +49,7 @@ def test_points_that_exist_are_named(run: RunData) -> None:
         assert names <= set(PATH_POINTS) and "single pair" not in below(figure)
 
 
-def test_labels_do_not_lie_on_each_other(run: RunData, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_labels_do_not_overlap(run: RunData, monkeypatch: pytest.MonkeyPatch) -> None:
     """Problem: five points along a line within a twentieth of the face, as on a steep line. Exact: their letters do not
     meet; places far apart share the first row."""
     near = [(name, 0.01 * run.pair.face_width * k) for k, name in enumerate("ABCDE")]

@@ -65,7 +65,7 @@ def with_a_crossing(run: RunData) -> RunData:
     return with_cuts(run, tilted)
 
 
-def test_the_largest_pressure_is_in_every_picture(steep: RunData) -> None:
+def test_largest_pressure_is_in_every_picture(steep: RunData) -> None:
     """Problem: the largest pressure lies where a tip-edge zone begins, between two positions. Exact: 03, 05 and 10
     draw it, and say that it lies there."""
     wanted = [row.max_pressure_MPa for row in friction_rows(steep)]
@@ -80,7 +80,7 @@ def test_the_largest_pressure_is_in_every_picture(steep: RunData) -> None:
     assert f"computed, largest: {AT_ZONE_END}" in legend_of(hertz)
 
 
-def test_the_largest_beside_hertz_has_its_bar(steep: RunData) -> None:
+def test_largest_pressure_beside_hertz_has_its_error_bar(steep: RunData) -> None:
     """In 10 the largest pressure has its error bar, among the slices and beside the estimates, and in words."""
     largest = friction_rows(steep)[0].max_pressure_MPa
     with styled():
@@ -93,7 +93,7 @@ def test_the_largest_beside_hertz_has_its_bar(steep: RunData) -> None:
     assert any(f"{largest:.0f} ± {BAR:.0f}" == text.get_text() for text in beside.texts)
 
 
-def test_no_crossing_where_it_is_not_resolved() -> None:
+def test_crossing_is_not_given_on_few_cells() -> None:
     """Problem: friction raises the stress before some rotation and lowers it after it; fewer than two elements across
     the contact. Exact: dots and lines have names in the legend of 03, and it is not said where they cross, for the
     scatter of the dots moves that; the same run with contacts twice as wide says where the lines that are drawn

@@ -40,7 +40,7 @@ def quiet() -> RunData:
     return replace(run, positions=tuple(tuple(inside(solved) for solved in each) for each in run.positions))
 
 
-def test_nothing_to_say(quiet: RunData) -> None:
+def test_good_run_has_no_warning(quiet: RunData) -> None:
     """Three elements across, good cells, no edge, error bars: no warning."""
     assert warnings_of(quiet, GOOD) == ()
 
@@ -54,13 +54,13 @@ def test_nothing_to_say(quiet: RunData) -> None:
         (MeshFacts(2.8e-4, 3.1, 2.0), "The least scaled Jacobian of a cell is 0.0003, below 0.05"),
     ],
 )
-def test_the_mesh(mesh: MeshFacts, said: str, quiet: RunData) -> None:
+def test_coarse_or_distorted_mesh_is_warned_of(mesh: MeshFacts, said: str, quiet: RunData) -> None:
     """Each fact about the mesh has its one sentence, with the number."""
     (sentence,) = warnings_of(quiet, mesh)
     assert said in sentence
 
 
-def test_tip_edges_and_error_bars(quiet: RunData) -> None:
+def test_tip_edges_and_missing_error_bars_are_warned_of(quiet: RunData) -> None:
     """A pair whose tip edges bear at all 24 positions, and whose largest pressure stands where their zone begins: both
     are said; so is a companion that failed, but not one that was not asked for."""
     run = synthetic_run("contact.friction=0.1", "sweep.positions=24")
@@ -74,7 +74,7 @@ def test_tip_edges_and_error_bars(quiet: RunData) -> None:
     assert warnings_of(replace(failed, scene=without), GOOD) == ()
 
 
-def test_what_is_said_of_a_coarse_mesh_agrees_with_the_bar(quiet: RunData) -> None:
+def test_warning_of_a_coarse_mesh_agrees_with_the_error_bar(quiet: RunData) -> None:
     """1.7 elements across and a bar of 4.6 % of the largest pressure: the sentence says what the bar is of, with its
     number, and what it is not of."""
     peak = friction_rows(quiet)[0].max_pressure_MPa
@@ -84,7 +84,7 @@ def test_what_is_said_of_a_coarse_mesh_agrees_with_the_bar(quiet: RunData) -> No
     assert "the largest one is known within its error bar, 4.6 %, but not where it occurs" in said
 
 
-def test_what_is_not_known(quiet: RunData) -> None:
+def test_figures_with_large_error_bars_are_warned_of(quiet: RunData) -> None:
     """A bar of 1.1 times the largest pressure, of 0.4 times the mean one: the first is said not to be known, with both
     numbers; the second is not mentioned."""
     row = friction_rows(quiet)[0]
@@ -95,7 +95,7 @@ def test_what_is_not_known(quiet: RunData) -> None:
     assert "mean" not in said
 
 
-def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
+def test_warnings_are_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
     """summary.json has the same sentences."""
     write_tables(RunFolder(tmp_path), summary(quiet, replace(FACTS, mesh=MeshFacts(0.3, 1.2, 0.8))))
     found = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["warnings"]
@@ -103,7 +103,7 @@ def test_in_the_summary(quiet: RunData, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_cells_across(order: int) -> None:
+def test_cells_across_the_contact_are_elements_of_any_order(order: int) -> None:
     """Problem: He's pair with two elements across the Hertz width of a single pair, meshed by cells of either order.
     The load is shared by two pairs about the ends of the path, where the contact is 0.7 as wide: 1.3 to 2.2 elements,
     of either order; counted by halves of second-order cells those of order 1 would be half as many."""
@@ -113,7 +113,7 @@ def test_cells_across(order: int) -> None:
     assert 1.3 < cells_across(run) < 2.4
 
 
-def test_mesh_command_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mesh_command_warns_of_distorted_cells(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """`evolvent mesh` of first-order triangles: their quality with two digits, and the warning; none for hexahedra."""
     for shape, warned in (("tetrahedron", True), ("hexahedron", False)):
         out = tmp_path / f"{shape}.msh"

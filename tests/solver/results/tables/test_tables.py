@@ -40,7 +40,7 @@ def test_summary_has_the_promised_keys(run: RunData) -> None:
         assert all(set(t) >= {"force_N", "max_pressure_MPa", "contact_length_mm"} for t in row["teeth"])
 
 
-def test_units_and_balance(run: RunData) -> None:
+def test_position_rows_have_units_and_balance(run: RunData) -> None:
     """Problem: 250 N·m held on the pinion, frictionless and μ = 0.1. Exact: T_1 = 250 N·m; T_2 = 250·60/17 N·m
     without friction and u(T_1 − loss) with it; transmission error 20 µm ± 0.8 µm as made up; the forces sum to
     T_1/(r_b1 cos β_b)."""
@@ -59,14 +59,14 @@ def test_units_and_balance(run: RunData) -> None:
     assert np.mean(sums) == pytest.approx(force, rel=0.01)
 
 
-def test_lengths_sum_to_the_contact_line(run: RunData) -> None:
+def test_contact_lengths_sum_to_the_contact_lines(run: RunData) -> None:
     """Exact: the teeth's contact lengths sum to the length of all contact lines, to a layer (1.06 mm) a line end."""
     for row in position_rows(run):
         exact = run.pair.contact_line_length(np.radians(row.pinion_angle_deg))
         assert sum(t.contact_length_mm for t in row.teeth) == pytest.approx(exact, abs=1.2 * len(row.teeth))
 
 
-def test_friction_rows(run: RunData) -> None:
+def test_friction_rows_have_the_figures_of_a_pitch(run: RunData) -> None:
     """Exact: peak to peak 1.6 µm as made up; loss 0 without friction; no crossing with the curve itself."""
     smooth, rough = friction_rows(run)
     assert smooth.transmission_error_peak_to_peak_um == pytest.approx(1e3 * PEAK_TO_PEAK, rel=1e-9)
@@ -75,7 +75,7 @@ def test_friction_rows(run: RunData) -> None:
     assert np.isnan(smooth.crossing_deg)
 
 
-def test_stiffness_of_the_face(run: RunData) -> None:
+def test_stiffness_is_per_face_width(run: RunData) -> None:
     """Exact: tangents of 3e5 N/mm as made up, over a face of 16.9 mm, in 2D per mm already; the secant T_1/(r_b1 b)
     over the mean of 1/error."""
     wanted = 1e-3 * STIFFNESS / 16.9
@@ -114,7 +114,7 @@ def test_plane_run_is_reported_for_the_whole_width() -> None:
     assert mean == pytest.approx(2412.1, rel=0.03)  # four node intervals across the contact, no rows to average over
 
 
-def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
+def test_written_tables_have_a_line_a_row_and_strict_json(run: RunData, tmp_path: Path) -> None:
     """One line a position and friction in positions.csv, one more level down in teeth.csv; strict JSON (no NaN); no
     half-written file stays behind."""
     write_tables(RunFolder(tmp_path), summary(run, FACTS))
@@ -134,7 +134,7 @@ def test_tables_on_disk(run: RunData, tmp_path: Path) -> None:
     assert not list(tmp_path.glob("*.tmp"))
 
 
-def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
+def test_run_is_read_as_archived(run: RunData, tmp_path: Path) -> None:
     """Exact: what `read_run` reads equals what was archived, number by number."""
     store(run, tmp_path)
     again = read_run(tmp_path)
@@ -142,7 +142,7 @@ def test_run_comes_back_from_disk(run: RunData, tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.flank.points, run.flank.points)
 
 
-def test_angles_without_round_off(tmp_path: Path) -> None:
+def test_angles_in_degrees_have_no_round_off(tmp_path: Path) -> None:
     """Problem: a pinion of 17 teeth at six positions, whose steps are 60/17°, in radians and back again. Exact: no
     angle has more than six decimals in summary.json, and each is within half of the last one; of a pinion of 24 teeth
     with 20 positions they are multiples of 0.75 as they stand."""

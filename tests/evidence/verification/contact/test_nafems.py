@@ -114,6 +114,6 @@ class Block:
 
 
 @pytest.mark.parametrize(("large", "expected", "within"), [(False, -1.281, 0.002), (True, PUBLISHED, 0.005)])
-def test_block_under_a_rigid_cylinder(large, expected, within):
+def test_block_under_a_rigid_cylinder(large: bool, expected: float, within: float) -> None:
     """Small strain: the solver's −1.281 mm within 0.2 %. Large displacements: the published one within 0.5 %."""
     assert Block(large).sunk() == pytest.approx(expected, rel=within)

@@ -7,7 +7,6 @@ import multiprocessing
 from multiprocessing.context import SpawnContext
 from multiprocessing.queues import Queue
 from pathlib import Path
-from typing import Any
 
 import gmsh
 import numpy as np

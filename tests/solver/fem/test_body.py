@@ -64,7 +64,7 @@ def test_uniaxial_strain_of_a_column(shape: str, order: int) -> None:
     """Pressed between rollers: u_y = −p (1+ν)(1−2ν)/((1−ν)E) y with all sides held (uniaxial strain)."""
     mesh, material = _block(shape, order), Material(100e3, 0.3)
     up = "xyz"[mesh.dimension - 1]
-    sides = (Fixed("left", "x"), Fixed("right", "x"))
+    sides: tuple[Fixed, ...] = (Fixed("left", "x"), Fixed("right", "x"))
     sides += () if mesh.dimension == 2 else (Fixed("front", "y"), Fixed("back", "y"))
     load = Traction("top", (0.0,) * (mesh.dimension - 1) + (-50.0,))
     a = assemble(Body(mesh, material, (*sides, Fixed("bottom", up)), (load,)))

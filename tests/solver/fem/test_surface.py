@@ -157,7 +157,7 @@ def test_surface_of_unusable_groups_is_refused() -> None:
     with pytest.raises(ValueError, match=r"one cell behind each.* found 2 behind"):
         surface_of(mesh, "cut")
     with pytest.raises(ValueError, match="not finite"):
-        Surface.from_arrays([[0, 0], [np.nan, 1]], [[0, 1]], "interval", 1)
+        Surface.from_arrays([[0.0, 0.0], [np.nan, 1.0]], [[0, 1]], "interval", 1)
 
 
 @pytest.mark.parametrize("order", [1, 2])

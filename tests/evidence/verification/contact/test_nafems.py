@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from demos.hertz_cylinder import ALUMINIUM, HALF_WIDTH, LOAD, MODULUS, RADIUS
 from evolvent.fem.lagrange import gmsh_permutation, quadrature, tabulate
 from evolvent.fem.surface import surface_of
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.shapes.blocks import graded_rectangle
 
 PUBLISHED = -1.308019  # mm, second order, no friction
@@ -90,7 +90,8 @@ class Block:
     def pressed(self, depth: float) -> float:
         """Equilibrium by Newton's method from the last one; the force [N/mm]."""
         for _ in range(30):
-            residual, rows, columns, values = np.zeros(self.u.size), [], [], []
+            residual = np.zeros(self.u.size)
+            rows, columns, values = list[Ints](), list[Ints](), list[Floats]()
             *surface, total = self.contact(depth)
             for nodes, (force, tangent) in ((self.cells, self.bulk()), (self.facets, surface)):
                 dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(len(nodes), -1)

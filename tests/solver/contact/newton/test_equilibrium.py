@@ -124,8 +124,9 @@ def test_solution_meets_the_contact_and_friction_conditions(make: Callable[[], P
     assert contact.pressure.min() >= 0.0
     assert (np.linalg.norm(shear, axis=1) <= FRICTION * contact.pressure * (1.0 + 1e-9) + 1e-9).all()
     assert np.linalg.norm(shear, axis=1).max() > 0.05 * contact.pressure.max(), "friction is silently lost"
-    load = problem.bodies[0].rigid.freedoms[0].load
-    assert contact.force[-1] == pytest.approx(load, rel=1e-9)
+    rigid = problem.bodies[0].rigid
+    assert rigid is not None
+    assert contact.force[-1] == pytest.approx(rigid.freedoms[0].load, rel=1e-9)
     assert solution.imbalance < 1e-10
 
 

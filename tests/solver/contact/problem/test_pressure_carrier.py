@@ -71,8 +71,9 @@ def test_signs_follow_the_named_order_whichever_surface_carries() -> None:
     first, second = (roller(1e6, order).contacts[0] for order in (0, 1))
     assert first.carrier == second.carrier == (1, "top")
     assert first.force == pytest.approx([10.0, -50.0], rel=0.02)  # along normals that the block's shear has turned
-    for name in ("normals", "traction", "slip"):
-        assert np.array_equal(getattr(first, name), -getattr(second, name))
+    assert np.array_equal(first.normals, -second.normals)
+    assert np.array_equal(first.traction, -second.traction)
+    assert np.array_equal(first.slip, -second.slip)
     assert first.normals[:, 1].max() < 0.0
     assert first.slip[first.pressure > 0.0, 0].min() > 0.0
     shear = first.traction - first.pressure[:, None] * first.normals

@@ -22,7 +22,7 @@ def claim(found: float, missed: str = "") -> Claim:
         (float("nan"), "small strain", "FAILS", False),
     ],
 )
-def test_claim_tells_misses_from_failures(found, missed, verdict, as_expected):
+def test_claim_tells_misses_from_failures(found: float, missed: str, verdict: str, as_expected: bool) -> None:
     """200 ± 1 %: 202 lies within, 202.1 does not; a known miss has to fail with a number, a NaN never is expected."""
     checked = claim(found, missed)
     assert checked.verdict == verdict
@@ -30,13 +30,13 @@ def test_claim_tells_misses_from_failures(found, missed, verdict, as_expected):
     assert verdict in str(checked)
 
 
-def test_bound_allows_its_largest_error():
+def test_bound_allows_its_largest_error() -> None:
     """An error of 0.02 against at most 0.02, and against at most 0.019."""
     assert overkill("h = a/64").bound("profile", 0.02, 0.02).holds
     assert not overkill("h = a/64").bound("profile", 0.02, 0.019).holds
 
 
-def test_least_value_may_be_exceeded():
+def test_least_value_may_be_exceeded() -> None:
     """An order of 1.9 and one of 3 where at least 2 ± 0.15 is wanted, and one of 1.8."""
     orders = [analytical("theory").at_least("order", found, 2.0, 0.15) for found in (1.9, 3.0, 1.8)]
     assert [order.holds for order in orders] == [True, True, False]
@@ -44,7 +44,7 @@ def test_least_value_may_be_exceeded():
     assert not analytical("theory").at_least("order", float("nan"), 2.0, 0.15).holds
 
 
-def test_printed_claim_has_error_tolerance_and_source():
+def test_printed_claim_has_error_tolerance_and_source() -> None:
     """The printed line has the error, the tolerance, the kind of reference and its source."""
     line = str(claim(201.0))
     for part in ("found 201", "wanted 200", "± 2", "error 1", "analytical", "Hertz", "holds"):

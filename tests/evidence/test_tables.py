@@ -33,7 +33,7 @@ RUNS = Table(
 )
 
 
-def test_markdown_table():
+def test_markdown_table() -> None:
     """Markdown of one row; a bar inside a cell is escaped; a row that is too short is refused."""
     assert markdown(("a", "b"), [("|x|", "1")], right=(1,)) == "| a | b |\n| --- | ---: |\n| \\|x\\| | 1 |"
     with pytest.raises(ValueError, match="rows of 2 columns"):

@@ -65,7 +65,7 @@ def test_ball_profile_on_squares(alone: Alone) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ranks", on_ranks(1, 2))
-def test_gear_demo(run_script, tmp_path, ranks):
+def test_gear_demo(run_script: Run, tmp_path: Path, ranks: int) -> None:
     """The paper's pair on a coarse mesh: status 0, tables, fields, pictures; the demo itself asserts the trend."""
     done = run_script(*started("yang2022", tmp_path, ranks), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -78,7 +78,7 @@ def test_gear_demo(run_script, tmp_path, ranks):
 
 
 @pytest.mark.slow
-def test_wear_demo(run_script, tmp_path):
+def test_wear_demo(run_script: Run, tmp_path: Path) -> None:
     """Status 0, a table of at least ten rows and a picture; the demo itself asserts what Archard's law asks for."""
     done = run_script("demos/pin_on_disc.py", "--quick", "--out", str(tmp_path))
     assert done.returncode == 0, done.stderr[-3000:]
@@ -87,7 +87,7 @@ def test_wear_demo(run_script, tmp_path):
 
 
 @pytest.mark.slow
-def test_gear_wear_demo(run_script, tmp_path):
+def test_gear_wear_demo(run_script: Run, tmp_path: Path) -> None:
     """He's pair on a coarse mesh: status 0, the run's pictures and the paper's, a table over the profile, a line a
     figure; the demo itself asserts its bounds."""
     done = run_script("demos/he2022_wear.py", "--quick", "--out", str(tmp_path))
@@ -99,7 +99,7 @@ def test_gear_wear_demo(run_script, tmp_path):
     assert "depth at r = 77 mm" in done.stdout and "whole engagement" in done.stdout
 
 
-def test_gear_wear_demo_refuses_too_much(run_script, tmp_path):
+def test_gear_wear_demo_refuses_too_much(run_script: Run, tmp_path: Path) -> None:
     """A setting that wears the flank away: status 2 and what is allowed."""
     settings = ("--set", "wear.cycles=1e9", "--out", str(tmp_path))
     done = run_script("demos/he2022_wear.py", "--quick", *settings)

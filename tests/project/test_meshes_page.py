@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+from types import ModuleType
 
 import pytest
 
@@ -31,7 +32,7 @@ def quoted(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize("module", [blocks, rings, ellipse, variants], ids=lambda module: module.__name__)
-def test_every_function_is_named(module) -> None:
+def test_every_function_is_named(module: ModuleType) -> None:
     """All public functions of the modules stand on the page."""
     public = {name for name, f in inspect.getmembers(module, inspect.isfunction)
               if f.__module__ == module.__name__ and not name.startswith("_")}  # fmt: skip

@@ -6,7 +6,7 @@ import hashlib
 import os
 import re
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from pathlib import Path
 
 import pytest
@@ -69,8 +69,8 @@ def files(folder: Path) -> dict[str, str]:
 
 def test_at_least_250_malformed_inputs() -> None:
     """At least 250 malformed inputs, all of them different."""
-    tables = MALFORMED, SCENE_FILES, CHARTS, RECORDS, OPTIONS
-    assert sum(map(len, tables)) >= 250
+    tables: tuple[Sized, ...] = MALFORMED, SCENE_FILES, CHARTS, RECORDS, OPTIONS
+    assert sum(len(table) for table in tables) >= 250
 
 
 @pytest.mark.parametrize("case", SCENE_FILES)

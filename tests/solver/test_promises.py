@@ -19,8 +19,12 @@ from evidence.robustness.settings.sheets import Cell, attempt
 from evolvent import Problem, SmallStrainExceeded, solve
 from evolvent.contact.newton import equilibrium, snes
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues, coulomb
+from evolvent.contact.search.pairing import Pairing
 from evolvent.contact.step import paired_surfaces
+from evolvent.fem.surface import Surface
+from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import pitch_sweep, position_search
 from evolvent.gears.sweep.position_result import PositionResult
@@ -29,6 +33,7 @@ from evolvent.scene.scene import Scene, scene_from_text
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import QUIET, Curves, model_of, swept
+from tests.support.running.patches import calling_first, with_result
 
 ROTATIONS = np.array([1.0, 1.5, 2.0])
 FRICTION = 0.2
@@ -89,15 +94,13 @@ def test_forces_on_curved_flanks_cancel(
     to fail where the projection loses a thousandth of a constant."""
     model = request.getfixturevalue(name)
     forces_cancel(model)
-    original = position_search.gear_contact
 
-    def leaking(*arguments):  # type: ignore[no-untyped-def]
-        contact = original(*arguments)
+    def leaking(contact: GearContact) -> GearContact:
         geometry = contact.geometry
         teeth = [replace(t, operator=replace(t.operator, jump2=0.999 * t.operator.jump2)) for t in geometry.teeth]
         return replace(contact, geometry=replace(geometry, teeth=tuple(teeth)))
 
-    monkeypatch.setattr(position_search, "gear_contact", leaking)
+    monkeypatch.setattr(position_search, "gear_contact", with_result(position_search.gear_contact, leaking))
     assert fails(lambda: forces_cancel(model))
 
 
@@ -155,13 +158,11 @@ def test_size_of_gears(scale: float) -> None:
 
 def test_size_of_gears_sees_a_fixed_length(monkeypatch: pytest.MonkeyPatch) -> None:
     """The check above fails where the search is repeated beyond 0.5 µm whatever the module, as it once was."""
-    original = position_search.shared_position
 
-    def fixed(model: GearModel, *arguments, **options):  # type: ignore[no-untyped-def]
+    def fix_length(model: GearModel, *_: object, **__: object) -> None:
         monkeypatch.setattr(position_search, "RELOCATE", 5e-4 / model.pair.pinion.normal_module)
-        return original(model, *arguments, **options)
 
-    monkeypatch.setattr(pitch_sweep, "shared_position", fixed)
+    monkeypatch.setattr(pitch_sweep, "shared_position", calling_first(position_search.shared_position, fix_length))
     assert fails(lambda: test_size_of_gears(10.0))
 
 
@@ -220,7 +221,9 @@ def test_patch_test_on_distorted_meshes(shape: str, order: int, monkeypatch: pyt
     assert patch_cell(patch, 0.1).error < 1e-9
     original = paired_surfaces.contact_operator
 
-    def interpolated(pairing, first, second, stabiliser, frames):  # type: ignore[no-untyped-def]
+    def interpolated(
+        pairing: Pairing, first: Surface, second: Surface, stabiliser: Floats, frames: Floats
+    ) -> ContactOperator:
         operator = original(pairing, first, second, stabiliser, frames)
         return replace(operator, stabiliser=operator.hat @ stabiliser[operator.nodes])
 

@@ -14,12 +14,14 @@ from evolvent.results.archive.run_folder import MANIFEST
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.summary_rows import RunFacts
+from evolvent.scene.skips import Skipped
 
 GOOD = MeshFacts(0.3, 3.1, 2.0)
 """A mesh that gives no reason for a warning."""
 FACTS = RunFacts(
-    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), ("One pitch is solved.",), Timings(1.0, 2.0), 99.5
-)
+    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), (Skipped("one-pitch", "One pitch is solved."),),
+    Timings(1.0, 2.0), 99.5,
+)  # fmt: skip
 
 
 def store(run: RunData, folder: Path) -> None:

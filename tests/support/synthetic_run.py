@@ -26,7 +26,7 @@ from evolvent.results.archive.archive import GearShape, gear_shape
 from evolvent.results.run_data import RunData, SolvedPosition, run_data
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -60,7 +60,7 @@ def steep_run(*overrides: str) -> RunData:
     """He's spur pair with three times the even load on tip edges: the pressure rises between the last position and the
     limit of a tip-edge zone, and is largest there."""
     even = synthetic_run("sweep.positions=7", *overrides, file="demos/he2022.toml")
-    return replace(even, positions=[tuple(map(_with_loaded_edges, position)) for position in even.positions])
+    return replace(even, positions=tuple(tuple(map(_with_loaded_edges, position)) for position in even.positions))
 
 
 def _with_loaded_edges(solved: SolvedPosition) -> SolvedPosition:
@@ -181,7 +181,7 @@ def layer_points(flank: Surface) -> tuple[Floats, Floats]:
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
 
 
-def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Floats, Floats, Floats]:
+def nodal(stand: Stand, flank: Surface, tooth: int, line: Ridge, friction: float) -> tuple[Ints, Ints, Floats]:
     """Tooth (n,), node (n,) and traction (n, d) [MPa] at the nodes near a tooth's contact line."""
     pair, d = stand.pair, flank.points.shape[1]
     z = flank.points[:, 2] if d == 3 else np.zeros(len(flank.points))

@@ -45,12 +45,12 @@ def relative_radius(radius1: Value, radius2: Value) -> Value:
 # --- line contact: two cylinders, load F' per length ---------------------------------------------------------------
 
 
-def line_half_width(line_load: Value, radius: Value, modulus: float) -> Value:
+def line_half_width(line_load: Value | float, radius: Value, modulus: float) -> Value:
     """b = √(4 F' R / π E*) [mm] (Johnson 4.43). line_load F' [N/mm], radius R [mm], modulus E* [MPa]."""
     return np.sqrt(4 * line_load * radius / (pi * modulus))
 
 
-def line_peak_pressure(line_load: Value, radius: Value, modulus: float) -> Value:
+def line_peak_pressure(line_load: Value | float, radius: Value, modulus: float) -> Value:
     """p0 = √(F' E* / π R) = 2 F' / π b [MPa] (Johnson 4.45)."""
     return np.sqrt(line_load * modulus / (pi * radius))
 

@@ -86,17 +86,19 @@ class Preparation:
 def prepare_model(
     problem: GearProblem,
     comm: MPI.Comm = MPI.COMM_WORLD,
-    mesh: Mesher = gear_mesh,
+    mesh: Mesher | None = None,
     meshed: Callable[[], None] = lambda: None,
 ) -> Preparation:
-    """Meshes and condenses both gears; all ranks of `comm` call it. meshed: called when both are meshed.
+    """Meshes and condenses both gears; all ranks of `comm` call it.
+
+    mesh: makes a sector's mesh, by default `gear_mesh`; meshed: called when both gears are meshed.
 
     Raises MeshError, TooMuchRelief, NotPositiveDefinite, OutOfMemory.
     """
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
-    meshes = together(comm, lambda: {member: mesh(problem, member) for member in own})
+    meshes = together(comm, lambda: {member: (mesh or gear_mesh)(problem, member) for member in own})
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
 

@@ -1,6 +1,7 @@
 """The transverse profile: exact involute, the rack's envelope as fillet, smooth joints."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -126,8 +127,7 @@ def test_full_round_root_has_no_arc() -> None:
     gear = GEARS["He pinion"]
     slope = math.cos(gear.normal_pressure_angle) / (1.0 - math.sin(gear.normal_pressure_angle))
     radius = gear.rack_tip_radius + gear.rack_tip_half_land * slope
-    fields = {name: getattr(gear, name) for name in gear.__dataclass_fields__}
-    profile = Profile(GearParameters(**fields | {"rack_tip_radius": radius - 1e-12}))
+    profile = Profile(replace(gear, rack_tip_radius=radius - 1e-12))
     assert profile.arc_lengths["root"] == pytest.approx(0.0, abs=1e-9)
     end = profile.fillet(0.0)
     assert math.atan2(end[1], end[0]) == pytest.approx(math.pi / gear.z)

@@ -35,6 +35,7 @@ def test_arrays_are_converted_to_the_types_of_the_solver() -> None:
     """float32 points and int32 cells and facets of one triangle become float64 and int64; anything else is kept for
     `check_mesh` to refuse."""
     points, cells = np.eye(3, dtype=np.float32) * [1, 1, 0], np.array([[0, 1, 2]], dtype=np.int32)
-    mesh = MeshData(points.astype(np.float32), "triangle", 1, cells, {"side": cells[:, :2]}, {})
+    single, sides = points.astype(np.float32), {"side": cells[:, :2]}
+    mesh = MeshData(single, "triangle", 1, cells, sides, {})  # type: ignore[arg-type]
     assert (mesh.points.dtype, mesh.cells.dtype, mesh.facets["side"].dtype) == (np.float64, np.int64, np.int64)
     assert MeshData([[0.0]], "triangle", 1, cells, {}, {}).points == [[0.0]]  # type: ignore[arg-type]

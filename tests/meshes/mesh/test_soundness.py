@@ -22,7 +22,7 @@ def _block(shape: str, order: int, count: int = 4) -> MeshData:
 
 
 @pytest.mark.parametrize(("shape", "order"), SHAPES)
-def test_folded_cells_are_counted(shape, order):
+def test_folded_cells_are_counted(shape: str, order: int) -> None:
     """Four inner nodes moved by most of a cell's size: as many cells are refused as have a scaled Jacobian that is not
     above zero, and the worst cell that is named is one of them. The mesh before passes."""
     mesh = _block(shape, order)
@@ -40,7 +40,7 @@ def test_folded_cells_are_counted(shape, order):
     assert bad[worst]
 
 
-def test_thin_cells_pass_and_flat_cells_are_refused():
+def test_thin_cells_pass_and_flat_cells_are_refused() -> None:
     """A cell a millionth as high as it is wide is a cell, one of 1e-13 is flat."""
     mesh = rectangle(1.0, 1.0, 1, 1, 1)
     check_mesh(replace(mesh, points=mesh.points * [1.0, 1e-6, 1.0]), "thin")
@@ -48,7 +48,7 @@ def test_thin_cells_pass_and_flat_cells_are_refused():
         check_mesh(replace(mesh, points=mesh.points * [1.0, 1e-13, 1.0]), "flat")
 
 
-def test_curved_cells_of_any_size_pass():
+def test_curved_cells_of_any_size_pass() -> None:
     """A quarter of a ball in second-order hexahedra: no cell of it is folded, in any size."""
     ball = sphere_quarter(8.0, 2.0, 2.0, 0.4, 0.6, 2)
     for size in (1e-6, 1.0, 1e6):

@@ -13,7 +13,7 @@ from evolvent_meshes.shapes.ellipse import ellipse_block, ellipse_punch
 AXES, CURVATURES, SIDE, SIZE, FINE = (1.0, 0.5), (0.01, 0.03), 6.0, 0.15, 0.7
 
 
-def test_ellipse_block_areas():
+def test_ellipse_block_areas() -> None:
     """The top is a quarter of an ellipse with half-axes 12 and 6 mm, the wedge's sides are 12 x 6 and 6 x 6 mm²."""
     mesh = ellipse_block(AXES, SIDE, SIZE, FINE)
     assert surface_of(mesh, "top").areas().sum() == pytest.approx(np.pi * 12.0 * 6.0 / 4, rel=1e-5)
@@ -22,7 +22,7 @@ def test_ellipse_block_areas():
     assert scaled_jacobians(mesh).min() > 0.3
 
 
-def test_ellipse_punch_lies_on_its_paraboloid():
+def test_ellipse_punch_lies_on_its_paraboloid() -> None:
     """All nodes of the underside lie on z = A x² + B y², those of x = 0 and y = 0 on their planes, the top is flat."""
     mesh = ellipse_punch(AXES, CURVATURES, SIDE, SIZE, FINE)
     x, y, z = mesh.points[np.unique(mesh.facets["arc"])].T
@@ -34,7 +34,7 @@ def test_ellipse_punch_lies_on_its_paraboloid():
 
 
 @pytest.mark.parametrize("group", ["top", "arc"])
-def test_a_ring_of_cells_ends_at_the_ellipse(group):
+def test_a_ring_of_cells_ends_at_the_ellipse(group: str) -> None:
     """No facet reaches across the ellipse: all its nodes are inside, or all outside."""
     block = group == "top"
     mesh = ellipse_block(AXES, SIDE, SIZE, FINE) if block else ellipse_punch(AXES, CURVATURES, SIDE, SIZE, FINE)
@@ -45,7 +45,7 @@ def test_a_ring_of_cells_ends_at_the_ellipse(group):
     assert inside.any() and outside.any()
 
 
-def test_impossible_ellipses_are_refused():
+def test_impossible_ellipses_are_refused() -> None:
     """Exchanged axes, and a paraboloid that rises too high, are refused with what was found."""
     with pytest.raises(MeshError, match=r"found a = 0\.5, b = 1"):
         ellipse_block((0.5, 1.0), SIDE, SIZE, FINE)

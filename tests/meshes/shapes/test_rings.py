@@ -14,7 +14,7 @@ SIDE, HEIGHT, RADIUS, RING, SIZE, FINE = 4.0, 4.0, 8.0, 0.47, 0.12, 0.6
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_ring_block_areas(order):
+def test_ring_block_areas(order: int) -> None:
     """Top and bottom have the area π·4²/4, the wedge's sides 16 mm²; straight-sided cells lose 1.5 % of a circle."""
     mesh = ring_block(SIDE, HEIGHT, RING, SIZE, FINE, order)
     circle = pytest.approx(np.pi * SIDE**2 / 4, rel=0.02 if order == 1 else 1e-5)
@@ -25,7 +25,7 @@ def test_ring_block_areas(order):
     assert scaled_jacobians(mesh).min() > 0.5
 
 
-def test_ring_sphere_area_and_arc():
+def test_ring_sphere_area_and_arc() -> None:
     """The spherical cap over the radius 4 mm has the area 2πRh/4; its nodes are on the sphere."""
     mesh = ring_sphere(RADIUS, SIDE, HEIGHT, RING, SIZE, FINE)
     cap = RADIUS - np.sqrt(RADIUS**2 - SIDE**2)
@@ -35,7 +35,7 @@ def test_ring_sphere_area_and_arc():
     assert scaled_jacobians(mesh).min() > 0.5
 
 
-def test_a_ring_of_cells_ends_at_the_ring():
+def test_a_ring_of_cells_ends_at_the_ring() -> None:
     """No facet of the top reaches across the circle: a facet has all its nodes inside it, or all outside."""
     mesh = ring_block(SIDE, HEIGHT, RING, SIZE, FINE)
     radius = np.hypot(*mesh.points[mesh.facets["top"], :2].T).T
@@ -44,7 +44,7 @@ def test_a_ring_of_cells_ends_at_the_ring():
     assert mesh.points[mesh.facets["top"][inside]].size > 0
 
 
-def test_ring_block_cell_sizes():
+def test_ring_block_cell_sizes() -> None:
     """Edges on the top are at most `size` long up to the ring, and r/ring times that from there to the end of the fine
     zone at r = 2 ring; there some are longer than 1.5 `size`, because the cells widen with the radius."""
     mesh = ring_block(SIDE, HEIGHT, RING, SIZE, 2 * RING, order=1)
@@ -57,7 +57,7 @@ def test_ring_block_cell_sizes():
     assert edges[fine].max() > 1.5 * SIZE
 
 
-def test_impossible_rings_are_refused():
+def test_impossible_rings_are_refused() -> None:
     """A ring outside the fine zone, and a sphere that rises too high, are refused with what was found."""
     with pytest.raises(MeshError, match=r"found ring 0\.7"):
         ring_block(SIDE, HEIGHT, 0.7, SIZE, FINE)

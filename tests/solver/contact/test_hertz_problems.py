@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow  # the solutions on fine meshes that all are compa
 
 @pytest.mark.parametrize("ratio", [1.0, 0.73, 1.37])
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_cylinder_on_block_agrees_with_an_overkill_solution(first, ratio):
+def test_cylinder_on_block_agrees_with_an_overkill_solution(first: str, ratio: float) -> None:
     """NAFEMS 1 at h = a/8, order 2, matching and non-matching: p0 within 1 %, the profile within 2.5 % in L2. On the
     cylinder a cell ends at Hertz' edge."""
     found, overkill = line.pressed(line.cylinder_on_block(8, 2, ratio, first)), line.overkill(first)
@@ -34,7 +34,7 @@ def test_cylinder_on_block_agrees_with_an_overkill_solution(first, ratio):
 
 
 @pytest.mark.parametrize("cells", [7.3, 8.6])
-def test_skew_variant_resolves_an_edge_of_contact_inside_a_cell(cells):
+def test_skew_variant_resolves_an_edge_of_contact_inside_a_cell(cells: float) -> None:
     """NAFEMS 1 with the edge of contact inside a cell of the cylinder, about a/8: the symmetric method's profile is
     within 7 %, the skew one's with γ = 0.3 C within 2 %; p0 of both within 0.5 %."""
     problem, overkill = line.cylinder_on_block(cells, 2, 1.37, "cylinder"), line.overkill("cylinder")
@@ -46,7 +46,7 @@ def test_skew_variant_resolves_an_edge_of_contact_inside_a_cell(cells):
 
 
 @pytest.mark.parametrize("shape", ["triangle"])
-def test_cylinder_on_block_of_triangles_agrees_with_an_overkill_solution(shape):
+def test_cylinder_on_block_of_triangles_agrees_with_an_overkill_solution(shape: str) -> None:
     """The same bounds with second-order triangles."""
     found = line.pressed(line.cylinder_on_block(8, 2, 1.37, "block", shape=shape))
     assert found.peak == pytest.approx(line.overkill("block").peak, rel=0.01)
@@ -54,7 +54,7 @@ def test_cylinder_on_block_of_triangles_agrees_with_an_overkill_solution(shape):
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_overkill_solution_of_the_cylinder_is_close_to_hertz(first):
+def test_overkill_solution_of_the_cylinder_is_close_to_hertz(first: str) -> None:
     """The overkill solution itself: p0 within 0.5 % of Hertz' 3585.36 MPa and the profile within 1.5 %. The rest is the
     finite block, the held half-disc, and a contact whose normals turn by 7°."""
     overkill = line.overkill(first)
@@ -76,7 +76,7 @@ def test_error_falls_with_order_1_and_the_finer_body_first() -> None:
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
-def test_partial_slip_of_the_cylinder_agrees_with_cattaneo(first):
+def test_partial_slip_of_the_cylinder_agrees_with_cattaneo(first: str) -> None:
     """Cattaneo: P first, then Q = μP/2. The traction within 5 % (block's normals) or 8 % in L2, the stick zone within a
     node of c = a√(1 − Q/μP), the resultants exact."""
     slip = line.Slip()
@@ -99,7 +99,7 @@ def test_push_beyond_the_friction_force_has_no_equilibrium() -> None:
 
 
 @pytest.mark.parametrize(("cells", "first"), [(3, "block"), (3, "ball"), (2, "block")])
-def test_ball_on_block_agrees_with_hertz(cells, first):
+def test_ball_on_block_agrees_with_hertz(cells: float, first: str) -> None:
     """R = 8 mm, 2000 N, a quarter, non-matching hexahedra of order 2 in rings: p0 within 0.5 % of Hertz' 4318 MPa; the
     load comes back, and friction between equal materials changes p0 by less than 0.5 %."""
     contact = solve(point.ball_on_block(cells, first=first)).contacts[0]

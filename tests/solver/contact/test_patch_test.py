@@ -16,7 +16,7 @@ SHAPES = ("quadrilateral", "triangle", "hexahedron", "tetrahedron")
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("first", [0, 1])
-def test_uniform_pressure_passes_non_matching_meshes(shape, order, first):
+def test_uniform_pressure_passes_non_matching_meshes(shape: str, order: int, first: int) -> None:
     """Two blocks of different stiffness on rollers under p = 100 MPa: λ = p at every interface node."""
     patch = Patch(shape, order, first)
     assert patch.errors(solve(patch.problem())).max() < 1e-6
@@ -24,14 +24,14 @@ def test_uniform_pressure_passes_non_matching_meshes(shape, order, first):
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_uniform_pressure_and_shear_pass_with_sticking_friction(shape, order):
+def test_uniform_pressure_and_shear_pass_with_sticking_friction(shape: str, order: int) -> None:
     """The same with a shear of 20 MPa < μp and an upper block that nothing but friction holds: λ = p and τ = 20."""
     patch = Patch(shape, order, first=1, friction=FRICTION)
     assert patch.errors(solve(patch.problem())).max() < 1e-6
 
 
 @pytest.mark.parametrize("shape", ["triangle", "hexahedron"])
-def test_traction_rotates_with_the_placements(shape):
+def test_traction_rotates_with_the_placements(shape: str) -> None:
     """Both bodies turned by 0.7 rad about the origin by their placements: the traction turns with them."""
     patch = Patch(shape, 2, friction=FRICTION)
     R = np.eye(patch.d)
@@ -42,7 +42,7 @@ def test_traction_rotates_with_the_placements(shape):
 
 
 @pytest.mark.parametrize("shape", ["quadrilateral", "tetrahedron"])
-def test_uniform_pressure_passes_rotated_meshes(shape):
+def test_uniform_pressure_passes_rotated_meshes(shape: str) -> None:
     """The nodes themselves turned by 25°, the tractions with them: the same λ = p.
 
     The upper block is free (friction holds it), the lower one clamped; ν = 0, so the clamp does not disturb.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
@@ -9,19 +11,20 @@ import scipy.sparse.linalg as spla
 from evolvent.fem.body import DIRECTIONS, Body, BodyForce, Fixed, Freedom, Rigid, Traction, assemble
 from evolvent.fem.material import Material
 from evolvent.fem.rigid_modes import rigid_modes
+from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 
 CASES = [(s, o) for s in ("triangle", "quadrilateral", "tetrahedron", "hexahedron") for o in (1, 2)]
 
 
-def _block(shape: str, order: int):
+def _block(shape: str, order: int) -> MeshData:
     if shape in ("triangle", "quadrilateral"):
         return rectangle(3.0, 2.0, 3, 2, order, shape)
     return box((3.0, 2.0, 2.0), (3, 2, 2), order, shape)
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_energy_of_a_uniform_strain(shape, order):
+def test_energy_of_a_uniform_strain(shape: str, order: int) -> None:
     """u = εx: uᵀKu = V ε:σ(ε) for any ε, and K is symmetric."""
     mesh, material = _block(shape, order), Material(200e3, 0.25)
     K, d = assemble(Body(mesh, material)).stiffness, mesh.dimension
@@ -35,7 +38,7 @@ def test_energy_of_a_uniform_strain(shape, order):
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_rigid_motions_cost_nothing(shape, order):
+def test_rigid_motions_cost_nothing(shape: str, order: int) -> None:
     """K times a small rigid motion is zero, to rounding."""
     mesh = _block(shape, order)
     K = assemble(Body(mesh)).stiffness
@@ -44,7 +47,7 @@ def test_rigid_motions_cost_nothing(shape, order):
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_resultant_of_a_traction(shape, order):
+def test_resultant_of_a_traction(shape: str, order: int) -> None:
     """A traction's nodal forces add up to traction times area, and act in the middle of the face."""
     mesh = _block(shape, order)
     d = mesh.dimension
@@ -57,11 +60,11 @@ def test_resultant_of_a_traction(shape, order):
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_uniaxial_strain_of_a_column(shape, order):
+def test_uniaxial_strain_of_a_column(shape: str, order: int) -> None:
     """Pressed between rollers: u_y = −p (1+ν)(1−2ν)/((1−ν)E) y with all sides held (uniaxial strain)."""
     mesh, material = _block(shape, order), Material(100e3, 0.3)
     up = "xyz"[mesh.dimension - 1]
-    sides = (Fixed("left", "x"), Fixed("right", "x"))
+    sides: tuple[Fixed, ...] = (Fixed("left", "x"), Fixed("right", "x"))
     sides += () if mesh.dimension == 2 else (Fixed("front", "y"), Fixed("back", "y"))
     load = Traction("top", (0.0,) * (mesh.dimension - 1) + (-50.0,))
     a = assemble(Body(mesh, material, (*sides, Fixed("bottom", up)), (load,)))
@@ -74,7 +77,7 @@ def test_uniaxial_strain_of_a_column(shape, order):
 
 
 @pytest.mark.parametrize("shape", ["quadrilateral", "hexahedron"])
-def test_floating_body_has_its_rigid_motions_as_unknowns(shape):
+def test_floating_body_has_its_rigid_motions_as_unknowns(shape: str) -> None:
     """Without supports all rigid motions are unknowns, and as many degrees of freedom are pinned: K is then regular,
     and a load's resultant is the load of the motions."""
     mesh = _block(shape, 1)
@@ -87,7 +90,7 @@ def test_floating_body_has_its_rigid_motions_as_unknowns(shape):
     assert np.allclose(a.motions.load, np.einsum("ndr,nd->r", a.motions.shapes, a.load.reshape(-1, d)))
 
 
-def test_partly_supported_body_keeps_what_is_left():
+def test_partly_supported_body_keeps_what_is_left() -> None:
     """Rollers below leave a plane body one shift: exactly that motion is free, and it is the shift along x."""
     mesh = _block("quadrilateral", 1)
     motions = assemble(Body(mesh, supports=(Fixed("bottom", "y"),))).motions
@@ -97,7 +100,7 @@ def test_partly_supported_body_keeps_what_is_left():
     assert np.abs(shape[:, 1]).max() < 1e-10 * abs(shape[0, 0])
 
 
-def test_rigid_coupling_turns_about_its_centre():
+def test_rigid_coupling_turns_about_its_centre() -> None:
     """The coupled group is at rest in its frame; a rotation about the coupling's centre is e_z × (x − c)."""
     mesh = _block("triangle", 2)
     rigid = Rigid("top", (Freedom("rz", load=5.0), Freedom("x", displacement=0.1)), centre=(1.0, 2.0, 0.0))
@@ -112,7 +115,7 @@ def test_rigid_coupling_turns_about_its_centre():
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_weight_of_a_column(shape, order):
+def test_weight_of_a_column(shape: str, order: int) -> None:
     """A standing column, ν = 0, of length L under f = ϱg: u(z) = −f (L z − z²/2)/E, which second-order cells have
     exactly; the load adds up to f times the volume in all."""
     mesh = _block(shape, order)
@@ -129,7 +132,7 @@ def test_weight_of_a_column(shape, order):
     assert order == 1 or np.allclose(u.reshape(-1, d)[:, -1], exact, atol=1e-10 * np.abs(exact).max())
 
 
-def test_prescribed_displacement_of_a_face():
+def test_prescribed_displacement_of_a_face() -> None:
     """A face that moves by a prescribed displacement is held there, the others of its directions are free; of two
     supports that agree at a node both hold it."""
     mesh = _block("quadrilateral", 2)
@@ -155,7 +158,7 @@ def test_prescribed_displacement_of_a_face():
         ),
     ],
 )
-def test_impossible_bodies_are_refused(make, message):
+def test_impossible_bodies_are_refused(make: Callable[[MeshData], object], message: str) -> None:
     """Unknown facet groups, a motion that a plane body has not, a support against a rigid coupling: ValueError that
     names what was found."""
     with pytest.raises(ValueError, match=message):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from evolvent.fem.boundary import BodyForce, Fixed, Freedom, Rigid, Traction
@@ -25,7 +27,7 @@ def test_freedom_has_a_load_or_a_displacement(values: dict[str, float]) -> None:
         (lambda: Rigid("top", (Freedom("x", load=1.0), Freedom("x", load=2.0))), "each freedom once"),
     ],
 )
-def test_impossible_conditions_are_refused(make, message) -> None:
+def test_impossible_conditions_are_refused(make: Callable[[], object], message: str) -> None:
     """Each is a ValueError that names what was wanted."""
     with pytest.raises(ValueError, match=message):
         make()

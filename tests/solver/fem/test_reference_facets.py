@@ -12,7 +12,7 @@ CELLS = [(s, o) for s in ("interval", "quadrilateral", "triangle") for o in (1, 
 
 
 @pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_hats_and_shape_functions_are_bases(shape, order):
+def test_hats_and_shape_functions_are_bases(shape: str, order: int) -> None:
     """Both families are 1 at their own node, 0 at the others, sum to one; hats are not negative."""
     nodes = reference_cell(shape, order).nodes
     xi = np.random.default_rng(0).dirichlet(np.ones(3), 200)[:, : nodes.shape[1]]
@@ -25,7 +25,7 @@ def test_hats_and_shape_functions_are_bases(shape, order):
 
 
 @pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_hats_are_linear_on_subfacets(shape, order):
+def test_hats_are_linear_on_subfacets(shape: str, order: int) -> None:
     """ψ of order 2 restricted to a sub-facet equals the order 1 shape functions of that sub-facet at its corners."""
     cell = reference_cell(shape, order)
     xi = np.random.default_rng(1).dirichlet(np.ones(3), 50)[:, : cell.nodes.shape[1]]
@@ -36,14 +36,14 @@ def test_hats_are_linear_on_subfacets(shape, order):
         assert np.allclose(hats(shape, order, weight @ tensor), expected, atol=1e-14)
 
 
-def test_subcell_rule_integrates_hats_exactly():
+def test_subcell_rule_integrates_hats_exactly() -> None:
     """∫ψ_j over the reference triangle of order 2: sub-facets of area 1/8; corners own 1/24, mid-sides 3/24."""
     xi, w = subcell_rule("triangle", 2, 1)
     assert np.allclose(w @ hats("triangle", 2, xi), np.array([1, 1, 1, 3, 3, 3]) / 24, atol=1e-15)
 
 
 @pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_turning_a_facet_over_keeps_its_points(shape, order):
+def test_turning_a_facet_over_keeps_its_points(shape: str, order: int) -> None:
     """The turned facet has the same nodes at mirrored reference points, and the opposite normal."""
     nodes = reference_cell(shape, order).nodes
     mirrored = 1.0 - nodes if nodes.shape[1] == 1 else nodes[:, ::-1]

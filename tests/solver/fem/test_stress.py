@@ -16,7 +16,7 @@ from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_rectangle, re
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["triangle", "quadrilateral", "tetrahedron", "hexahedron"])
-def test_cell_stress_of_a_uniform_strain(shape, order):
+def test_cell_stress_of_a_uniform_strain(shape: str, order: int) -> None:
     """u = εx: σ = λ tr ε I + 2με in every cell; plane cells have σ_zz = ν(σ_xx + σ_yy)."""
     plane = shape in ("triangle", "quadrilateral")
     mesh = rectangle(2.0, 1.0, 3, 2, order, shape) if plane else box((2.0, 1.0, 1.0), (2, 2, 1), order, shape)
@@ -31,7 +31,7 @@ def test_cell_stress_of_a_uniform_strain(shape, order):
         assert np.allclose(stress[:, 2, 2], 0.3 * (stress[:, 0, 0] + stress[:, 1, 1]))
 
 
-def test_von_mises_stress_of_known_states():
+def test_von_mises_stress_of_known_states() -> None:
     """Uniaxial tension gives its own value, pure shear √3 times it, a hydrostatic pressure nothing."""
     tension, shear = np.diag([200.0, 0.0, 0.0]), np.zeros((3, 3))
     shear[0, 1] = shear[1, 0] = 100.0
@@ -39,7 +39,7 @@ def test_von_mises_stress_of_known_states():
     assert np.allclose(stress, [200.0, np.sqrt(3.0) * 100.0, 0.0])
 
 
-def test_largest_von_mises_stress_below_a_line_contact():
+def test_largest_von_mises_stress_below_a_line_contact() -> None:
     """The largest von Mises stress of a line contact is 0.5575 p0 at 0.704 b (ν = 0.3): within 1 %, and the depth
     within the cell's size, for a/R = 0.01."""
     slip = Slip()

@@ -8,6 +8,7 @@ import pytest
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, surface_of
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.meshes.surface_shapes import curve, lattice
@@ -16,13 +17,13 @@ CELLS = [(s, o) for s in ("interval", "quadrilateral", "triangle") for o in (1, 
 FACES = [c for c in CELLS if c[0] != "interval"]
 
 
-def flat(u, v):
+def flat(u: Floats, v: Floats) -> Floats:
     """(u, v) -> the rectangle 3 × 2 mm at z = 0."""
     return np.stack([3.0 * u, 2.0 * v, 0.0 * u], axis=1)
 
 
 @pytest.mark.parametrize(("shape", "order"), CELLS)
-def test_surface_is_evaluated_by_its_shape_functions(shape, order):
+def test_surface_is_evaluated_by_its_shape_functions(shape: str, order: int) -> None:
     """A surface's monomial evaluation of a random facet equals ΣN_k x_k and its derivatives by basix."""
     rng = np.random.default_rng(2)
     k, dt = reference_cell(shape, order).nodes.shape
@@ -35,7 +36,7 @@ def test_surface_is_evaluated_by_its_shape_functions(shape, order):
 
 
 @pytest.mark.parametrize(("shape", "order"), FACES)
-def test_mass_integrates_quadratics_against_hats(shape, order):
+def test_mass_integrates_quadratics_against_hats(shape: str, order: int) -> None:
     """On a flat 3 × 2 rectangle Σ_jk M_jk q(x_k) = ∫q for q in the facets' space; row sums are m_j > 0.
 
     q = 1 + x + y (order 1): 6 + 9 + 6 = 21; with x² + xy added (order 2): + 18 + 9 = 48.
@@ -49,7 +50,7 @@ def test_mass_integrates_quadratics_against_hats(shape, order):
     assert s.areas().sum() == pytest.approx(6.0, rel=1e-14)
 
 
-def test_weights_of_second_order_quadrilaterals_are_those_of_the_node_grid():
+def test_weights_of_second_order_quadrilaterals_are_those_of_the_node_grid() -> None:
     """On 4 × 3 quad9 facets over 3 × 2: interior nodes own h_x h_y = (3/8)(2/6), edge nodes half, corners a quarter."""
     s = lattice(4, 3, "quadrilateral", 2, flat)
     sides = np.isin(s.points[:, 0], [0.0, 3.0]).astype(int) + np.isin(s.points[:, 1], [0.0, 2.0])
@@ -57,13 +58,13 @@ def test_weights_of_second_order_quadrilaterals_are_those_of_the_node_grid():
 
 
 @pytest.mark.parametrize(("shape", "order"), FACES)
-def test_sphere_area_and_normals_converge(shape, order):
+def test_sphere_area_and_normals_converge(shape: str, order: int) -> None:
     """A patch of the unit sphere, longitude and latitude within ±0.4: area 0.8·2 sin 0.4, normal = position.
 
     Doubling the facets divides the error of the area by 4 (order 1) or 16 (order 2), that of the nodal normals inside
     by 16 on quad9, where the slopes of neighbours err oppositely, and by about 4 on all others.
     """
-    def place(u, v):
+    def place(u: Floats, v: Floats) -> Floats:
         λ, φ = 0.8 * u - 0.4, 0.8 * v - 0.4
         return np.stack([np.cos(φ) * np.cos(λ), np.cos(φ) * np.sin(λ), np.sin(φ)], axis=1)
 
@@ -78,7 +79,7 @@ def test_sphere_area_and_normals_converge(shape, order):
     assert normal[0] / normal[1] > (14 if (shape, order) == ("quadrilateral", 2) else 3.3)
 
 
-def test_circle_length_and_normals():
+def test_circle_length_and_normals() -> None:
     """Second-order facets on a quarter of a circle of radius 2, run clockwise: length π to O(h⁴), normals radial."""
     errors = []
     for n in (4, 8):
@@ -88,7 +89,7 @@ def test_circle_length_and_normals():
     assert errors[0] / errors[1] > 14
 
 
-def test_moved_surface_has_turned_points_and_normals():
+def test_moved_surface_has_turned_points_and_normals() -> None:
     """A turn by 30° about z and a shift: points and normals follow, weights stay."""
     s = lattice(3, 3, "triangle", 2, lambda u, v: np.stack([u, v, 0.2 * u * v], axis=1))
     c, k = np.cos(np.pi / 6), 0.5
@@ -122,7 +123,7 @@ def brick() -> MeshData:
     return MeshData(points, "hexahedron", 2, np.arange(27)[None], groups, {"all": np.array([0])})
 
 
-def test_surface_of_a_brick_points_outwards():
+def test_surface_of_a_brick_points_outwards() -> None:
     """Unit cube: area 6, every facet's normal at its centre along its outward axis, whichever way gmsh listed it."""
     s = surface_of(brick(), "skin")
     assert s.areas() == pytest.approx(np.ones(6), rel=1e-13)
@@ -134,7 +135,7 @@ def test_surface_of_a_brick_points_outwards():
     assert np.allclose(brick().points[top.nodes], top.points)
 
 
-def test_surface_of_plane_quadratic_triangles():
+def test_surface_of_plane_quadratic_triangles() -> None:
     """A 2D tri6 cell with corners (0,0), (2,0), (0,1): the hypotenuse, listed either way, looks along (1, 2)/√5."""
     corners = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0]], float)
     points = np.vstack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))])
@@ -145,7 +146,7 @@ def test_surface_of_plane_quadratic_triangles():
         assert s.weights().sum() == pytest.approx(np.sqrt(5))
 
 
-def test_surface_of_unusable_groups_is_refused():
+def test_surface_of_unusable_groups_is_refused() -> None:
     """Unknown and empty groups and facets between two cells are refused, with the names that exist."""
     with pytest.raises(ValueError, match=r"groups none, skin, top, found 'flank'"):
         surface_of(brick(), "flank")
@@ -156,7 +157,7 @@ def test_surface_of_unusable_groups_is_refused():
     with pytest.raises(ValueError, match=r"one cell behind each.* found 2 behind"):
         surface_of(mesh, "cut")
     with pytest.raises(ValueError, match="not finite"):
-        Surface.from_arrays([[0, 0], [np.nan, 1]], [[0, 1]], "interval", 1)
+        Surface.from_arrays([[0.0, 0.0], [np.nan, 1.0]], [[0, 1]], "interval", 1)
 
 
 @pytest.mark.parametrize("order", [1, 2])

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from mpi4py import MPI
@@ -21,6 +20,7 @@ from evolvent.run.pitch_run import ScenePitch, friction_groups, sweep_scene
 from evolvent.run.start import resume_point
 from evolvent.scene.scene import Scene
 from tests.support.gear_cases import spur_scene
+from tests.support.running.patches import calling_first
 
 
 @pytest.fixture
@@ -33,12 +33,8 @@ def run(tmp_path: Path) -> Iterator[RunContext]:
 @pytest.fixture
 def prepared(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """One entry for each time that the gears are condensed."""
-    original, calls = start.prepare_model, list[int]()
-
-    def counted(*arguments: Any, **options: Any) -> Any:
-        calls.append(len(calls))
-        return original(*arguments, **options)
-
+    calls: list[int] = []
+    counted = calling_first(start.prepare_model, lambda *_, **__: calls.append(len(calls)))
     monkeypatch.setattr(start, "prepare_model", counted)
     return calls
 

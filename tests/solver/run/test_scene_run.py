@@ -32,7 +32,9 @@ def assert_same(found: list[dict[str, object]], wanted: list[dict[str, object]])
         assert one.keys() == other.keys()
         for name in other.keys() - {"seconds", "newton_iterations", "balance_error", "teeth"}:
             assert one[name] == pytest.approx(other[name], rel=1e-8, abs=1e-8), name
-        for one_tooth, other_tooth in zip(one["teeth"], other["teeth"], strict=True):  # type: ignore[call-overload]
+        teeth, other_teeth = one["teeth"], other["teeth"]
+        assert isinstance(teeth, list) and isinstance(other_teeth, list)
+        for one_tooth, other_tooth in zip(teeth, other_teeth, strict=True):
             assert one_tooth == pytest.approx(other_tooth, rel=1e-8, abs=1e-8, nan_ok=True)
 
 

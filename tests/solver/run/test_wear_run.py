@@ -159,8 +159,10 @@ def test_helical_pair_wears_in_the_ratio_of_coefficients(blocks_: str, run_scrip
     K/H and of how often a tooth meets, and the map of the worn flanks drawn where pictures are asked for."""
     scene = tmp_path / "helical.toml"
     scene.write_text(HELICAL, encoding="utf-8")
-    settings = (*WEAR, "--set", "contact.friction=0.1", "--set", "sweep.positions=4", "--set", f"wear.blocks={blocks_}")
-    settings += ("--set", "wear.cycles=1.2e5")
+    settings = (
+        *WEAR, "--set", "contact.friction=0.1", "--set", "sweep.positions=4", "--set", f"wear.blocks={blocks_}",
+        "--set", "wear.cycles=1.2e5",
+    )  # fmt: skip
     out = tmp_path / "out"
     drawn = blocks_ == "implicit"
     computed(run_script, out, *settings, "--set", f"output.pictures={str(drawn).lower()}", scene=str(scene))

@@ -28,6 +28,7 @@ from evolvent.scene.scene import Scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import SKIPS, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
+from tests.support.running.patches import calling_first
 from tests.support.running.processes import Run
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")
@@ -178,8 +179,8 @@ def test_the_body_is_refined() -> None:
 def test_gears_are_condensed_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Without reuse both gears are condensed for each of two friction coefficients."""
     made: list[int] = []
-    original = gear_model.condensed_gear
-    monkeypatch.setattr(gear_model, "condensed_gear", lambda *a, **k: made.append(1) or original(*a, **k))
+    counted = calling_first(gear_model.condensed_gear, lambda *_, **__: made.append(1))
+    monkeypatch.setattr(gear_model, "condensed_gear", counted)
     counts = []
     for off in (False, True):
         made.clear()

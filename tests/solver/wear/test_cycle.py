@@ -11,6 +11,7 @@ from evolvent import ContactResult, Material, solve
 from evolvent.wear import Archard, Cycle, Travel, WearStudy
 from evolvent.wear.cycle import WornCycle, solve_cycle
 from evolvent.wear.worn_geometry import WornGeometry
+from tests.support.running.patches import calling_first
 from tests.support.wear_cases import LINE_LOAD, K, cylinder, to_and_fro
 
 TRAVEL = Cycle(travel=(Travel(1, translation=(1.0, 0.0, 0.0)),))
@@ -34,14 +35,8 @@ def test_each_step_is_searched_once_for_all_depths(
 ) -> None:
     """Problem: two cycles at different depths on the same meshes. Exact: pairs do not depend on the worn depth, so each
     step's system is made once in all, also where a cycle of slip is solved twice."""
-    kind = type(geometry().systems[0])
-    make, made = kind.__init__, []
-
-    def counted(system: object, *given: object, **named: object) -> None:
-        made.append(system)
-        make(system, *given, **named)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(kind, "__init__", counted)
+    kind, made = type(geometry().systems[0]), list[object]()
+    monkeypatch.setattr(kind, "__init__", calling_first(kind.__init__, lambda system, *_, **__: made.append(system)))
     study = WearStudy(cylinder(3.0), (Archard(K),), cycle)
     for depth in (0.0, 1e-4):
         study.evaluate(np.full(len(study.areas), depth))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -9,12 +10,13 @@ import numpy as np
 
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.paper_pairs import he, yang, zhang
 
-GEARS = {
+GEARS: dict[str, tuple[Callable[[], GearPair], int]] = {
     "yang pinion": (yang, 0),
     "yang wheel": (yang, 1),
     "he": (he, 0),

@@ -26,7 +26,8 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import count
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -39,6 +40,10 @@ from evolvent.gears.solution import certificates
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
 from evolvent.results.archive.archive import Archive
 from evolvent_meshes import files
+from tests.support.running.patches import calling_first, with_result
+
+if TYPE_CHECKING:
+    from _typeshed import FileDescriptorLike
 
 
 def kill() -> None:
@@ -46,15 +51,10 @@ def kill() -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def before_call(module: Any, name: str, action: Callable[[int], None]) -> None:
+def before_call(module: ModuleType | type, name: str, action: Callable[[int], None]) -> None:
     """Calls action(n) before the n-th call of a function of a module, n = 1, 2, ..."""
-    original, numbers = getattr(module, name), count(1)
-
-    def patched(*arguments: Any, **options: Any) -> Any:
-        action(next(numbers))
-        return original(*arguments, **options)
-
-    setattr(module, name, patched)
+    numbers = count(1)
+    setattr(module, name, calling_first(getattr(module, name), lambda *_, **__: action(next(numbers))))
 
 
 def kill_when(wanted: int) -> Callable[[int], None]:
@@ -72,27 +72,24 @@ def kill_before_renaming() -> None:
 
 def kill_half_written() -> None:
     """Truncates the file to its half when it is flushed, after its line in the manifest; then kills."""
-    fsync, numbers = os.fsync, count(1)
+    numbers = count(1)
 
-    def patched(descriptor: int) -> None:
+    def halved(fd: FileDescriptorLike) -> None:
         if next(numbers) == 2:
+            descriptor = fd if isinstance(fd, int) else fd.fileno()
             os.ftruncate(descriptor, os.fstat(descriptor).st_size // 2)
             kill()
-        fsync(descriptor)
 
-    files.os.fsync = patched
+    files.os.fsync = calling_first(os.fsync, halved)
 
 
 def disk_full() -> None:
     """No space for the file, but for its line in the manifest."""
-    fsync, numbers = os.fsync, count(1)
-
-    def patched(descriptor: int) -> None:
-        if next(numbers) == 2:
+    def full(number: int) -> None:
+        if number == 2:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        fsync(descriptor)
 
-    files.os.fsync = patched
+    before_call(files.os, "fsync", full)
 
 
 def failing_rank(rank: int, wanted: int) -> Callable[[int], None]:
@@ -113,11 +110,10 @@ def no_number(wanted: int) -> None:
     at: list[int] = []
     before_call(pitch_sweep, "shared_position", lambda _: at.append(next(numbers)))
 
-    def patched(self: GearContact, *arguments: Any, **options: Any) -> CondensedSystem:
-        condensed = system(self, *arguments, **options)
+    def without_number(condensed: CondensedSystem) -> CondensedSystem:
         return replace(condensed, jump=condensed.jump * np.nan) if at[-1] >= wanted else condensed
 
-    setattr(GearContact, "system", patched)  # noqa: B010
+    setattr(GearContact, "system", with_result(system, without_number))  # noqa: B010
 
 
 def break_it(how: str) -> None:
@@ -152,7 +148,8 @@ def break_it(how: str) -> None:
 
 if __name__ == "__main__":
     how = sys.argv[1]
-    condensed, searched = [], []
+    condensed: list[int] = []
+    searched: list[int] = []
     if how == "count":
         before_call(gear_model, "condensed_gear", condensed.append)
         for module in (pitch_sweep, parallel_sweep):

@@ -7,22 +7,26 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import pytest
 
 from tests.support.checkout import PYTHONPATH, ROOT
 
 Done = subprocess.CompletedProcess[str]
-Run = Callable[..., Done]
-"""The fixture `run_script`, see `run_script` below."""
 BROKEN_RUN = "tests/support/running/broken_run.py"
 """Script that runs a scene with something going wrong, for `run_script`."""
 MARKED = "EVOLVENT_TEST_STARTS_MPIRUN"
 """Environment variable that is set while a test marked `mpi` runs; see conftest.py."""
+
+
+class Run(Protocol):
+    """The fixture `run_script`, see `run_script` below."""
+
+    def __call__(self, script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> Done: ...
 
 
 def run_script(script: str, *arguments: str, ranks: int = 1, timeout: float = 300.0) -> Done:

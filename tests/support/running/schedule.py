@@ -5,12 +5,12 @@ A worker that gets a long file last works alone at the end. How long a file take
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from pathlib import Path
-from typing import Any
 
 import pytest
 from xdist.scheduler import LoadFileScheduling
+from xdist.workermanage import WorkerController
 
 SLOW, MPI, OTHER = 20.0, 5.0, 0.3
 """Seconds of a test marked `slow`, of one marked `mpi`, and of any other, about."""
@@ -18,18 +18,18 @@ SLOW, MPI, OTHER = 20.0, 5.0, 0.3
 
 def longest_files_first(items: list[pytest.Item]) -> None:
     """Sorts collected tests; those of a file stay together, in their order."""
-    seconds: Counter[Path] = Counter()
+    seconds: defaultdict[Path, float] = defaultdict(float)
     for item in items:
         marks = {mark.name for mark in item.iter_markers()}
-        seconds[item.path] += SLOW if "slow" in marks else MPI if "mpi" in marks else OTHER  # type: ignore[assignment]
+        seconds[item.path] += SLOW if "slow" in marks else MPI if "mpi" in marks else OTHER
     items.sort(key=lambda item: (-seconds[item.path], str(item.path)))
 
 
-class CollectedOrder(LoadFileScheduling):  # type: ignore[misc]
+class CollectedOrder(LoadFileScheduling):
     """A file goes to one worker, for its tests share what is costly to compute; files go out as they were collected.
     xdist itself sends those with the most tests first, in some of its versions."""
 
-    def _assign_work_unit(self, node: Any) -> None:
+    def _assign_work_unit(self, node: WorkerController) -> None:
         place = {name: number for number, name in enumerate(self.collection)}
         first = min(self.workqueue, key=lambda file: place[next(iter(self.workqueue[file]))])
         self.workqueue.move_to_end(first, last=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
@@ -35,7 +36,7 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     """Rows of every kind, in and out of their bars: the page holds ratios of the rows (30/10, 25/1, one of two inside),
     names the skip beyond its tolerance, and leaves out what was not measured."""
     nan = float("nan")
-    rows = {
+    rows: dict[str, Sequence[object]] = {
         "skips": [SkipRow("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],

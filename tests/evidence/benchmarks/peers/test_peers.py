@@ -9,7 +9,7 @@ import pytest
 
 from evidence.benchmarks.comparison.evolvent_program import solved
 from evidence.benchmarks.comparison.pressure import Pressure, Reference
-from evidence.benchmarks.comparison.programs import PEERS, solve
+from evidence.benchmarks.comparison.programs import PEERS, Program, solve
 from evidence.benchmarks.comparison.round_contacts import cylinder, sphere
 from evidence.benchmarks.peers.calculix import FACES, deck, element_faces
 from evidence.benchmarks.peers.nodal_normals import nodal_normals
@@ -50,7 +50,7 @@ def test_normals_of_the_ball_point_away_from_its_centre() -> None:
 
 
 @pytest.mark.parametrize("program", PEERS, ids=lambda p: p.name)
-def test_installed_peers_solve_the_same_problem(program, tmp_path: Path) -> None:
+def test_installed_peers_solve_the_same_problem(program: Program, tmp_path: Path) -> None:
     """On the same coarse mesh, cells of a/8 (2D) or a/4 (3D) at order 1, a peer's force is Evolvent's within 3 % (a
     penalty of 1e7 N/mm³ takes 1 to 2 % of it) and its profile within 15 %: a wrong group, sign or unit is far off."""
     if not program.available():

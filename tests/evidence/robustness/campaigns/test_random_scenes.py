@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -12,8 +13,11 @@ from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.robustness.campaigns.scene_outcomes import Verdict, outcome_of
 from evidence.robustness.campaigns.summaries import scene_summary
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
+from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.scene.scene import SceneError, scene_from_text
 from tests.support.checkout import ROOT
+from tests.support.running.patches import with_result
 
 PLANE, SOLID = range(40, 58), (1, 2, 4, 9)
 CYCLED = (6, 75, 84)
@@ -53,14 +57,13 @@ def test_outcomes_tell_refusals_from_crashes(monkeypatch: pytest.MonkeyPatch) ->
 
     assert raising(NotConverged("no")) is Verdict.REFUSED
     assert raising(ZeroDivisionError("no")) is Verdict.CRASHED
-    original = scene_outcomes.sweep_until_periodic
 
-    def wrong(*arguments: object):  # type: ignore[no-untyped-def]
-        for position in original(*arguments):
+    def wrong(positions: Iterator[SweptPosition]) -> Iterator[SweptPosition]:
+        for position in positions:
             results = tuple(replace(r, torques=(r.torques[0], 1.02 * r.torques[1])) for r in position.results)
             yield replace(position, results=results)
 
-    monkeypatch.setattr(scene_outcomes, "sweep_until_periodic", wrong)
+    monkeypatch.setattr(scene_outcomes, "sweep_until_periodic", with_result(sweep_until_periodic, wrong))
     assert outcome_of(scene, 41).verdict is Verdict.UNBALANCED
 
 
@@ -73,12 +76,7 @@ def test_campaign_survives_a_crash_and_a_hang(monkeypatch: pytest.MonkeyPatch) -
         "    if seed == 4:\n        import time; time.sleep(60)\n"
         "    print(json.dumps({'seed': seed, 'verdict': 'CONVERGED'}), flush=True)\n"
     )
-    popen = campaign.subprocess.Popen
-
-    def fake(command: list[str], **options: object) -> object:
-        return popen([sys.executable, "-c", crash, *command[-2:]], **options)
-
-    monkeypatch.setattr(campaign.subprocess, "Popen", fake)
+    monkeypatch.setattr(campaign, "module_run", lambda _, __, *range_: (sys.executable, "-c", crash, *map(str, range_)))
     verdicts = [o.verdict for o in campaign.campaign(0, 6, patience=5.0)]
     good = Verdict.CONVERGED
     assert verdicts == [good, good, Verdict.CRASHED, good, Verdict.HUNG, good]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from evidence.robustness.campaigns import wear_outcomes
-from evidence.robustness.campaigns.random_wear import random_study
+from evidence.robustness.campaigns.random_wear import BodyStudy, random_study
 from evidence.robustness.campaigns.summaries import wear_summary
 from evidence.robustness.campaigns.wear_outcomes import WearOutcome, WearVerdict, wear_outcome_of
 from evolvent.scene.scene import Scene
@@ -35,6 +35,7 @@ def test_a_seed_is_one_study() -> None:
     one, again = random_study(GEARS), random_study(GEARS)
     assert isinstance(one, Scene) and one == again
     one, again = random_study(BODIES), random_study(BODIES)
+    assert isinstance(one, BodyStudy) and isinstance(again, BodyStudy)
     assert (one.law, one.settings, one.cycles) == (again.law, again.settings, again.cycles)
 
 

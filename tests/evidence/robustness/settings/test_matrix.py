@@ -20,6 +20,7 @@ from evidence.robustness.settings.independence import (
 from evidence.robustness.settings.matrix import Cylinder
 from evidence.robustness.settings.sheets import Cell, attempt, draw, sheet_of, write_sheet
 from evolvent.contact.newton.snes import NotConverged
+from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.shapes.blocks import box, rectangle
 
@@ -86,7 +87,7 @@ def test_parameters_of_the_method_do_not_matter() -> None:
 
 
 @pytest.mark.parametrize("mesh", [rectangle(2.0, 1.0, 5, 3), box((2.0, 2.0, 1.0), (3, 2, 2), 1, "tetrahedron")])
-def test_distorted_mesh_has_the_wanted_quality(mesh) -> None:  # type: ignore[no-untyped-def]
+def test_distorted_mesh_has_the_wanted_quality(mesh: MeshData) -> None:
     """The wanted share of the scaled Jacobian, and the boundary where it was."""
     bad = distorted(mesh, 0.1, 0)
     assert scaled_jacobians(bad).min() == pytest.approx(0.1 * scaled_jacobians(mesh).min(), rel=1e-3)

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from demos.hertz_cylinder import ALUMINIUM, HALF_WIDTH, LOAD, MODULUS, RADIUS
 from evolvent.fem.lagrange import gmsh_permutation, quadrature, tabulate
 from evolvent.fem.surface import surface_of
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.shapes.blocks import graded_rectangle
 
 PUBLISHED = -1.308019  # mm, second order, no friction
@@ -90,7 +90,8 @@ class Block:
     def pressed(self, depth: float) -> float:
         """Equilibrium by Newton's method from the last one; the force [N/mm]."""
         for _ in range(30):
-            residual, rows, columns, values = np.zeros(self.u.size), [], [], []
+            residual = np.zeros(self.u.size)
+            rows, columns, values = list[Ints](), list[Ints](), list[Floats]()
             *surface, total = self.contact(depth)
             for nodes, (force, tangent) in ((self.cells, self.bulk()), (self.facets, surface)):
                 dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(len(nodes), -1)
@@ -114,6 +115,6 @@ class Block:
 
 
 @pytest.mark.parametrize(("large", "expected", "within"), [(False, -1.281, 0.002), (True, PUBLISHED, 0.005)])
-def test_block_under_a_rigid_cylinder(large, expected, within):
+def test_block_under_a_rigid_cylinder(large: bool, expected: float, within: float) -> None:
     """Small strain: the solver's −1.281 mm within 0.2 %. Large displacements: the published one within 0.5 %."""
     assert Block(large).sunk() == pytest.approx(expected, rel=within)

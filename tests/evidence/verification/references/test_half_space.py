@@ -14,7 +14,7 @@ MODULUS = STEEL.plane_modulus / 2
 DEPTH = np.array([0.1, 0.3, 0.48, 1.0, 3.0])
 
 
-def test_stress_below_a_circular_contact_is_that_of_johnson():
+def test_stress_below_a_circular_contact_is_that_of_johnson() -> None:
     """a = b: the stresses of Johnson 3.45 at all depths from a/10 on, to 1e-9 p0, and its largest shear."""
     found = Ellipse(2.0, 2.0, 500.0, STEEL).stress(2.0 * DEPTH) / 500.0
     exact = hertz.sphere_axis_stress(DEPTH, 0.3)
@@ -23,7 +23,7 @@ def test_stress_below_a_circular_contact_is_that_of_johnson():
 
 
 @pytest.mark.parametrize("k", [0.2, 0.4, 0.6, 0.8])
-def test_stress_below_an_elliptical_contact_is_that_of_thomas_and_hoersch(k):
+def test_stress_below_an_elliptical_contact_is_that_of_thomas_and_hoersch(k: float) -> None:
     """b/a = k: Thomas & Hoersch 1930, as in Boresi & Schmidt, *Advanced Mechanics of Materials*, with F and H the
     incomplete elliptic integrals of modulus k' = √(1 − k²) and amplitude arccot(kz/b); to 1e-6 p0 from b/10 on."""
     ν, m, s = 0.3, 1 - k**2, k * DEPTH
@@ -38,7 +38,7 @@ def test_stress_below_an_elliptical_contact_is_that_of_thomas_and_hoersch(k):
 
 
 @pytest.mark.parametrize("curvature", [0.01, 0.03])
-def test_sinking_is_half_of_the_approach(curvature):
+def test_sinking_is_half_of_the_approach(curvature: float) -> None:
     """Two equal half-spaces share δ of the ellipse (Johnson, section 4.2); far below, a point force's displacement is
     left: P(1 + ν)(3 − 2ν)/(2πE z) on its axis."""
     contact = hertz.elliptical_contact(1000.0, 0.01, curvature, MODULUS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -36,7 +38,7 @@ def _position(problem: Problem) -> StepSystem:
 
 @pytest.mark.parametrize("make", [cylinder, ball])
 @pytest.mark.parametrize("law", ["coulomb", "starting guess"])
-def test_tangent_is_the_derivative_of_the_residual(make, law):
+def test_tangent_is_the_derivative_of_the_residual(make: Callable[[], Problem], law: str) -> None:
     """The residual's derivative [I + MA, −MH; Hᵀ, 0] against central differences, 1e-6 relative, near the solution with
     open, stuck and sliding points; and a Newton step is its inverse, as accurate as asked for."""
     position = _position(make())
@@ -78,7 +80,7 @@ def test_accuracy_of_a_newton_step_follows_the_residual() -> None:
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_work_along_a_step_is_the_derivative_of_the_energy(make):
+def test_work_along_a_step_is_the_derivative_of_the_energy(make: Callable[[], Problem]) -> None:
     """Without friction `work` is the derivative along a step of ½fᵀAf + Σ w [p]₊²/2γ − Fᵀδ: central differences, 1e-6
     relative, far from the solution and with points that open along the step. It never decreases along a step, as the
     energy is convex, and is negative at the start of Newton's step."""
@@ -112,7 +114,7 @@ def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("make", [cylinder, ball])
-def test_solution_meets_the_contact_and_friction_conditions(make):
+def test_solution_meets_the_contact_and_friction_conditions(make: Callable[[], Problem]) -> None:
     """At the solution: λ ≥ 0, no weighted overlap beyond the flux term, |τ| ≤ μλ, contact force equal to the load."""
     problem = make()
     position = _position(problem)
@@ -122,8 +124,9 @@ def test_solution_meets_the_contact_and_friction_conditions(make):
     assert contact.pressure.min() >= 0.0
     assert (np.linalg.norm(shear, axis=1) <= FRICTION * contact.pressure * (1.0 + 1e-9) + 1e-9).all()
     assert np.linalg.norm(shear, axis=1).max() > 0.05 * contact.pressure.max(), "friction is silently lost"
-    load = problem.bodies[0].rigid.freedoms[0].load
-    assert contact.force[-1] == pytest.approx(load, rel=1e-9)
+    rigid = problem.bodies[0].rigid
+    assert rigid is not None
+    assert contact.force[-1] == pytest.approx(rigid.freedoms[0].load, rel=1e-9)
     assert solution.imbalance < 1e-10
 
 
@@ -141,7 +144,7 @@ def test_friction_adds_shear_and_stiffness() -> None:
 
 @pytest.mark.parametrize("make", [lambda: cylinder(first=0), lambda: cylinder(first=1), ball])
 @pytest.mark.parametrize("friction", [0.0, FRICTION])
-def test_contact_forces_on_both_bodies_are_opposite(make, friction):
+def test_contact_forces_on_both_bodies_are_opposite(make: Callable[[], Problem], friction: float) -> None:
     """Nodal forces on both bodies cancel to 1e-10. Their moments cancel up to gap times force: the forces act at the
     undeformed surfaces, which are a gap apart where they touch."""
     problem = make()

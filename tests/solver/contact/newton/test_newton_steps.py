@@ -9,8 +9,9 @@ import scipy.sparse as sp
 from evolvent import NotConverged
 from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.newton_steps import NewtonSteps
-from evolvent.contact.newton.reduced_tangent import ReducedTangent
+from evolvent.contact.newton.reduced_tangent import Reals, ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
+from evolvent_meshes.arrays import Ints
 
 N, K = 60, 3
 RNG = np.random.default_rng
@@ -53,7 +54,7 @@ def factored(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
     made: list[tuple[str, int]] = []
     original = ReducedTangent.of
 
-    def counted(M, A, H, columns):
+    def counted(M: sp.csr_matrix, A: Reals, H: Reals, columns: Ints) -> ReducedTangent:
         made.append((A.dtype.name, len(columns)))
         return original(M, A, H, columns)
 

@@ -7,6 +7,8 @@ the law, with nothing of the solver's own in between.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import scipy.linalg as la
@@ -42,7 +44,7 @@ FRICTION = 0.2
 
 
 @pytest.fixture(scope="module", params=["triangle", "tetrahedron"])
-def merged(request):
+def merged(request: pytest.FixtureRequest) -> Merged:
     if request.param == "triangle":
         upper = rectangle(2.0, 1.0, 8, 2, 1, "triangle")
         lower = rectangle(2.0, 1.0, 8, 3, 1, "triangle", origin=(0.0, -1.0))
@@ -72,7 +74,7 @@ def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
     return upper, lower
 
 
-def test_projection_agrees_with_ufl(merged):
+def test_projection_agrees_with_ufl(merged: Merged) -> None:
     """M = ∫N_k N_l and MΠ = ∫N_1 N_2 of the operator over segments; UFL integrates them over inner facets."""
     op, (dofs1, dofs2) = _position(merged).operators[0], _surface_dofs(merged)
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
@@ -97,11 +99,11 @@ def _traction(merged: Merged) -> sp.csr_matrix:
     return (sp.diags(1.0 / facets_at) @ merged.matrix(form)[_surface_dofs(merged)[0]]).tocsr()
 
 
-def _normal(merged: Merged):
+def _normal(merged: Merged) -> Any:
     return ufl.as_vector([0.0] * (merged.d - 1) + [-1.0])
 
 
-def test_recovered_traction_agrees_with_ufl(merged):
+def test_recovered_traction_agrees_with_ufl(merged: Merged) -> None:
     """S of flux_recovery.py against UFL's σ(u)n."""
     found = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom")).traction
     exact = _traction(merged)
@@ -139,7 +141,7 @@ def _constant_term(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
     return (F.T @ merged.matrix(form) @ F).tocsr()
 
 
-def test_constant_term_agrees_with_ufl(merged):
+def test_constant_term_agrees_with_ufl(merged: Merged) -> None:
     """∫ γF_n² + γ_t|F_t|² against UFL's integral of the recovered flux."""
     nitsche = nitsche_traction(merged.upper, STEEL, surface_of(merged.upper, "bottom"))
     n = merged.d * len(merged.upper.points)
@@ -173,7 +175,7 @@ class _UflContact:
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_residual_and_tangent_agree_with_ufl(merged, θ):
+def test_residual_and_tangent_agree_with_ufl(merged: Merged, θ: float) -> None:
     """The full residual and tangent of the solver at random states, with open, stuck and sliding points, against
     a(u,v) − θ∫F(u)·ΓF(v) + ∫(λn + τ)·([v] − θF(v)) with UFL's integrals and UFL's derivative."""
     position = _position(merged, theta=θ)
@@ -228,7 +230,7 @@ def _unknowns(position: StepSystem, size: int) -> np.ndarray:
 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", ["triangle", "quadrilateral", "tetrahedron", "hexahedron"])
-def test_inverse_trace_constants_agree_with_eigenvalues_of_ufl_forms(shape, order):
+def test_inverse_trace_constants_agree_with_eigenvalues_of_ufl_forms(shape: str, order: int) -> None:
     """C_n and C_t of one sheared cell: the largest eigenvalue of UFL's ∫σ_n(v)² against its a(v, v)."""
     mesh = _one_cell(shape, order)
     surface = surface_of(mesh, "top")
@@ -239,7 +241,7 @@ def test_inverse_trace_constants_agree_with_eigenvalues_of_ufl_forms(shape, orde
     λ, μ = ALUMINIUM.lame
     degree = {"quadrature_degree": 2 * order}
 
-    def σ(w):
+    def σ(w: Any) -> Any:
         return λ * ufl.tr(ufl.grad(w)) * ufl.Identity(mesh.dimension) + 2.0 * μ * ufl.sym(ufl.grad(w))
 
     dx = ufl.Measure("dx", domain=domain, metadata=degree)

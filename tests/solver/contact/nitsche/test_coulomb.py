@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
-from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
+from evolvent.contact.nitsche.coulomb import LawValues, coulomb, starting_guess
+from evolvent_meshes.arrays import Floats
 
 
-def _trials(d, n=400, seed=0):
+def _trials(d: int, n: int = 400, seed: int = 0) -> Floats:
     """Random trial values away from the kinks by 1e-3, open, sticking and sliding."""
     rng = np.random.default_rng(seed)
     trial = rng.normal(size=(4 * n, d)) * ([1.0] + [0.5] * (d - 1))
@@ -16,7 +19,7 @@ def _trials(d, n=400, seed=0):
     return trial[(np.abs(trial[:, 0]) > 1e-3) & (np.abs(size - 0.3 * np.maximum(trial[:, 0], 0.0)) > 1e-3)][:n]
 
 
-def _differences(law, trial, step=1e-6):
+def _differences(law: Callable[[Floats], LawValues], trial: Floats, step: float = 1e-6) -> Floats:
     columns = []
     for k in range(trial.shape[1]):
         shift = np.zeros(trial.shape[1])
@@ -26,7 +29,7 @@ def _differences(law, trial, step=1e-6):
 
 
 @pytest.mark.parametrize("d", [1, 2, 3])
-def test_derivative_of_coulombs_law(d):
+def test_derivative_of_coulombs_law(d: int) -> None:
     """∂(λ, τ)/∂(p, q) against central differences, 1e-6 relative."""
     trial = _trials(d)
     exact = _differences(lambda t: coulomb(t, 0.3), trial)
@@ -35,7 +38,7 @@ def test_derivative_of_coulombs_law(d):
 
 @pytest.mark.parametrize("d", [2, 3])
 @pytest.mark.parametrize("known", [False, True])
-def test_derivative_of_the_starting_guess(d, known):
+def test_derivative_of_the_starting_guess(d: int, known: bool) -> None:
     """The same for the law of the first iteration, sticking and with a known direction of slip."""
     trial = _trials(d)
     heading = np.zeros((len(trial), d - 1))
@@ -52,7 +55,7 @@ def test_coulombs_law_when_open_sticking_and_sliding() -> None:
 
 
 @pytest.mark.parametrize("d", [2, 3])
-def test_traction_stays_inside_the_friction_cone(d):
+def test_traction_stays_inside_the_friction_cone(d: int) -> None:
     """λ ≥ 0 and |τ| ≤ μλ for any trial value, also with a coefficient for each point."""
     trial = np.random.default_rng(1).normal(size=(1000, d))
     μ = np.linspace(0.0, 1.0, 1000)

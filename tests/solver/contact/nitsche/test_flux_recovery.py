@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 from evolvent import Body, Fixed, Material, MeshData
 from evolvent.contact.nitsche.flux_recovery import SAFETY, nitsche_traction
 from evolvent.fem.body import assemble
 from evolvent.fem.condensation.schur_complement import Factor, NotPositiveDefinite
 from evolvent.fem.surface import surface_of
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import box, rectangle
 
 CASES = [(s, o) for s in ("triangle", "quadrilateral", "tetrahedron", "hexahedron") for o in (1, 2)]
@@ -21,7 +23,7 @@ def _block(shape: str, order: int) -> MeshData:
     return box((2.0, 2.0, 1.0), (3, 2, 2), order, shape)
 
 
-def _field(points: np.ndarray, order: int, seed: int = 0):
+def _field(points: np.ndarray, order: int, seed: int = 0) -> tuple[Floats, Floats]:
     """A polynomial displacement (N, d) of this degree, and its gradient (N, d, d)."""
     d = points.shape[1]
     rng = np.random.default_rng(seed)
@@ -31,7 +33,7 @@ def _field(points: np.ndarray, order: int, seed: int = 0):
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_traction_of_a_polynomial_field(shape, order):
+def test_traction_of_a_polynomial_field(shape: str, order: int) -> None:
     """u is a polynomial of the mesh's order, so σ(u)n is known at every node: λ tr ε n + 2μ ε n."""
     mesh, material = _block(shape, order), Material(210e3, 0.3)
     surface = surface_of(mesh, "top")
@@ -47,14 +49,14 @@ def test_traction_of_a_polynomial_field(shape, order):
 @pytest.mark.parametrize(
     ("order", "poisson", "wanted"), [(1, 0.3, 1.9), (2, 0.3, 6.3), (1, 0.45, 10.8), (2, 0.45, 26.7)]
 )
-def test_inverse_trace_constant_of_a_square(order, poisson, wanted):
+def test_inverse_trace_constant_of_a_square(order: int, poisson: float, wanted: float) -> None:
     """C_n of a square cell in units of E/h against the values of an independent prototype (two digits)."""
     mesh = rectangle(1.0, 1.0, 4, 4, order)
     constants = nitsche_traction(mesh, Material(1.0, poisson), surface_of(mesh, "top"), safety=1.0).stabiliser
     assert constants[:, 0] * 0.25 == pytest.approx(wanted, rel=0.02)
 
 
-def _modified(mesh: MeshData, safety: float):
+def _modified(mesh: MeshData, safety: float) -> sp.csr_matrix:
     assembled = assemble(Body(mesh, Material(210e3, 0.3), supports=(Fixed("bottom"),)))
     term = nitsche_traction(mesh, Material(210e3, 0.3), surface_of(mesh, "top"), safety).constant_term()
     free = assembled.free
@@ -63,7 +65,7 @@ def _modified(mesh: MeshData, safety: float):
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
 @pytest.mark.parametrize("safety", [1.25, SAFETY])
-def test_stiffness_with_gamma_is_coercive(shape, order, safety):
+def test_stiffness_with_gamma_is_coercive(shape: str, order: int, safety: float) -> None:
     """θ = 1: K − ∫F·ΓF is positive definite from 1.25 times the inverse trace constants on (averaging the traction
     between cells costs up to 1.18 with second-order quadrilaterals and hexahedra): no eigenvalue is negative or zero,
     and its Cholesky factor solves with it."""
@@ -82,7 +84,7 @@ def test_stiffness_far_below_the_limit_is_not_coercive() -> None:
 
 
 @pytest.mark.parametrize(("shape", "order"), CASES)
-def test_rigid_motion_has_no_flux(shape, order):
+def test_rigid_motion_has_no_flux(shape: str, order: int) -> None:
     """A small rotation and a translation cause no stress: F = 0, and δ enters the contact by the trace alone."""
     mesh = _block(shape, order)
     nitsche = nitsche_traction(mesh, Material(210e3, 0.3), surface_of(mesh, "top"))

@@ -18,7 +18,7 @@ SHAPES = ((2, "quadrilateral"), (2, "triangle"), (1, "quadrilateral"), (1, "tria
 
 
 @pytest.mark.parametrize("ratio", [0.3, 0.45, 0.49])
-def test_peaks_over_poissons_ratio_are_those_of_the_page(ratio):
+def test_peaks_over_poissons_ratio_are_those_of_the_page(ratio: float) -> None:
     """docs/own_problem.md says by how much peaks on ten cells are too high, against cells of half the size and order 2:
     within a tenth of a per cent, or of the figure. What is further off than 3 % has a peak that scatters."""
     page = (ROOT / "docs/own_problem.md").read_text(encoding="utf-8")
@@ -32,7 +32,7 @@ def test_peaks_over_poissons_ratio_are_those_of_the_page(ratio):
 
 
 @pytest.mark.parametrize("fine", [1.5, 4.0])
-def test_small_stabiliser_is_accurate_at_the_edge_of_contact(fine):
+def test_small_stabiliser_is_accurate_at_the_edge_of_contact(fine: float) -> None:
     """ν = 0.49: 1.461 MPa, also where its edge lies in growing cells, where it is 36 % too high by default."""
     contact = solve(rubber(0.3, fine, 0.49, nitsche=SMALL_STABILISER)).contacts[0]
     assert contact.pressure.max() == pytest.approx(1.461, rel=5e-3)
@@ -43,7 +43,9 @@ def test_small_stabiliser_is_accurate_at_the_edge_of_contact(fine):
     [(0.45, 2, Nitsche(), False), (0.46, 2, Nitsche(), True), (0.49, 2, SMALL_STABILISER, False),
      (0.49, 1, SMALL_STABILISER, True), (0.495, 2, SMALL_STABILISER, True)],
 )  # fmt: skip
-def test_poissons_ratio_beyond_the_verified_limit_is_warned_of(ratio, order, nitsche, warns):
+def test_poissons_ratio_beyond_the_verified_limit_is_warned_of(
+    ratio: float, order: int, nitsche: Nitsche, warns: bool
+) -> None:
     """Beyond what is verified a warning says so, before anything is solved; with the remedy and its own limit."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

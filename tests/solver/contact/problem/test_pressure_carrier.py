@@ -33,7 +33,7 @@ def column(d: int) -> tuple[MeshData, MeshData, tuple[Fixed, ...], str]:
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("by_load", [False, True])
-def test_column_of_any_stiffness_ratio_is_exact(d, friction, order, by_load):
+def test_column_of_any_stiffness_ratio_is_exact(d: int, friction: float, order: int, by_load: bool) -> None:
     """A column of two blocks that cannot get wider, its top lowered by δ, either by prescribing δ or by the force that
     takes: the stress is δ/Σ(h/M), exactly, on any mesh. Force and sinking within 1e-6, for moduli of the upper block
     1e-8 to 1e8 times that of the lower one, in 2D and 3D, with and without friction, each block named first."""
@@ -71,8 +71,9 @@ def test_signs_follow_the_named_order_whichever_surface_carries() -> None:
     first, second = (roller(1e6, order).contacts[0] for order in (0, 1))
     assert first.carrier == second.carrier == (1, "top")
     assert first.force == pytest.approx([10.0, -50.0], rel=0.02)  # along normals that the block's shear has turned
-    for name in ("normals", "traction", "slip"):
-        assert np.array_equal(getattr(first, name), -getattr(second, name))
+    assert np.array_equal(first.normals, -second.normals)
+    assert np.array_equal(first.traction, -second.traction)
+    assert np.array_equal(first.slip, -second.slip)
     assert first.normals[:, 1].max() < 0.0
     assert first.slip[first.pressure > 0.0, 0].min() > 0.0
     shear = first.traction - first.pressure[:, None] * first.normals
@@ -80,7 +81,7 @@ def test_signs_follow_the_named_order_whichever_surface_carries() -> None:
 
 
 @pytest.mark.parametrize(("ratio", "carrier"), [(0.99, (0, "arc")), (1.01, (1, "top"))])
-def test_softer_surface_carries_the_pressure_beyond_the_stiffness_ratio(ratio, carrier):
+def test_softer_surface_carries_the_pressure_beyond_the_stiffness_ratio(ratio: float, carrier: tuple[int, str]) -> None:
     """A roller on a block, `ratio` times STIFFNESS_RATIO as stiff and named first: it carries the pressure below the
     ratio, the block above. With either the roller sinks in by the same within 1 %."""
     stiffer = ratio * STIFFNESS_RATIO

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from typing import Literal
 
 import pytest
 
@@ -31,9 +32,10 @@ def test_warning_points_to_the_line_of_the_user(call: Callable[[], object]) -> N
 def test_every_warning_of_a_loop_is_shown() -> None:
     """The same warning of the same line, twice: with Python's own filters, which show a warning of a line once, both
     are seen; an application that ignores them sees none."""
-    for action, count in (("default", 2), ("ignore", 0)):
+    cases: tuple[tuple[Literal["default", "ignore"], int], ...] = ("default", 2), ("ignore", 0)
+    for action, count in cases:
         with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter(action)  # type: ignore[arg-type]
+            warnings.simplefilter(action)
             for _ in range(2):
                 solve(COARSE)
         assert sum(issubclass(w.category, CoarseContactWarning) for w in caught) == count

@@ -10,7 +10,8 @@ from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.lagrange import tabulate
 from evolvent.fem.reference_facets import reference_cell
 from evolvent.fem.surface import Surface, hats
-from tests.support.meshes.surface_shapes import cap, curve, facing, lattice, rectangle, shaken
+from evolvent_meshes.arrays import Floats, Ints
+from tests.support.meshes.surface_shapes import Place, cap, curve, facing, lattice, rectangle, shaken
 
 Kind = tuple[str, int]
 """Shape and order of facets."""
@@ -18,7 +19,7 @@ QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangl
 FACES = [(QUAD1, QUAD1), (QUAD2, QUAD2), (TRI1, TRI1), (TRI2, TRI2), (QUAD2, TRI1), (TRI2, QUAD2), (QUAD1, TRI2)]
 
 
-def where(surface: Surface, facets, xi) -> np.ndarray:
+def where(surface: Surface, facets: Ints, xi: Floats) -> np.ndarray:
     return surface.positions(facets, xi[:, None])[:, 0]
 
 
@@ -120,7 +121,7 @@ def test_gap_between_offset_surfaces_is_exact(kind: Kind) -> None:
 
     Then x2(ξ) = x1(ξ) + 0.05 ΣN_k n_k: the gap at ξ is 0.05 |ΣN_k n_k|, the partner the same point of the same facet.
     """
-    def cylinder(u, v):
+    def cylinder(u: Floats, v: Floats) -> Floats:
         return np.stack([2 * np.sin(1.2 * u - 0.6), v, 2 * np.cos(1.2 * u - 0.6)], axis=1)
 
     a = lattice(6, 3, *kind, cylinder)
@@ -162,8 +163,8 @@ def test_curved_surfaces_are_covered_once(first: Kind, second: Kind) -> None:
 
 def test_long_narrow_facets_are_covered_once() -> None:
     """Helical flanks have facets twenty times as long as wide; crossed at 6° on a cylinder, all are covered once."""
-    def flank(radius, turn, width):
-        def place(u, v):
+    def flank(radius: float, turn: float, width: float) -> Place:
+        def place(u: Floats, v: Floats) -> Floats:
             s, z = width * (u - 0.5), 1.3 * width * (v - 0.5)
             s, z = np.cos(turn) * s - np.sin(turn) * z, np.sin(turn) * s + np.cos(turn) * z
             return np.stack([radius * np.sin(s / radius), z, radius * np.cos(s / radius)], axis=1)
@@ -225,8 +226,8 @@ def test_unusable_surfaces_and_limits_are_refused() -> None:
 
 def test_area_without_partners_is_refused() -> None:
     """A hilly surface (radius 0.2, slopes of 60°) with three facets: area without partners raises SearchError."""
-    def hills(turn, z):
-        def place(u, v):
+    def hills(turn: float, z: float) -> Place:
+        def place(u: Floats, v: Floats) -> Floats:
             x, y, _ = rectangle((-1, -1), (1, 1), turn)(u, v).T
             return np.stack([x, y, 0.6 * np.sin(2 * x) * np.cos(3 * y) + z], axis=1)
         return place

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from evolvent import Freedom, Nitsche, Placement, Step, StepSystem, condense_bodies
+from evolvent import Freedom, Nitsche, Placement, Problem, Solution, Step, StepSystem, condense_bodies
 from evolvent.contact.nitsche.coulomb import coulomb
 from evolvent.contact.solution.full_system import FullContact, full_equilibrium, full_solution
+from evolvent_meshes.arrays import Floats
 from tests.support.contact_cases import ball, cylinder
 
 CASES = [(make, θ, μ) for make in (cylinder, ball) for θ in (1.0, 0.0, -1.0) for μ in (0.0, 0.1)]
 
 
 @pytest.mark.parametrize(("make", "θ", "μ"), CASES)
-def test_condensed_and_full_system_have_the_same_solution(make, θ, μ):
+def test_condensed_and_full_system_have_the_same_solution(make: Callable[[float], Problem], θ: float, μ: float) -> None:
     """Pressure, traction, rigid motion and the whole displacement field of both ways agree to 1e-8 (θ = 1, 0, −1, with
     and without friction, 2D and 3D)."""
     problem = replace(make(μ), nitsche=Nitsche(theta=θ))
@@ -28,7 +30,7 @@ def test_condensed_and_full_system_have_the_same_solution(make, θ, μ):
 
 @pytest.mark.parametrize("θ", [1.0, -1.0])
 @pytest.mark.parametrize("μ", [0.0, 0.1])
-def test_condensed_and_full_system_agree_after_finite_sliding(θ, μ):
+def test_condensed_and_full_system_agree_after_finite_sliding(θ: float, μ: float) -> None:
     """The block has moved 0.8 mm sideways (several nodes) under the cylinder: new projections, the old compliance, and
     the slip since the first step. The block then drags the cylinder along with μ times the load."""
     problem = replace(cylinder(μ, first=1, extra=(Freedom("x", displacement=0.0),)), nitsche=Nitsche(theta=θ))
@@ -43,7 +45,7 @@ def test_condensed_and_full_system_agree_after_finite_sliding(θ, μ):
     assert solution.contacts[0].force[0] == pytest.approx(μ * 5e3, abs=1e-6 * 5e3)
 
 
-def _differences(position, solution, x, system):
+def _differences(position: StepSystem, solution: Solution, x: Floats, system: FullContact) -> list[float]:
     """Largest differences of traction, free rigid motions and the displacement of each body, as parts of the largest
     value; x: the solution of the full system."""
     traction = system.op.common(system.state(x).traction)
@@ -61,7 +63,7 @@ def _differences(position, solution, x, system):
 
 
 @pytest.mark.parametrize("θ", [1.0, 0.0, -1.0])
-def test_full_tangent_is_the_derivative_of_the_residual(θ):
+def test_full_tangent_is_the_derivative_of_the_residual(θ: float) -> None:
     """∂residual/∂x against central differences in a random direction near the solution, 1e-6 relative."""
     problem = replace(cylinder(), nitsche=Nitsche(theta=θ))
     x, _ = full_solution(problem, Step())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pyvista
@@ -32,7 +35,7 @@ AWAY = Placement(TURN, np.array([3.0, 1.0]))
 
 
 @pytest.mark.parametrize(("shape", "order"), SHAPES)
-def test_every_cell_has_its_nodes_in_the_order_of_vtk(shape, order, tmp_path):
+def test_every_cell_has_its_nodes_in_the_order_of_vtk(shape: str, order: int, tmp_path: Path) -> None:
     """Every node of the straight cells that are read back lies where VTK's own reference cell, mapped by the cell's
     corners, has it; two nodes exchanged would not."""
     plane = shape in ("triangle", "quadrilateral")
@@ -62,7 +65,7 @@ def pressed() -> Problem:
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory) -> tuple[list[Solution], pyvista.PVDReader]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Solution], pyvista.PVDReader]:
     """Both blocks at half load as they lie, then at the whole load turned away; and a reader of what was written."""
     solutions = list(sweep(pressed(), [Step(0.5), Step(1.0, (AWAY, AWAY))]))
     path = write_paraview(solutions, tmp_path_factory.mktemp("fields") / "deeper")
@@ -74,7 +77,7 @@ def written(tmp_path_factory) -> tuple[list[Solution], pyvista.PVDReader]:
 
 
 @pytest.mark.parametrize("step", [0, 1])
-def test_body_files_have_displacement_and_stress(written, step):
+def test_body_files_have_displacement_and_stress(written: tuple[list[Solution], pyvista.PVDReader], step: int) -> None:
     """Positions, displacements, stress and von Mises stress of both bodies: uniaxial in plane strain, σ_n = −p along
     the rotated height and σ_z = −νp, in ParaView's order of components."""
     solutions, reader = written
@@ -94,7 +97,7 @@ def test_body_files_have_displacement_and_stress(written, step):
         assert np.allclose(mises, von_mises(cell_stress(mesh, material, solutions[step].displacement(index))))
 
 
-def test_contact_file_has_pressure_and_traction(written):
+def test_contact_file_has_pressure_and_traction(written: tuple[list[Solution], pyvista.PVDReader]) -> None:
     """The pressure at the nodes of the first surface, and the traction on the second body in space."""
     reader = written[1]
     reader.set_active_time_value(2.0)
@@ -105,7 +108,7 @@ def test_contact_file_has_pressure_and_traction(written):
     assert surface.n_cells == 4
 
 
-def test_nodal_averages_keep_the_contact_force(tmp_path):
+def test_nodal_averages_keep_the_contact_force(tmp_path: Path) -> None:
     """A cylinder on a block: nodal pressures times the areas of the hat functions are the force; no nodal pressure is
     negative or above the peak at the points."""
     (solution,) = sweep(cylinder(), [Step()])
@@ -117,10 +120,10 @@ def test_nodal_averages_keep_the_contact_force(tmp_path):
     assert 0.9 * contact.pressure.max() < surface["pressure_MPa"].max() < contact.pressure.max()
 
 
-def test_series_grows_with_the_sweep(tmp_path):
+def test_series_grows_with_the_sweep(tmp_path: Path) -> None:
     """A sweep that fails at its third step leaves two steps that can be read and no partial file."""
 
-    def steps():
+    def steps() -> Iterator[Step]:
         yield from (Step(0.5), Step(1.0))
         raise RuntimeError("the third one fails")
 
@@ -130,7 +133,7 @@ def test_series_grows_with_the_sweep(tmp_path):
     assert not list(tmp_path.glob(f"*{PART}*"))
 
 
-def test_failed_write_leaves_no_partial_file(tmp_path):
+def test_failed_write_leaves_no_partial_file(tmp_path: Path) -> None:
     """A folder with the name of the file: an error that names it, and no temporary file is left."""
     (tmp_path / "body_0_0001.vtu").mkdir()
     (solution,) = sweep(pressed(), [Step()])

@@ -41,13 +41,13 @@ def stack(nitsche: Nitsche) -> Problem:
 
 
 @pytest.fixture(scope="module", params=[1.0, -1.0, 0.0])
-def solution(request) -> Solution:
+def solution(request: pytest.FixtureRequest) -> Solution:
     """Of the stack under three quarters of its loads, both blocks turned, for each variant of Nitsche's method."""
     place = Placement(TURN, np.array([4.0, 5.0]))
     return solve(stack(Nitsche(theta=request.param)), Step(0.75, (place, place)))
 
 
-def test_reactions_balance_each_body(solution):
+def test_reactions_balance_each_body(solution: Solution) -> None:
     """Reactions, loads and contact forces of a body add up to zero, to 1e-10 of the load; forces in its frame."""
     contact = solution.contacts[0].force @ TURN  # on the lower block, as it sees it
     given = (np.array([2.0 * 3.0, -2.0 * 4.0 - 1.0 * 7.0]), np.array([0.0, -2.0 * WEIGHT]))
@@ -56,7 +56,7 @@ def test_reactions_balance_each_body(solution):
         assert np.abs(held + 0.75 * given[body] + sign * contact).max() < 1e-10 * 300.0
 
 
-def test_reaction_of_a_rigid_coupling_includes_its_load(solution):
+def test_reaction_of_a_rigid_coupling_includes_its_load(solution: Solution) -> None:
     """In the direction of a loaded freedom a coupling presses with its load; about its centre, with its moment."""
     (lid,) = reactions(solution, 0, about=(1.0, 2.0))
     assert (lid.group, lid.directions) == ("top", "rigid")
@@ -64,7 +64,7 @@ def test_reaction_of_a_rigid_coupling_includes_its_load(solution):
     assert lid.moment[0] == pytest.approx(0.75 * 20.0, rel=1e-7)
 
 
-def test_node_held_twice_counts_for_the_first_support(solution):
+def test_node_held_twice_counts_for_the_first_support(solution: Solution) -> None:
     """Each support has the forces along its own directions: an edge held along x carries no vertical force."""
     bottom, right = reactions(solution, 1)
     assert (bottom.group, right.group) == ("bottom", "right")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import re
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,7 +35,7 @@ from tests.support.checkout import ROOT
 from tests.support.contact_cases import FRICTION, cylinder
 
 
-def test_programs_of_the_page_on_own_problems_run(tmp_path, monkeypatch):
+def test_programs_of_the_page_on_own_problems_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The programs in docs/own_problem.md run as they stand; the first one has at most 40 lines and carries its load,
     and the peak that it prints is within 0.2 % of that of a mesh ten times as fine, 2275.4 MPa; the ground carries what
     the contact gives, and ParaView's files are there."""
@@ -183,7 +185,7 @@ def _centre(solution: Solution, body: int) -> float:
         (lambda p: solve(p, Step(freedoms=((7, Freedom("y", load=1.0)),))), "below 2"),
     ],
 )
-def test_inconsistent_steps_are_refused(make, message):
+def test_inconsistent_steps_are_refused(make: Callable[[Problem], object], message: str) -> None:
     """Each mistake is a ValueError that names what was found."""
     with pytest.raises(ValueError, match=message):
         make(cylinder())
@@ -223,7 +225,7 @@ def test_sweep_continues_after_a_step_that_failed() -> None:
     assert run.solved == 2
 
 
-def test_every_step_logs_one_line(caplog):
+def test_every_step_logs_one_line(caplog: pytest.LogCaptureFixture) -> None:
     """One line a step on the logger "evolvent": number, load factor, iterations, force and peak pressure."""
     with caplog.at_level("INFO", logger="evolvent"):
         first, _ = sweep(_flat(), [Step(0.5), Step(1.0)])

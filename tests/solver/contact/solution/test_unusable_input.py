@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ JARGON = re.compile(
 
 
 @pytest.mark.parametrize("row", REFUSED, ids=lambda each: each.name)
-def test_unusable_input_is_refused(row: Refused, tmp_path, monkeypatch):
+def test_unusable_input_is_refused(row: Refused, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One error that derives from EvolventError and says what was wanted, what was found and what to do, in the API's
     own words; malformed input is an InputError, hence a ValueError too; nothing is written."""
     monkeypatch.chdir(tmp_path)
@@ -36,7 +37,7 @@ def test_unusable_input_is_refused(row: Refused, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("row", EXACT, ids=lambda each: each.name)
-def test_unusual_input_gives_the_exact_solution(row: Exact, tmp_path):
+def test_unusual_input_gives_the_exact_solution(row: Exact, tmp_path: Path) -> None:
     """The number that the row asks for is its exact value, within its accuracy."""
     value, wanted = np.asarray(row.call(tmp_path), dtype=float), np.asarray(row.wanted, dtype=float)
     largest = max(np.abs(wanted).max(initial=0.0), 1e-300)

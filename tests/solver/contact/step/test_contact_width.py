@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -44,11 +45,11 @@ def flat(d: int, supports: tuple[Fixed, ...] = ()) -> PairedSurfaces:
 
 
 @pytest.fixture(scope="module", params=[2, 3])
-def paired(request) -> PairedSurfaces:
+def paired(request: pytest.FixtureRequest) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_width_of_a_strip(paired):
+def test_width_of_a_strip(paired: PairedSurfaces) -> None:
     """A strip of 3 mm inside: 3 mm over the longer cells, 0.8 mm; to the quadrature points' distance."""
     x = paired.operator.points[:, 0]
     found = measure_width(paired, np.where((x > 2.0) & (x < 5.0), 7.0, 0.0))
@@ -57,7 +58,7 @@ def test_width_of_a_strip(paired):
     assert found.cells == pytest.approx(3.0 / 0.8, abs=0.3)
 
 
-def test_width_is_that_of_the_narrowest_loaded_patch(paired):
+def test_width_is_that_of_the_narrowest_loaded_patch(paired: PairedSurfaces) -> None:
     """Two strips, of 3 and 1 mm: the width of the narrow one, unless it carries less than 5 % of the force."""
     x = paired.operator.points[:, 0]
     wide, narrow = (x > 1.0) & (x < 4.0), (x > 5.5) & (x < 6.5)
@@ -65,12 +66,12 @@ def test_width_is_that_of_the_narrowest_loaded_patch(paired):
     assert measure_width(paired, 1.0 * wide + 1e-3 * narrow).width == pytest.approx(3.0, abs=0.25)
 
 
-def test_width_of_a_whole_surface(paired):
+def test_width_of_a_whole_surface(paired: PairedSurfaces) -> None:
     """A contact that presses on the whole surface is as wide as the surface."""
     assert measure_width(paired, np.ones(len(paired.operator.weights))).width == pytest.approx(8.0, abs=0.25)
 
 
-def test_open_contact_has_no_width_and_no_warning(paired):
+def test_open_contact_has_no_width_and_no_warning(paired: PairedSurfaces) -> None:
     """An open contact is 0 mm and 0 cells wide, and not too coarse."""
     width = measure_width(paired, np.zeros(len(paired.operator.weights)))
     assert (width.width, width.cells) == (0.0, 0.0)
@@ -79,7 +80,7 @@ def test_open_contact_has_no_width_and_no_warning(paired):
         warn_if_coarse("contact", width)
 
 
-def test_number_of_cells_is_rounded_down_in_the_warning(paired):
+def test_number_of_cells_is_rounded_down_in_the_warning(paired: PairedSurfaces) -> None:
     """1.9996 cells are reported as 1.99."""
     with pytest.warns(CoarseContactWarning, match=r"found 1\.99, 2 mm"):
         warn_if_coarse("contact", ContactWidth(1.9996, 1.0))
@@ -114,7 +115,7 @@ def test_long_cells_along_a_strip_do_not_count() -> None:
 
 
 @pytest.mark.parametrize(("supports", "width"), [((), 2.0), ((Fixed("left", "x"),), 4.0)])
-def test_width_across_a_plane_of_symmetry_is_doubled(supports, width):
+def test_width_across_a_plane_of_symmetry_is_doubled(supports: tuple[Fixed, ...], width: float) -> None:
     """A contact up to a free edge ends there; up to a plane of symmetry it is half of the whole."""
     paired = flat(2, supports)
     found = measure_width(paired, 1.0 * (paired.operator.points[:, 0] < 2.0))
@@ -145,7 +146,7 @@ def test_contact_of_less_than_two_cells_is_warned_of() -> None:
 
 
 @pytest.mark.parametrize(("cell", "warns"), [("0.1", False), ("0.7", True)])
-def test_example_of_the_page_is_warned_of_on_coarse_cells(tmp_path, cell, warns):
+def test_example_of_the_page_is_warned_of_on_coarse_cells(tmp_path: Path, cell: str, warns: bool) -> None:
     """docs/own_problem.md presses a hook to a contact of 1.1 mm with cells of 0.1 mm, and is not warned; with cells of
     0.7 mm it is."""
     page = (ROOT / "docs/own_problem.md").read_text()

@@ -43,7 +43,7 @@ def cylinder(reach: float | None, freedom: Freedom) -> Problem:
 
 @pytest.mark.parametrize("freedom", [Freedom("y", load=-5e3), Freedom("y", displacement=-0.15)])
 @pytest.mark.parametrize("reach", [1e-2, 1e-3])
-def test_overlap_beyond_a_small_reach_is_found(freedom, reach):
+def test_overlap_beyond_a_small_reach_is_found(freedom: Freedom, reach: float) -> None:
     """Gaps at the edge of contact are 0.05 mm. A contact cut off at a reach of a fifth or less of them has a force 6
     to 27 % too small and a peak six to eleven times too large. The reach is increased: force and approach are those of
     a large reach within 0.1 %, the peak within 5 % (points at the edge differ)."""
@@ -83,7 +83,7 @@ def fitted(contact: ContactResult) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("share", [0.05, 0.2])
-def test_bodies_placed_in_overlap_are_paired_where_they_meet(share):
+def test_bodies_placed_in_overlap_are_paired_where_they_meet(share: float) -> None:
     """Pressed by a placement in overlap, by a prescribed motion from where they touch, and by the force that takes: the
     same approach, force, peak pressure and half-width within 0.5 %. Paired in overlap, at a/R = 0.2 the first two are
     7 % and 10 % off in peak and width. Half-spheres are a verification problem."""
@@ -136,7 +136,7 @@ def last(problem: Problem, *steps: Step) -> Solution:
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_block_dragged_off_an_edge_loses_its_partners(friction):
+def test_block_dragged_off_an_edge_loses_its_partners(friction: float) -> None:
     """Dragged 2 mm, so that half of it hangs over the edge: by a prescribed motion as by a placement, where half of the
     force is left. It was the whole of it, on the pairs of the start."""
     drag = Step(freedoms=((0, Freedom("x", displacement=2.0)),))
@@ -158,7 +158,7 @@ def turned_disc(angle: float, first: int) -> Problem:
 
 
 @pytest.mark.parametrize("first", [0, 1])
-def test_body_rotated_about_its_centre_is_paired_again(first):
+def test_body_rotated_about_its_centre_is_paired_again(first: int) -> None:
     """A disc that turns by 0.09 rad about its centre stays the disc it was: the contact lies below the centre, at
     −0.9 mm of the disc's own surface, with Hertz' peak pressure within 1 %; not where the disc touched before."""
     found = solve(turned_disc(0.09, first)).contacts[0]
@@ -192,7 +192,7 @@ def test_large_strain_is_refused() -> None:
             solve(column(1000 / strain))
 
 
-def test_pairing_that_does_not_settle_is_refused(monkeypatch):
+def test_pairing_that_does_not_settle_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """With one search allowed, both a reach that is too small and a placement in overlap are refused, with what was
     found and what to do."""
     monkeypatch.setattr(displaced_search, "SEARCHES", 1)

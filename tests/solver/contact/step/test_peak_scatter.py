@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,11 +43,11 @@ def flat(d: int) -> PairedSurfaces:
 
 
 @pytest.fixture(scope="module", params=[2, 3])
-def paired(request) -> PairedSurfaces:
+def paired(request: pytest.FixtureRequest) -> PairedSurfaces:
     return flat(request.param)
 
 
-def test_smooth_pressures_have_no_scatter(paired):
+def test_smooth_pressures_have_no_scatter(paired: PairedSurfaces) -> None:
     """Uniform, a square root, and Hertz' over ten cells: smooth but for rounding."""
     x = paired.operator.points[:, :-1]
     r = np.linalg.norm(x - 4.1, axis=1)
@@ -56,7 +57,7 @@ def test_smooth_pressures_have_no_scatter(paired):
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0])
-def test_scatter_of_a_wave_is_its_amplitude(paired, period):
+def test_scatter_of_a_wave_is_its_amplitude(paired: PairedSurfaces, period: float) -> None:
     """Waves of ±10 % with the length of one cell of 0.5 mm, or of two: a scatter of about 10 %."""
     x = paired.operator.points[:, 0]
     assert peak_scatter(paired, 1.0 + 0.1 * np.cos(2.0 * np.pi * x / period)) == pytest.approx(0.1, abs=0.05)
@@ -71,14 +72,14 @@ def test_parabola_ignores_negative_weights() -> None:
     np.testing.assert_allclose(parabola(points, weights, values), values, atol=1e-12)
 
 
-def test_open_contact_has_no_scatter(paired):
+def test_open_contact_has_no_scatter(paired: PairedSurfaces) -> None:
     """No pressure, no scatter."""
     assert peak_scatter(paired, np.zeros(len(paired.operator.weights))) == 0.0
 
 
 @pytest.mark.parametrize("first", ["block", "cylinder"])
 @pytest.mark.parametrize("cells", [2.0, 4.0, 4.54, 8.0])
-def test_scatter_of_an_accurate_hertz_contact_is_small(cells, first):
+def test_scatter_of_an_accurate_hertz_contact_is_small(cells: float, first: str) -> None:
     """4, 8, 9 and 16 cells across the contact, wherever its edge cuts a cell: the peak is right within 0.6 %, and lies
     within 2 % of its surroundings."""
     contact = solve(cylinder_on_block(cells, ratio=1.37, first=first)).contacts[0]
@@ -91,7 +92,7 @@ def warned(contact: ContactResult) -> bool:
 
 
 @pytest.mark.parametrize(("cells", "over"), [(4.0, 0.25), (8.0, 0.12)])
-def test_scatter_of_order_1_cells_on_a_cylinder_is_large(cells, over):
+def test_scatter_of_order_1_cells_on_a_cylinder_is_large(cells: float, over: float) -> None:
     """Cells of order 1 on a finer block meet the cylinder as a polygon: the peak is more than a quarter and an eighth
     too high, at 8 and 16 cells."""
     contact = solve(cylinder_on_block(cells, order=1, ratio=1.37, first="block")).contacts[0]
@@ -130,7 +131,7 @@ def test_scatter_at_the_edge_of_a_flat_punch_is_large() -> None:
     assert warned(fine)
 
 
-def test_scatter_of_the_example_of_the_page(tmp_path, monkeypatch):
+def test_scatter_of_the_example_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """docs/own_problem.md about its example: with 0.25 mm, 4.2 cells, the peak is 11 % too high, and warned of; every
     mesh of two cells and more that is not warned of is within 3.5 %, from five cells on within 0.6 %."""
     page = (ROOT / "docs/own_problem.md").read_text()

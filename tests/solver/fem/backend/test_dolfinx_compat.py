@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import itertools
 import multiprocessing
+from multiprocessing.context import SpawnContext
+from multiprocessing.queues import Queue
+from pathlib import Path
 
 import gmsh
 import numpy as np
@@ -11,6 +14,7 @@ import pytest
 import ufl
 
 from evolvent.fem.backend import dolfinx_compat, form_compiler
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION
 
 SHAPES = [(shape, order) for shape in CELL_DIMENSION for order in (1, 2)]
@@ -23,10 +27,12 @@ FACET_TYPE = {
     ("triangle", 1): 1, ("triangle", 2): 8, ("quadrilateral", 1): 1, ("quadrilateral", 2): 8,
     ("tetrahedron", 1): 2, ("tetrahedron", 2): 9, ("hexahedron", 1): 3, ("hexahedron", 2): 10,
 }  # fmt: skip
+Block = tuple[str, int, Floats, Ints, Ints]
+"""shape, order, points, cells, facets at x = 0."""
 
 
 @pytest.fixture(scope="module", params=SHAPES, ids=[f"{shape}{order}" for shape, order in SHAPES])
-def block(request):
+def block(request: pytest.FixtureRequest) -> Block:
     """A box with one corner at the origin, meshed by gmsh: (shape, order, points, cells, facets at x = 0)."""
     shape, order = request.param
     gmsh.initialize(interruptible=False)
@@ -47,7 +53,7 @@ def block(request):
     return shape, order, points, cells, boundary[at_zero]
 
 
-def _model(dimension, recombine):
+def _model(dimension: int, recombine: bool) -> None:
     base = gmsh.model.occ.addRectangle(0, 0, 0, SIZE[0], SIZE[1])
     if dimension == 3:
         layers = [2] if recombine else []
@@ -61,17 +67,17 @@ def _model(dimension, recombine):
     gmsh.option.setNumber("Mesh.MeshSizeMax", 1.2)
 
 
-def _connectivity(element_type, number):
+def _connectivity(element_type: int, number: Ints) -> Ints:
     _, nodes = gmsh.model.mesh.getElementsByType(element_type)
     per_element = gmsh.model.mesh.getElementProperties(element_type)[3]
     return number[nodes.astype(np.int64)].reshape(-1, per_element)
 
 
-def _measure(dimension):
+def _measure(dimension: int) -> float:
     return float(np.prod(SIZE[:dimension]))
 
 
-def test_volume_of_a_box_and_the_mapping_of_its_cells(block):
+def test_volume_of_a_box_and_the_mapping_of_its_cells(block: Block) -> None:
     """The cells of a 2 x 3 (x 5) mm box add up to 6 mm² (30 mm³), and dolfinx's cells are the caller's, renumbered."""
     shape, order, points, cells, _ = block
     mesh = dolfinx_compat.create_mesh(points, cells, shape, order)
@@ -84,7 +90,7 @@ def test_volume_of_a_box_and_the_mapping_of_its_cells(block):
     assert np.allclose(points[dolfinx_compat.input_nodes(mesh)], mesh.geometry.x, atol=1e-14)
 
 
-def test_linear_displacement_is_a_patch(block):
+def test_linear_displacement_is_a_patch(block: Block) -> None:
     """u = A x with stress 2µ sym A + λ tr A I (µ = λ = 1): K u is zero at inner nodes, and uᵀK u = σ : ε · volume.
 
     u is written through node_dofs, so a wrong node map or a wrong permutation of mid nodes fails it.
@@ -109,14 +115,14 @@ def test_linear_displacement_is_a_patch(block):
     assert np.abs(force[blocks[used[inner]]]).max(initial=0.0) < 1e-12 * np.abs(stiffness.data).max()
 
 
-def _elasticity(space):
+def _elasticity(space: dolfinx_compat.Space) -> dolfinx_compat.Form:
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     strain_u, strain_v = ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))
     stress = 2 * strain_u + ufl.tr(strain_u) * ufl.Identity(len(u))
     return ufl.inner(stress, strain_v) * ufl.dx(metadata={"quadrature_degree": 4})
 
 
-def test_traction_on_a_named_facet_group(block):
+def test_traction_on_a_named_facet_group(block: Block) -> None:
     """Unit traction along +x on the side x = 0: the nodal forces sum to its length 3 mm (area 15 mm²), about y = 1.5.
 
     The facets come in the caller's node numbers.
@@ -136,7 +142,7 @@ def test_traction_on_a_named_facet_group(block):
     assert moment == pytest.approx(area * SIZE[1] / 2, rel=1e-11)
 
 
-def test_first_order_space_on_a_second_order_mesh(block):
+def test_first_order_space_on_a_second_order_mesh(block: Block) -> None:
     """Corner nodes have blocks, mid nodes have none; as many blocks as corners."""
     shape, order, points, cells, _ = block
     mesh = dolfinx_compat.create_mesh(points, cells, shape, order)
@@ -146,7 +152,7 @@ def test_first_order_space_on_a_second_order_mesh(block):
     assert np.array_equal(np.sort(blocks[corners]), np.arange(len(corners)))
 
 
-def test_space_of_higher_order_than_the_mesh_is_refused():
+def test_space_of_higher_order_than_the_mesh_is_refused() -> None:
     """Second order on straight triangles has blocks at no node of the caller: an error, not a wrong map."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     mesh = dolfinx_compat.create_mesh(points, np.array([[0, 1, 2]]), "triangle", 1)
@@ -154,7 +160,7 @@ def test_space_of_higher_order_than_the_mesh_is_refused():
         dolfinx_compat.node_dofs(dolfinx_compat.vector_space(mesh, 2), mesh)
 
 
-def test_unknown_facet_is_refused(block):
+def test_unknown_facet_is_refused(block: Block) -> None:
     """The nodes of one facet with one of them exchanged for a node on the far side form no facet."""
     shape, order, points, cells, facets = block
     mesh = dolfinx_compat.create_mesh(points, cells, shape, order)
@@ -164,7 +170,7 @@ def test_unknown_facet_is_refused(block):
         dolfinx_compat.facet_indices(mesh, wrong)
 
 
-def test_unused_nodes_have_no_block():
+def test_unused_nodes_have_no_block() -> None:
     """A node that no cell uses (gmsh leaves centres of arcs behind) gets block -1, the others stay right."""
     points = np.array([[9.0, 9.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     mesh = dolfinx_compat.create_mesh(points, np.array([[1, 2, 3]]), "triangle", 1)
@@ -180,13 +186,13 @@ def test_unused_nodes_have_no_block():
         (np.zeros((1, 10), dtype=np.int64), "triangle", 3, "wanted cells of order 1 or 2"),
     ],
 )
-def test_wrong_cells_are_refused(cells, shape, order, message):
+def test_wrong_cells_are_refused(cells: Ints, shape: str, order: int, message: str) -> None:
     """Prisms, serendipity cells and third order each name what was wanted."""
     with pytest.raises(ValueError, match=message):
         dolfinx_compat.create_mesh(np.zeros((27, 3)), cells, shape, order)
 
 
-def _compile_in_a_child(directory, queue):
+def _compile_in_a_child(directory: Path, queue: Queue[float]) -> None:
     # the spawned child's own copies
     form_compiler.form_directory = dolfinx_compat.form_directory = lambda version: directory
     points = np.array(list(itertools.product((0.0, 1.0), repeat=2)))
@@ -195,7 +201,7 @@ def _compile_in_a_child(directory, queue):
     queue.put(dolfinx_compat.assemble_number(3 * x[0] * x[1] ** 3 * ufl.dx))
 
 
-def test_forms_compile_after_a_kill_and_in_two_processes(tmp_path):
+def test_forms_compile_after_a_kill_and_in_two_processes(tmp_path: Path) -> None:
     """∫ 3 x y³ over the unit square is 3/8 in two processes at once, though a killed run left half a form behind.
 
     FFCx alone would wait 10 s for the dead compiler and give up.
@@ -210,7 +216,7 @@ def test_forms_compile_after_a_kill_and_in_two_processes(tmp_path):
     _run_children(context, tmp_path, queue)
 
 
-def _run_children(context, directory, queue):
+def _run_children(context: SpawnContext, directory: Path, queue: Queue[float]) -> None:
     children = [context.Process(target=_compile_in_a_child, args=(directory, queue)) for _ in range(2)]
     for child in children:
         child.start()
@@ -220,7 +226,7 @@ def _run_children(context, directory, queue):
     assert values == pytest.approx([3 / 8, 3 / 8], rel=1e-12)
 
 
-def test_versions_name_what_is_installed():
+def test_versions_name_what_is_installed() -> None:
     """The solver's libraries are named, each with a number."""
     versions = dolfinx_compat.versions()
     for name in ("python", "dolfinx", "petsc", "numpy", "scipy", "gmsh"):

@@ -72,7 +72,9 @@ def test_bearing_share_of_relieved_tips_at_a_light_load() -> None:
     scene = spur_scene("pinion.tip_relief_um=50", "load.torque_Nm=1")
     pair = scene.gear_pair()
     (start, end), ρ = pair.path_of_contact, pair.pitch_point_roll_lengths[0]
-    relieved = pair.pinion.roll_length(pair.pinion.modifications.tip_relief_start_diameter) - ρ
+    relief_start = pair.pinion.modifications.tip_relief_start_diameter
+    assert relief_start is not None
+    relieved = pair.pinion.roll_length(relief_start) - ρ
     found = bearing(pair, 1.0, STIFFNESS)
     assert found.share == pytest.approx((relieved - start) / (end - start), abs=0.04)
 

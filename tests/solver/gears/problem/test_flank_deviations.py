@@ -33,8 +33,9 @@ def test_chart_is_written_and_read_back(tmp_path: Path) -> None:
     header, *lines = made.text().splitlines()
     path.write_text("\n".join([header, *rng.permutation(lines)]))
     read = FlankChart.read(path)
-    for name in ("diameters", "heights", "depth"):
-        assert getattr(read, name) == pytest.approx(getattr(made, name), abs=1e-9)
+    assert read.diameters == pytest.approx(made.diameters, abs=1e-9)
+    assert read.heights == pytest.approx(made.heights, abs=1e-9)
+    assert read.depth == pytest.approx(made.depth, abs=1e-9)
     assert read.text() == made.text()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -168,7 +170,7 @@ def test_cut_faces_of_a_closed_ring_equal_the_merged_ring(sectors: int) -> None:
 
 
 @pytest.mark.parametrize("ends", ["closed", "free"])
-def test_cut_faces_under_several_loads_move_as_under_each(ends: str) -> None:
+def test_cut_faces_under_several_loads_move_as_under_each(ends: Literal["closed", "free"]) -> None:
     """Two loads at once on the same rows move the cut faces as each of them alone."""
     pitch = 2 * np.pi / 7
     gear = ChainedCompliance(sector_of("2D", pitch), ChainSettings(pitch, 4, -2, dimension=2, ends=ends))

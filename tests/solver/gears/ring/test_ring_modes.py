@@ -88,7 +88,8 @@ def test_ring_coupling_rotates_with_the_tooth_frame(sector: SectorCondensation) 
     wanted, found = coupled(sector, "ring", 1e-8), coupling(own, turn, JOINED["ring"], 1e-8)
     for i, j in np.ndindex(NAMED, NAMED):
         K = wanted.modes @ wanted.between(i, j) @ wanted.modes.T
-        np.testing.assert_allclose(found.modes @ found.between(i, j) @ found.modes.T, K, atol=1e-8 * np.linalg.norm(K))
+        small = 1e-8 * float(np.linalg.norm(K))
+        np.testing.assert_allclose(found.modes @ found.between(i, j) @ found.modes.T, K, atol=small)
 
 
 def test_compressed_matrix_is_within_the_tolerance() -> None:

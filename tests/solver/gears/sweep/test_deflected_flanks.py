@@ -77,8 +77,9 @@ def test_flanks_displaced_as_by_a_rotation_are_those_of_the_rotated_gear() -> No
     wanted = gear_contact(model.bodies, turned, teeth, model.half_width)
     moved = gear_contact(model.bodies, stand, teeth, model.half_width, displaced)
     assert moved.geometry.tooth.tolist() == wanted.geometry.tooth.tolist()
-    for name in ("frames", "weights", "points"):
-        assert np.allclose(getattr(moved.operator, name), getattr(wanted.operator, name), rtol=0.0, atol=1e-10), name
+    assert np.allclose(moved.operator.frames, wanted.operator.frames, rtol=0.0, atol=1e-10)
+    assert np.allclose(moved.operator.weights, wanted.operator.weights, rtol=0.0, atol=1e-10)
+    assert np.allclose(moved.operator.points, wanted.operator.points, rtol=0.0, atol=1e-10)
     assert np.allclose(moved.geometry.spins, wanted.geometry.spins, rtol=0.0, atol=1e-9)
     for own in moved.geometry.teeth:
         first, second = placed_flanks(model.bodies, stand, own.tooth)
@@ -141,9 +142,9 @@ def test_coefficients_on_deflected_flanks_are_independent(bent: GearModel) -> No
     further = shared_position(replace(bent, half_width=1.5 * bent.half_width), 0.1, (0.0, 0.0), [0.1], None)
     histories = [FrictionHistory.of(bent, own.contact, own.smooth) for own in (shared, further)]
     geometry = shared.contact.geometry
-    jumps = [previous_jumps(geometry, each)[i].jump for each, i in ((histories, 1), (histories[1:], 0))]
+    together, apart = (previous_jumps(geometry, each)[i].jump for each, i in ((histories, 1), (histories[1:], 0)))
     assert len(histories[0].rows[0]) != len(histories[1].rows[0])
-    assert np.array_equal(*jumps)
+    assert np.array_equal(together, apart)
 
 
 def _swept(model: GearModel, frictions: list[float]) -> list[SweptPosition]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +11,9 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import pitch_sweep
+from evolvent_meshes.errors import EvolventError
 from tests.support.gear_cases import Curves, model_of, spur_scene, swept
+from tests.support.running.patches import calling_first
 
 STEP = 0.18
 DEGREES = STEP * np.arange(-4, 8)
@@ -31,22 +32,17 @@ def whole(spur: GearModel) -> Curves:
     return swept(spur, DEGREES, [0.3])[0]
 
 
-def failing_once(function: Callable[..., Any], angle: Callable[..., float], error: Exception) -> Callable[..., Any]:
-    """The function, which raises the error at its first call for each angle [rad] of FAILING."""
-    left = list(FAILING)
-
-    def patched(*arguments: Any) -> Any:
+def failing_once(angle: Callable[..., float], error: Exception, left: list[float]) -> Callable[..., None]:
+    """Raises the error where it is first called for an angle [°] of `left`, which it takes out."""
+    def fail(*arguments: object) -> None:
         degrees = round(float(np.degrees(angle(*arguments))), 6)
         if degrees in left:
             left.remove(degrees)
             raise error
-        return function(*arguments)
-
-    patched.left = left  # type: ignore[attr-defined]
-    return patched
+    return fail
 
 
-FAILURES = {
+FAILURES: dict[str, tuple[str, Callable[..., float], type[EvolventError]]] = {
     "friction does not converge": ("solve_position", lambda _, shared, *__: shared.contact.stand.angle, NotConverged),
     "the search does not converge": ("shared_position", lambda _, angle, *__: angle, NotConverged),
     "the search fails": ("shared_position", lambda _, angle, *__: angle, SearchError),
@@ -62,10 +58,11 @@ def test_a_position_that_fails_once_is_approached_in_two_halves(
     which none fails: to rounding where all slides, within 3 % of the friction coefficient's effect right behind the
     pitch point."""
     name, angle, error = FAILURES[failure]
-    patched = failing_once(getattr(pitch_sweep, name), angle, error("as the test wants"))
-    monkeypatch.setattr(pitch_sweep, name, patched)
+    left = list(FAILING)
+    fail = failing_once(angle, error("as the test wants"), left)
+    monkeypatch.setattr(pitch_sweep, name, calling_first(getattr(pitch_sweep, name), fail))
     halved = swept(spur, DEGREES, [0.3])[0]
-    assert patched.left == []  # type: ignore[attr-defined]
+    assert left == []
     assert halved.degrees.tolist() == whole.degrees.tolist()
     difference = np.abs(halved.of("transmission_error") - whole.of("transmission_error"))
     assert difference[:6].max() == 0.0
@@ -80,7 +77,7 @@ def test_a_position_that_always_fails_ends_the_sweep(
     """Four halvings, then NotConverged with the angle; nothing is yielded."""
     tried = []
 
-    def failing(model: GearModel, angle: float, *_: Any) -> None:
+    def failing(model: GearModel, angle: float, *_: object) -> None:
         tried.append(angle)
         raise error("as the test wants")
 

@@ -103,8 +103,10 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
     ridge = UM * pitch_point_depth(pair.run, Member.PINION, K)
     away = np.abs(depths.radius - pitch) > 0.1 * study.scene.pair.normal_module_mm
     product = float(np.median(depths.peak_times_sliding[away] / depths.computed[away]))
-    at = {name: float(np.interp(r, contacts.radius, getattr(contacts, name)))
-          for name in ("peak", "hertz", "sliding", "single_point")}  # fmt: skip
+    peak, hertz, sliding, single_point = (
+        float(np.interp(r, contacts.radius, values))
+        for values in (contacts.peak, contacts.hertz, contacts.sliding, contacts.single_point)
+    )
     hertz_lasts = float(np.ptp(point.rotation[point.hertz > 0.0]))
     volume = pair.run.width * float(chart_grid(last, Member.PINION).areas @ last.worn[0].depth.T.ravel())
     local = 0.15 if coarse else 0.02  # accuracy of the width and peak pressure of a single contact
@@ -113,8 +115,8 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
         Compared(f"depth at {here}", million, at_point, "line contact, own load", line, 0.05),
         Compared("depth at the pitch point", million, lowest, "Hertz ridge", ridge, 0.1),
         Compared("Eq. 24 over the depth, median", "", product, "4/π", 4.0 / np.pi, 0.02),
-        Compared(f"stress at {here}", "MPa", at["peak"], "Hertz, own load", at["hertz"], local),
-        Compared(f"sliding at {here}", "µm", 1e3 * at["sliding"], "2b|ζ|", 1e3 * at["single_point"], local),
+        Compared(f"stress at {here}", "MPa", peak, "Hertz, own load", hertz, local),
+        Compared(f"sliding at {here}", "µm", 1e3 * sliding, "2b|ζ|", 1e3 * single_point, local),
         Compared(f"{here} bears over", "°", np.degrees(point.lasts), "Hertz", np.degrees(hertz_lasts), local),
         Compared("volume off a pinion's tooth", "mm³", volume, "(K/H)∫∫p|v_s| dA dt", last.volumes[0], 1e-6),
     ]  # fmt: skip

@@ -17,6 +17,7 @@ import csv
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import matplotlib
 import numpy as np
@@ -82,10 +83,12 @@ class Profile:
         middle = np.abs(self.x) < 0.7 * self.half_width
         return float(np.sqrt(np.polyfit(self.x[middle] ** 2, self.pressure[middle] ** 2, 1)[-1]))
 
-    def error(self, other: Profile, field: str = "pressure") -> float:
+    def error(self, other: Profile, field: Literal["pressure", "shear"] = "pressure") -> float:
         """Relative L2 difference of the pressure (or shear) fields."""
         grid = np.linspace(-1.5, 1.5, 6001) * self.half_width
-        mine, theirs = (np.interp(grid, p.x, getattr(p, field), 0.0, 0.0) for p in (self, other))
+        mine, theirs = (
+            np.interp(grid, p.x, p.pressure if field == "pressure" else p.shear, 0.0, 0.0) for p in (self, other)
+        )
         return float(np.linalg.norm(mine - theirs) / np.linalg.norm(theirs))
 
 

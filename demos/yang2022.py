@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.results.contact_slices import Slices
 from evolvent.results.run_data import RunData, read_run
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import load_scene
@@ -39,11 +40,11 @@ def main(out: Path, quick: bool = False) -> None:
 
 def friction_effect(run: RunData) -> tuple[float, float]:
     """Relative change of the mean line load from the lowest to the highest μ, before and after the pitch point."""
-    loads, names = [], ("roll_distance", "line_load", "width")
+    loads = []
     for index in (0, -1):
-        cuts = [each[index].cut for each in run.positions]
-        ξ, load, width = (np.concatenate([getattr(cut, name) for cut in cuts]) for name in names)
-        loads.append([np.sum((load * width)[side]) for side in (ξ < 0.0, ξ > 0.0)])
+        cut = Slices.joined([each[index].cut for each in run.positions])
+        ξ, force = cut.roll_distance, cut.line_load * cut.width
+        loads.append([np.sum(force[side]) for side in (ξ < 0.0, ξ > 0.0)])
     change = np.array(loads[1]) / np.array(loads[0]) - 1.0
     return float(change[0]), float(change[1])
 

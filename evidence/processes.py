@@ -60,7 +60,11 @@ class Cost:
     @staticmethod
     def median(costs: Sequence[Cost]) -> Cost:
         """Median of each figure."""
-        return Cost(*(statistics.median(getattr(c, name) for c in costs) for name in ("wall", "cpu", "memory_MB")))
+        return Cost(
+            wall=statistics.median(cost.wall for cost in costs),
+            cpu=statistics.median(cost.cpu for cost in costs),
+            memory_MB=statistics.median(cost.memory_MB for cost in costs),
+        )
 
 
 class RunFailed(RuntimeError):

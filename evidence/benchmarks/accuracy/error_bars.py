@@ -154,8 +154,14 @@ def _reference(problem: BarProblem, halvings: int) -> RunData:
 
 def _finer_body(resolution: SectorResolution) -> SectorResolution:
     """Twice the elements where no level refines: halved cells keep the fillet's outline, these follow it closer."""
-    counts = "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements"
-    return replace(resolution, **{name: 2 * getattr(resolution, name) for name in counts})
+    return replace(
+        resolution,
+        neck_elements=2 * resolution.neck_elements,
+        fillet_elements=2 * resolution.fillet_elements,
+        back_elements=2 * resolution.back_elements,
+        core_elements=2 * resolution.core_elements,
+        rim_elements=2 * resolution.rim_elements,
+    )
 
 
 def _figures(run: RunData, inner: tuple[float, float]) -> list[list[float]]:

@@ -63,7 +63,8 @@ def _spur_said(rows: Sequence[SpurRow]) -> list[str]:
 
 def _wear_said(rows: Sequence[WearCostRow]) -> list[str]:
     whole, bare = (
-        "met" if all(getattr(row, name) <= WEAR_BAR for row in rows) else "missed" for name in ("whole", "bare")
+        "met" if all(ratio <= WEAR_BAR for ratio in ratios) else "missed"
+        for ratios in ([row.whole for row in rows], [row.bare for row in rows])
     )
     return [
         f"A study of {BLOCKS} implicit blocks over one sweep of the unworn pair, without friction, CPU seconds; "

@@ -63,8 +63,8 @@ def wear_summary(outcomes: Sequence[WearOutcome]) -> str:
     """Counts by kind, and every message, as Markdown."""
     kinds = sorted({outcome.kind or "unknown" for outcome in outcomes})
     counts = Counter((outcome.verdict, outcome.kind or "unknown") for outcome in outcomes)
-    fastest, deepest = (max(getattr(outcome, name) for outcome in outcomes) for name in ("fastest", "depth"))
-    done, refused = (sum(getattr(outcome, name) for outcome in outcomes) for name in ("blocks", "refused"))
+    fastest, deepest = max(outcome.fastest for outcome in outcomes), max(outcome.depth for outcome in outcomes)
+    done, refused = sum(outcome.blocks for outcome in outcomes), sum(outcome.refused for outcome in outcomes)
     left = sum(outcome.blocks == BLOCKS for outcome in outcomes)
     words = (
         f"{len(outcomes)} studies of up to {BLOCKS} blocks, seeds {outcomes[0].seed} to {outcomes[-1].seed}: K/H up to "

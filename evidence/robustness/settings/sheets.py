@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import nan
 from pathlib import Path
 
@@ -80,7 +81,7 @@ def sheet_of(
     solve: the cell of a row and a column.
     """
     cells = tuple(
-        tuple(attempt(lambda i=i, j=j: solve(i, j)) for j in range(len(columns[1])))  # type: ignore[misc]
+        tuple(attempt(partial(solve, i, j)) for j in range(len(columns[1])))
         for i in range(len(rows[1]))
     )
     return Sheet(*names, rows[0], columns[0], _texts(rows[1]), _texts(columns[1]), cells)

@@ -7,7 +7,10 @@ from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, fields
 from math import isnan
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Row = TypeVar("Row")
 _READ: dict[str, Callable[[str], object]] = {"float": float, "int": int, "str": str}
@@ -88,7 +91,7 @@ def read_csv(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def write_rows(path: Path, rows: Sequence[Any]) -> None:
+def write_rows(path: Path, rows: Sequence[DataclassInstance]) -> None:
     """Rows of one dataclass as a CSV file, numbers with six digits. Raises OSError."""
     names = [field.name for field in fields(rows[0])]
     write_csv(path, names, [[_shown(getattr(row, name)) for name in names] for row in rows])

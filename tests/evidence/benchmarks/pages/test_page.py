@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
 from evidence.benchmarks.comparison.work_precision import Row
@@ -15,6 +16,9 @@ from evidence.benchmarks.gears.wear import WearCostRow, WearPrecisionRow
 from evidence.benchmarks.pages.comparison import advantage, unmatched
 from evidence.benchmarks.pages.page import write_page
 from evidence.tables import read_rows, write_rows
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 def test_an_advantage_counts_only_at_no_larger_error(tmp_path: Path) -> None:
@@ -36,7 +40,7 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     """Rows of every kind, in and out of their bars: the page holds ratios of the rows (30/10, 25/1, one of two inside),
     names the skip beyond its tolerance, and leaves out what was not measured."""
     nan = float("nan")
-    rows: dict[str, Sequence[object]] = {
+    rows: dict[str, Sequence[DataclassInstance]] = {
         "skips": [SkipRow("plane", "demos/a.toml", "", 10.0, 30.0, 100.0, 250.0, 1e-5, 1e-3),
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],

@@ -6,6 +6,7 @@ A page that is written by hand has generated parts between two marks, `<!-- begi
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 
 from evidence import mutations
@@ -43,5 +44,9 @@ def _filled(page: Path, parts: dict[str, str]) -> str:
         mark = re.compile(rf"(<!-- begin {name}: [^\n]*? -->\n\n)(?:.*?\n\n)??(<!-- end -->)", re.DOTALL)
         if (count := len(mark.findall(text))) != 1:
             raise ValueError(f"{page}: wanted the marks of a part {name!r} once, found {count} of them")
-        text = mark.sub(lambda found, part=part: f"{found[1]}{part}\n\n{found[2]}", text)  # type: ignore[misc]
+        text = mark.sub(partial(_between, part), text)
     return text
+
+
+def _between(part: str, marks: re.Match[str]) -> str:
+    return f"{marks[1]}{part}\n\n{marks[2]}"

@@ -165,8 +165,8 @@ def _type(hint: Any) -> Schema:
         return {"type": simple[hint]}
     if hint is float:
         return {"type": ["number", "null"]}
-    if is_dataclass(hint):
-        return _object(hint)  # type: ignore[arg-type]
+    if isinstance(hint, type) and is_dataclass(hint):
+        return _object(hint)
     origin, parts = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return {"anyOf": [{"type": "null"} if part is type(None) else _type(part) for part in parts]}

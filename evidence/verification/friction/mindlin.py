@@ -96,9 +96,9 @@ def _inner(radius: Floats, share: float) -> Floats:
 def problem() -> Problem:
     """Half a ball on half a block, cells in rings; the block carries the pressure."""
     size, fine = CONTACT / CELLS, 1.25 * CONTACT
-    growth, fine_depth = 1.7, 0.25 * CONTACT
-    ball = ring_sphere(RADIUS, SIDE, SIDE, CONTACT, size, fine, growth=growth, fine_depth=fine_depth)
-    block = ring_block(SIDE, SIDE, CONTACT, size / 0.8, fine, growth=growth, fine_depth=fine_depth)
+    order, growth, fine_depth = 2, 1.7, 0.25 * CONTACT
+    ball = ring_sphere(RADIUS, SIDE, SIDE, CONTACT, size, fine, order, growth, fine_depth)
+    block = ring_block(SIDE, SIDE, CONTACT, size / 0.8, fine, order, growth, fine_depth)
     symmetry, freedoms = Fixed("symmetry_y", "y"), (Freedom("z", load=-0.5 * LOAD), Freedom("x", displacement=0.0))
     bodies = (
         Body(_half(ball, "arc"), MATERIAL, (symmetry,), rigid=Rigid("top", freedoms), name="ball"),

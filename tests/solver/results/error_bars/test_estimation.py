@@ -88,11 +88,17 @@ def test_error_bars_shrink_with_the_mesh() -> None:
 
 def finer_mesh(problem: GearProblem, member: Member) -> MeshData:
     def twice(own: SectorResolution) -> SectorResolution:
-        counts = (
-            "profile_elements", "neck_elements", "fillet_elements", "back_elements", "core_elements", "rim_elements",
-        )  # fmt: skip
-        doubled: dict[str, Any] = {name: 2 * getattr(own, name) for name in counts}
-        return replace(own, **doubled, layer_depths=tuple(0.5 * depth for depth in own.layer_depths))
+        upper, middle, lower = own.layer_depths
+        return replace(
+            own,
+            layer_depths=(0.5 * upper, 0.5 * middle, 0.5 * lower),
+            profile_elements=2 * own.profile_elements,
+            neck_elements=2 * own.neck_elements,
+            fillet_elements=2 * own.fillet_elements,
+            back_elements=2 * own.back_elements,
+            core_elements=2 * own.core_elements,
+            rim_elements=2 * own.rim_elements,
+        )
 
     return gear_mesh(problem, member, adapted=twice)
 

@@ -217,7 +217,7 @@ def test_sentence_has_the_changes_that_are_drawn(run: RunData) -> None:
     first, second, *rest = run.positions
     spoilt = replace(second[2], cut=replace(second[2].cut, peak=1.2 * second[2].cut.peak))
     with styled():
-        figure = tooth_stress(replace(run, positions=[first, (*second[:2], spoilt), *rest]))
+        figure = tooth_stress(replace(run, positions=(first, (*second[:2], spoilt), *rest)))
     for axes in figure.axes[len(figure.axes) // 2 :]:
         changes = axes.lines[-1].get_ydata()
         wanted = f"by {signed(float(changes.min()))} to {signed(float(changes.max()))} %"

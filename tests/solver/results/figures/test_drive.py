@@ -36,7 +36,7 @@ def test_line_load_shows_every_slice() -> None:
     def further(cut: Slices) -> Slices:
         return replace(cut, roll_distance=cut.roll_distance + np.where(cut.edge, np.sign(cut.roll_distance), 0.0))
 
-    wide = [tuple(replace(each, cut=further(each.cut)) for each in position) for position in run.positions]
+    wide = tuple(tuple(replace(each, cut=further(each.cut)) for each in position) for position in run.positions)
     upper, _ = sliding_of(replace(run, positions=wide))
     inside = upper.get_window_extent()
     for line in upper.lines[:2]:

@@ -64,10 +64,10 @@ def test_scale_holds_all_between_the_tip_edges(run: RunData) -> None:
     """Problem: the nodes' pressures are half as high again as the fitted peaks, as at a kink of the flank. Exact: also
     then nothing that a map shows between the tip-edge zones is above the scale; what is above has the colour that the
     scale names, also in the tutorial's pictures with their palette."""
-    raised = [
+    raised = tuple(
         tuple(replace(each, result=replace(each.result, traction=1.5 * each.result.traction)) for each in position)
         for position in run.positions
-    ]
+    )
     kinked = replace(run, positions=raised)
     low, high = kinked.inner_path
     top = pressure_top(kinked, 0)

@@ -49,9 +49,9 @@ def with_cuts(run: RunData, changed: Callable[[Slices, PositionResult], Slices])
     """The run with other slices."""
     return replace(
         run,
-        positions=[
+        positions=tuple(
             tuple(replace(each, cut=changed(each.cut, each.result)) for each in position) for position in run.positions
-        ],
+        ),
     )
 
 

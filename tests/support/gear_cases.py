@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from mpi4py import MPI
@@ -66,7 +67,7 @@ class Curves:
     degrees: Floats
     results: list[PositionResult]
 
-    def of(self, name: str) -> Floats:
+    def of(self, name: Literal["transmission_error", "torques", "residual", "friction_loss"]) -> Floats:
         """An attribute of all results."""
         return np.array([getattr(result, name) for result in self.results])
 

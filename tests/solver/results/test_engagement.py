@@ -15,10 +15,9 @@ from evolvent.results.engagement import (
     engagement,
     engagements,
     largest_peak,
-    line_mean,
-    line_peak,
     sign_changes,
 )
+from evolvent.results.line_peaks import line_mean, line_peak
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.gears.flank import contact_lines
 from tests.support.synthetic_run import even_line_load, synthetic_run

@@ -19,7 +19,8 @@ import scipy.sparse as sp
 
 from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.nitsche.contact_operator import ContactOperator, LawValues
+from evolvent.contact.nitsche.contact_operator import ContactOperator
+from evolvent.contact.nitsche.coulomb import LawValues
 from evolvent_meshes.arrays import Floats, Ints
 
 SLIDING = 0.05  # a point slides if its traction changes with the tangential jump by less than this fraction of γ_t

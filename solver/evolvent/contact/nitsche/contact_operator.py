@@ -27,7 +27,8 @@ from evolvent.contact.nitsche.coulomb import LawValues
 from evolvent.contact.search.pairing import Pairing
 from evolvent.fem.lagrange import quadrature, tabulate
 from evolvent.fem.nodal_frames import tangent_frames
-from evolvent.fem.surface import Surface, hats
+from evolvent.fem.reference_facets import hats
+from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 
 ContactLaw = Callable[[Floats], LawValues]

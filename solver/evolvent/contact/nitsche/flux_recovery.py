@@ -21,8 +21,9 @@ import scipy.sparse as sp
 from evolvent.fem.lagrange import gmsh_permutation, node_points, quadrature, tabulate
 from evolvent.fem.material import Material, traction_rows
 from evolvent.fem.nodal_frames import tangent_frames
+from evolvent.fem.reference_facets import hats
 from evolvent.fem.rigid_modes import rigid_modes
-from evolvent.fem.surface import Surface, adjacent_cells, hats
+from evolvent.fem.surface import Surface, adjacent_cells
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 

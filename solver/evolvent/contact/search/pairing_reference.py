@@ -21,6 +21,8 @@ from evolvent_meshes.arrays import Floats
 EXTENSION = 1.1  # as in projection.py: facets are continued linearly beyond 1.1 times their size
 OPPOSED = -0.2  # as in facet_candidates.py: n1·n2 of facets that can meet
 
+_Row = tuple[int, Floats, int, Floats, float, float]
+
 
 def pair_surfaces_slowly(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: float,
                          degree: int = 4) -> Pairing:
@@ -101,7 +103,7 @@ def _follow(surface: Surface, f: int, x1: Floats, n1: Floats) -> tuple[Floats, f
     return solution[:-1], float(solution[-1])
 
 
-def _pair(surface1: Surface, f1: int, surface2: Surface, f2: int, degree: int) -> list[tuple]:
+def _pair(surface1: Surface, f1: int, surface2: Surface, f2: int, degree: int) -> list[_Row]:
     """Rows (facet1, xi1, facet2, xi2, weight, gap) of one pair of facets."""
     image = [_project(surface1, f1, _at(surface2, f2, xi)[0]) for xi in _outline(surface2, surface1.order)]
     rows = []
@@ -148,7 +150,7 @@ def _cut(polygon: list[Floats], a: Floats, b: Floats) -> list[Floats]:
     return result
 
 
-def _rows(surface1: Surface, f1: int, surface2: Surface, f2: int, simplex: Floats, degree: int) -> list[tuple]:
+def _rows(surface1: Surface, f1: int, surface2: Surface, f2: int, simplex: Floats, degree: int) -> list[_Row]:
     """Rows of one simplex (dt+1, dt)."""
     edges = simplex[1:] - simplex[0]
     size = float(np.linalg.det(edges))

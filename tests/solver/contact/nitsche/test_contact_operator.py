@@ -36,6 +36,7 @@ from evolvent.contact.nitsche.flux_recovery import nitsche_traction
 from evolvent.contact.solution.full_system import FullContact
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.surface import surface_of
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.meshes.merged_mesh import Merged
 
@@ -111,7 +112,7 @@ def test_recovered_traction_agrees_with_ufl(merged: Merged) -> None:
     assert np.abs(found - exact[:, : found.shape[1]]).max() < 1e-12 * np.abs(exact).max()
 
 
-def _stabilisers(merged: Merged, values: np.ndarray) -> list:
+def _stabilisers(merged: Merged, values: Floats) -> list[Any]:
     """γ and γ_t on the interface, from the values (n, 2) at the surface's nodes."""
     result = []
     for column in values.T:

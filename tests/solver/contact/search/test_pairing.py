@@ -8,8 +8,8 @@ import pytest
 from evolvent import SearchError
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.fem.lagrange import tabulate
-from evolvent.fem.reference_facets import reference_cell
-from evolvent.fem.surface import Surface, hats
+from evolvent.fem.reference_facets import hats, reference_cell
+from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 from tests.support.meshes.surface_shapes import Place, cap, curve, facing, lattice, rectangle, shaken
 

@@ -7,7 +7,8 @@ import pytest
 
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
-from evolvent.fem.surface import Surface, hats
+from evolvent.fem.reference_facets import hats
+from evolvent.fem.surface import Surface
 from tests.support.meshes.surface_shapes import cap, curve, facing, lattice
 
 Kind = tuple[str, int]

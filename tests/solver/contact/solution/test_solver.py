@@ -6,6 +6,7 @@ import importlib
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -43,7 +44,7 @@ def test_programs_of_the_page_on_own_problems_run(tmp_path: Path, monkeypatch: p
     first, second = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(first.strip().splitlines()) <= 40
     monkeypatch.chdir(tmp_path)
-    names: dict = {}
+    names: dict[str, Any] = {}
     exec(compile(first, "own_problem.md", "exec"), names)
     force = names["solution"].contacts[0].force
     assert force[1] == pytest.approx(-names["LOAD"], rel=1e-8)

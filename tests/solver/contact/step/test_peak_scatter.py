@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -139,7 +140,7 @@ def test_scatter_of_the_example_of_the_page(tmp_path: Path, monkeypatch: pytest.
     program = program.replace("hook.msh", str(tmp_path / "hook.msh"))
 
     def found(cell: float) -> ContactResult:
-        names: dict = {}
+        names: dict[str, Any] = {}
         exec(compile(program.replace("CELL = 2000.0, 0.1", f"CELL = 2000.0, {cell}"), "own_problem.md", "exec"), names)
         return solve(names["problem"]).contacts[0]
 

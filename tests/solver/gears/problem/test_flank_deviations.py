@@ -12,7 +12,8 @@ from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.csv_tables import TableError
-from tests.support.gear_cases import ROOT, model_of, spur_scene
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import model_of, spur_scene
 
 DIAMETERS = np.linspace(144.0, 156.0, 25)
 PAIR = spur_scene().gear_pair()

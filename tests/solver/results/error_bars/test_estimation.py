@@ -14,6 +14,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
 from evidence.benchmarks.accuracy.subdivision import halved
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.archive import Archive
@@ -103,7 +104,7 @@ def finer_mesh(problem: GearProblem, member: Member) -> MeshData:
     return gear_mesh(problem, member, adapted=twice)
 
 
-def solved(scene: Scene, mesh: coarse_run.Mesher) -> RunData:
+def solved(scene: Scene, mesh: Mesher) -> RunData:
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
     assert run is not None
     return run

@@ -12,7 +12,8 @@ import pytest
 
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.scene import load_scene, scene_from_text
-from tests.support.gear_cases import ROOT, spur_scene
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import spur_scene
 from tests.support.scene_texts import DEMOS, HE, YANG
 
 SCENES = ("yang2022", "he2022", "zhang2023")

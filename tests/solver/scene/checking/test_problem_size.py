@@ -22,7 +22,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.section import section_mesh
-from tests.support.gear_cases import ROOT, helical_scene, model_of, spur_scene, swept
+from tests.support.checkout import ROOT
+from tests.support.gear_cases import helical_scene, model_of, spur_scene, swept
 from tests.support.running.processes import Run
 
 MEBIBYTE = 1.048576

@@ -28,7 +28,7 @@ from evolvent.scene.gear_problem import gear_problem
 FULL, SMALL = (1.7, 20), (1.0, 4)
 """Elements across the contact width, and positions."""
 PARTS = (
-    ("meshing", "scene/meshing/sector_meshes.py", "gear_mesh"),
+    ("meshing", "gears/meshing/sector_meshes.py", "gear_mesh"),
     ("assembling: stiffness", "fem/body.py", "assemble"),
     ("assembling: Nitsche's constant term", "contact/nitsche/flux_recovery.py", "constant_term"),
     ("condensing: order of elimination", "fem/condensation/elimination_order.py", "dissect"),

@@ -26,7 +26,7 @@ def geometry(cycle: Cycle = TRAVEL) -> WornGeometry:
 def test_no_class_derives_from_the_step_system() -> None:
     """Wear is composed with a step system: no subclass can be half initialised while the system's constructor runs."""
     (system,) = geometry().systems
-    assert type(system).__subclasses__() == []
+    assert [kind for kind in type(system).__subclasses__() if kind.__module__.startswith("evolvent")] == []
 
 
 @pytest.mark.parametrize(("cycle", "searches"), [(TRAVEL, 1), (to_and_fro(5e-4), 5)])

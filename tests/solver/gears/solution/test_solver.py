@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import doctest
 import json
 import re
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -24,7 +22,6 @@ from evolvent.gears import (
     solve_single_position,
 )
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.problem import gear_problem, hertz_estimate
 from evolvent.gears.solution import solver
 from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
 from evolvent.results.archive.archive import Archive
@@ -75,13 +72,6 @@ def test_figures_of_the_page_are_those_of_its_program() -> None:
     stated = re.search(r"It prints ([\d.]+) µm and ([\d.]+) %", text)
     assert stated is not None
     assert (f"{1e3 * names['pitch'].peak_to_peak:.2f}", f"{100 * names['pitch'].loss:.2f}") == stated.groups()
-
-
-@pytest.mark.parametrize("module", [gear_problem, hertz_estimate, solver], ids=lambda module: module.__name__)
-def test_examples_run(module: ModuleType) -> None:
-    """The examples in the docstrings print what they say."""
-    done = doctest.testmod(module)
-    assert done.attempted > 0 and done.failed == 0
 
 
 def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:

@@ -19,7 +19,7 @@ FILES = [path.relative_to(root) for root, path in ALL if ">>> " in path.read_tex
 SHOWN = (
     evolvent.Body, evolvent.Material, evolvent.MeshData, evolvent.Problem, evolvent.Contact, evolvent.Step,
     evolvent.read_msh, evolvent.solve, evolvent.sweep, evolvent.gears.GearParameters.from_rack, evolvent.gears.GearPair,
-    evolvent.gears.GearProblem, evolvent.gears.solve_pitches, evolvent.wear.Archard, evolvent.wear.BlockSettings,
+    evolvent.gears.GearProblem, evolvent.gears.condense, evolvent.wear.Archard, evolvent.wear.BlockSettings,
 )  # fmt: skip
 
 

@@ -6,10 +6,7 @@ import sys
 import warnings
 from pathlib import Path
 
-import evolvent
-import evolvent_meshes
-
-PACKAGE_FOLDERS = tuple(str(Path(str(package.__file__)).parent) + "/" for package in (evolvent, evolvent_meshes))
+PACKAGE_FOLDERS = f"{Path(__file__).resolve().parents[2]}/", f"{Path(errors.__file__).resolve().parent}/"
 
 
 def warn_user(message: str, category: type[Warning]) -> None:

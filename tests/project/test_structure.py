@@ -155,6 +155,20 @@ def test_a_room_imports_from_rooms_above_it() -> None:
     assert refused(found) == []
 
 
+def test_rooms_do_not_use_the_doors_of_packages() -> None:
+    """`evolvent/__init__.py`, `evolvent/gears/__init__.py` and so on list public names of rooms; no room imports from
+    them, but for the version that the command line prints."""
+    known = modules()
+    doors = []
+    for module, path in known.items():
+        for node in ast.walk(ast.parse(path.read_bytes())):
+            if not isinstance(node, ast.ImportFrom) or node.module in known:
+                continue
+            if str(node.module).startswith("evolvent"):
+                doors += [(module, name) for each in node.names if (name := f"{node.module}.{each.name}") not in known]
+    assert doors == [("evolvent.cli", "evolvent.__version__")]
+
+
 def test_the_list_of_rooms_has_no_arrow_up() -> None:
     """A room may import only what stands before it in the list."""
     names = list(ROOMS)

@@ -6,6 +6,8 @@ import sys
 import warnings
 from pathlib import Path
 
+from evolvent_meshes import errors
+
 PACKAGE_FOLDERS = f"{Path(__file__).resolve().parents[2]}/", f"{Path(errors.__file__).resolve().parent}/"
 
 

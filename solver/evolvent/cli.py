@@ -57,7 +57,6 @@ Examples:
   evolvent plot out/yang2022
 
 Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else.""",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # examples keep their lines
@@ -246,13 +245,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with silent_except_on_first():
         keep_fonts()
         try:
-            status = app(args=given, prog_name="evolvent", standalone_mode=False)
+            status = app(args=given or ["--help"], prog_name="evolvent", standalone_mode=False)
         except UsageError as error:
             return leave(usage_message(error), Exit.BAD_INPUT).exit_code
         except typer.Abort:
             return Exit.FAILED
         except SystemExit as end:
             return end.code if isinstance(end.code, int) else Exit.FAILED
+    if not given:
+        return Exit.BAD_INPUT  # nothing was asked for; versions of click disagree on the status of the help then
     return status if isinstance(status, int) else Exit.DONE
 
 

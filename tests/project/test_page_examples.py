@@ -91,9 +91,10 @@ def test_python_blocks_run(page: Path, checkout: Path) -> None:
 
 @pytest.mark.parametrize("page", having("toml"), ids=lambda page: page.name)
 def test_scenes_are_scenes(page: Path) -> None:
-    """Each TOML block of a page is a scene without an error."""
+    """Each TOML block of a page is a scene without an error, and says the same as it is written back with defaults."""
     for text in blocks(page, "toml"):
-        scene_from_text(text)
+        scene = scene_from_text(text)
+        assert scene_from_text(scene.resolved_toml()) == scene
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
+from evidence.checkout import ROOT as ROOT
+from evidence.checkout import python_path
 
-ROOT = Path(__file__).resolve().parents[2]
-PYTHONPATH = os.pathsep.join(str(ROOT / root) for root in ("", "solver", "meshes"))
+PYTHONPATH = python_path()
 """For programs that tests start: this checkout's packages, also where another copy is installed."""

@@ -12,12 +12,11 @@ from pathlib import Path
 from typing import Any, Self
 
 from pydantic import BaseModel, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
 
 from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
-from evolvent.gears.problem.load_limits import LARGEST_DEFLECTION, NARROWEST_CONTACT, WIDEST_CONTACT
+from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
@@ -85,23 +84,13 @@ class Scene(SceneSection):
 
     @model_validator(mode="after")
     def _strain_is_small(self) -> Self:
-        estimate = self.hertz_estimate()
-        half_width, radius = float(estimate.half_width(0.0)), float(estimate.pair.relative_curvature_radius(0.0))
-        if half_width > WIDEST_CONTACT * radius:
-            most = self.load.torque_Nm * (WIDEST_CONTACT * radius / half_width) ** 2
-            raise self._too_loaded(f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm", most)
-        deflection = estimate.tooth_deflection(*self.materials()) / self.pair.normal_module_mm
-        if deflection > LARGEST_DEFLECTION:
-            most = self.load.torque_Nm * LARGEST_DEFLECTION / deflection
-            raise self._too_loaded(f"teeth bend by about {deflection:.2g} modules", most)
+        if excess := overload(self.hertz_estimate(), self.materials()):
+            found = f"{shown(self.load.torque_Nm)} ({excess.why})"
+            most = self.load.torque_Nm * excess.allowed_share
+            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
+            remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
+            raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
         return self
-
-    def _too_loaded(self, why: str, most: float) -> PydanticCustomError:
-        """The torque is too large. most: the largest torque that is allowed [N·m]."""
-        found = f"{shown(self.load.torque_Nm)} ({why})"
-        allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
-        remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
-        return validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
 
     @model_validator(mode="after")
     def _flanks_are_charted(self) -> Self:

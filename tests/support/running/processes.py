@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import pytest
 
+from evidence.processes import MPI_AS_ROOT
 from tests.support.checkout import PYTHONPATH, ROOT
 
 Done = subprocess.CompletedProcess[str]
@@ -64,13 +65,4 @@ def on_ranks(*counts: int) -> list[Any]:
 def _environment() -> dict[str, str]:
     """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
     path = os.pathsep.join(filter(None, [PYTHONPATH, os.environ.get("PYTHONPATH")]))
-    return {
-        **os.environ,
-        "PYTHONPATH": path,
-        "OMP_NUM_THREADS": "1",
-        "MPLBACKEND": "Agg",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-    }
+    return {**os.environ, **MPI_AS_ROOT, "PYTHONPATH": path, "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from evolvent.fem.material import Material
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.errors import InputError
 
 WIDEST_CONTACT = 0.2
@@ -15,25 +19,40 @@ LARGEST_DEFLECTION = 0.1
 it 107 were solved, of 38 above it 9. Loaded plastic gears come near it, steel gears stay far below."""
 
 
-def check_load(problem: GearProblem) -> None:
-    """Raises InputError for a torque under which the contact has no width, or strains are large.
+@dataclass(frozen=True)
+class Overload:
+    """Why strains are not small under a torque."""
+
+    why: str
+    """The figure that is too large, in words."""
+    allowed_share: float
+    """Largest torque at which strains are small, over the torque."""
+
+
+def overload(estimate: HertzEstimate, materials: tuple[Material, Material]) -> Overload | None:
+    """Whether a torque is too large for small strain, None where it is not. materials: of (pinion, wheel).
 
     The Hertz half-width grows with the root of the torque, the teeth's deflection with the torque.
     """
-    estimate, module = problem.hertz_estimate, problem.pair.pinion.normal_module
     half_width, radius = float(estimate.half_width(0.0)), float(estimate.pair.relative_curvature_radius(0.0))
-    deflection = estimate.tooth_deflection(*problem.materials) / module
+    if half_width > WIDEST_CONTACT * radius:
+        why = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
+        return Overload(why, (WIDEST_CONTACT * radius / half_width) ** 2)
+    deflection = estimate.tooth_deflection(*materials) / estimate.pair.pinion.normal_module
+    if deflection > LARGEST_DEFLECTION:
+        return Overload(f"teeth bend by about {deflection:.2g} modules", LARGEST_DEFLECTION / deflection)
+    return None
+
+
+def check_load(problem: GearProblem) -> None:
+    """Raises InputError for a torque under which the contact has no width, or strains are large."""
+    half_width = float(problem.hertz_estimate.half_width(0.0))
     if not half_width >= NARROWEST_CONTACT:
         why, limit = f"Hertz half-width {half_width:.3g} mm", f"at least {NARROWEST_CONTACT:g} mm"
         raise _refused(problem, f"a contact with a half-width of {limit}", why, "raise it")
-    if half_width > WIDEST_CONTACT * radius:
-        most = problem.torque * (WIDEST_CONTACT * radius / half_width) ** 2
-        why = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
-        raise _refused(problem, f"up to {most:.3g} N·mm, as strains must stay small", why, "lower it")
-    if deflection > LARGEST_DEFLECTION:
-        most = problem.torque * LARGEST_DEFLECTION / deflection
-        why = f"teeth bend by about {deflection:.2g} modules"
-        raise _refused(problem, f"up to {most:.3g} N·mm, as strains must stay small", why, "lower it")
+    if found := overload(problem.hertz_estimate, problem.materials):
+        most = problem.torque * found.allowed_share
+        raise _refused(problem, f"up to {most:.3g} N·mm, as strains must stay small", found.why, "lower it")
 
 
 def _refused(problem: GearProblem, wanted: str, why: str, remedy: str) -> InputError:

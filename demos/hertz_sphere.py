@@ -117,13 +117,13 @@ def ball_on_block(
 
 def cases(quick: bool) -> dict[str, Problem]:
     """Name -> problem; the last but two is the finest mesh of rings."""
-    cells = (2, 4) if quick else (2, 4, 6, 8)
-    squares = f"squares, a/{cells[-1]}"
+    cells, square = ((2, 4), 2) if quick else ((2, 4, 6, 8), 8)
+    squares = f"squares, a/{square}"
     return {
         "rings, a/2, friction 0.2": ball_on_block(2, friction=0.2),
         **{f"rings, a/{n}": ball_on_block(n) for n in cells},
-        squares: ball_on_block(cells[-1], rings=False),
-        f"{squares}, skew": ball_on_block(cells[-1], rings=False, nitsche=SKEW),
+        squares: ball_on_block(square, rings=False),
+        f"{squares}, skew": ball_on_block(square, rings=False, nitsche=SKEW),
     }
 
 

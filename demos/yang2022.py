@@ -21,7 +21,7 @@ from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import load_scene
 
 SMALL = (
-    'mesh.level="quick"', "mesh.elements_per_contact_width=1.0", "contact.friction=[0.07, 0.30]", "sweep.positions=4",
+    'mesh.level="quick"', "mesh.elements_per_contact_width=0.7", "contact.friction=[0.07, 0.30]", "sweep.positions=4",
     "output.animation=false",
 )  # fmt: skip
 

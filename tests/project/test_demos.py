@@ -54,13 +54,13 @@ def test_demo(run_script: Run, alone: Alone, tmp_path: Path, demo: str, ranks: i
 
 @pytest.mark.slow
 def test_ball_profile_on_squares(alone: Alone) -> None:
-    """Square cells of a/4, cut by the edge of contact at all angles: the skew method's profile with γ = 0.3 C is off by
-    less than 4 %, and by less than half of what the symmetric one's is (13 %)."""
+    """Square cells of a/2, cut by the edge of contact at all angles: the skew method's profile with γ = 0.3 C is off by
+    less than 4 %, and by less than half of what the symmetric one's is (16 %)."""
     done, out = alone("hertz_sphere")
     assert done.returncode == 0, done.stderr[-3000:]
     with open(out / "table.csv", encoding="utf-8") as file:
         error = {row["mesh"]: float(row["profile error [%]"] or 0.0) for row in csv.DictReader(file)}
-    assert error["squares, a/4, skew"] < min(4.0, 0.5 * error["squares, a/4"])
+    assert error["squares, a/2, skew"] < min(4.0, 0.5 * error["squares, a/2"])
 
 
 @pytest.mark.slow

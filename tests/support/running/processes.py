@@ -63,6 +63,8 @@ def on_ranks(*counts: int) -> list[Any]:
 
 
 def _environment() -> dict[str, str]:
-    """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores."""
+    """One thread a rank; Open MPI 4 and 5 as root with more ranks than cores. A rank that waits for another leaves its
+    core to the tests of other workers."""
     path = os.pathsep.join(filter(None, [PYTHONPATH, os.environ.get("PYTHONPATH")]))
-    return {**os.environ, **MPI_AS_ROOT, "PYTHONPATH": path, "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+    shared = {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg", "OMPI_MCA_mpi_yield_when_idle": "1"}
+    return {**os.environ, **MPI_AS_ROOT, **shared}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -121,6 +122,14 @@ class StepSystem:
             [np.full(len(op.weights), c.friction) for c, op in zip(self.problem.contacts, self.operators)]
         )
 
+    @cached_property
+    def compliance(self) -> Floats:
+        """Σ E_b C_b E_bᵀ of all bodies in local jumps, (Σn·d, Σn·d) [mm/N]: gaps and stabilisers do not change it."""
+        total = np.zeros((self.maps[0].shape[0],) * 2)
+        for E, body in zip(self.maps, self.condensed):
+            total += E @ (E @ body.compliance.T).T
+        return total
+
     def load_jump(self) -> Floats:
         """Local jumps under the external loads alone, (Σn·d,) [mm]."""
         return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.condensed))
@@ -131,10 +140,8 @@ class StepSystem:
         operators: one a contact, instead of `self.operators`, with other gaps or stabilisers on the same pairs.
         """
         operator = stacked(self.operators if operators is None else list(operators))
-        n = len(operator.nodes) * self.d
-        A, jump, H, F = np.zeros((n, n)), self.load_jump(), [], []
+        jump, H, F = self.load_jump(), [], []
         for E, body, motions in zip(self.maps, self.condensed, self.motions):
-            A += E @ (E @ body.compliance.T).T
             held = np.flatnonzero(~np.isnan(motions.value))
             moved = E @ body.motion_shapes
             jump = jump + moved[:, held] @ motions.value[held]
@@ -142,7 +149,7 @@ class StepSystem:
             F.append(motions.load[motions.free])
         motion, load = np.hstack(H), np.concatenate(F)
         lever = np.abs(motion).max(axis=0, initial=0.0)
-        return CondensedSystem(operator, A, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
+        return CondensedSystem(operator, self.compliance, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
 
     def solve(
         self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None

@@ -16,7 +16,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
-from evolvent.wear.gears.pair_geometry import GearMeshMotion
+from evolvent.wear.gears.meshed_pair import GearMeshMotion
 from evolvent.wear.results.report import WornPair
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData

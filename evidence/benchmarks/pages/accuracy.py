@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from evidence.benchmarks.accuracy.error_bars import BarRow, hit_rate
-from evidence.benchmarks.pages.section import Section
+from evidence.benchmarks.pages.section import PageSection
 from evidence.tables import Column, Table
 
 
@@ -59,7 +59,7 @@ def _spacing_said(rows: Sequence[BarRow]) -> list[str]:
     ]
 
 
-SECTIONS: tuple[Section, ...] = (
-    Section("Error bars", "bars", Table(BarRow), words=_bars_said, after=_hits),
-    Section("The spacing of positions", "spacing", Table(BarRow), words=_spacing_said, after=_hits),
+SECTIONS: tuple[PageSection, ...] = (
+    PageSection("Error bars", "bars", Table(BarRow), words=_bars_said, after=_hits),
+    PageSection("The spacing of positions", "spacing", Table(BarRow), words=_spacing_said, after=_hits),
 )

@@ -10,7 +10,7 @@ from evidence.benchmarks.comparison.programs import EVOLVENT
 from evidence.benchmarks.comparison.work_precision import OverkillRow, Row
 from evidence.benchmarks.gears.position_cost import GearRow
 from evidence.benchmarks.pages import figures
-from evidence.benchmarks.pages.section import Section, verdict
+from evidence.benchmarks.pages.section import PageSection, verdict
 from evidence.tables import Column, Table
 
 TITLES = {"hertz2d": "Cylinder on block, 2D", "hertz3d": "Sphere on block, 3D"}
@@ -123,13 +123,13 @@ def _gears_said(rows: Sequence[GearRow]) -> list[str]:
     return [*ratios, *anew(rows)]
 
 
-SECTIONS: tuple[Section, ...] = (
+SECTIONS: tuple[PageSection, ...] = (
     *(
-        Section(
+        PageSection(
             title, name, HERTZ, partial(_overkill_said, name), partial(figures.work_precision, title=title), title,
             partial(_advantage_said, *FROM[name]),
         )
         for name, title in TITLES.items()
     ),
-    Section("Gear pair", "gears", GEARS, figure=figures.gears, caption="Seconds a position", words=_gears_said),
+    PageSection("Gear pair", "gears", GEARS, figure=figures.gears, caption="Seconds a position", words=_gears_said),
 )  # fmt: skip

@@ -11,7 +11,7 @@ from evidence.benchmarks.gears.scaling import RatioRow, SizeRow, exponent
 from evidence.benchmarks.gears.skips import SkipRow
 from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow, WearPrecisionRow
 from evidence.benchmarks.pages import figures
-from evidence.benchmarks.pages.section import Section, verdict
+from evidence.benchmarks.pages.section import PageSection, verdict
 from evidence.tables import Column, Table
 
 SPUR_BAR = 20.0
@@ -145,18 +145,18 @@ WEAR_TABLE = Table(
         Column("of the volume %", "volume_error", "+.2%"),
     ),
 )  # fmt: skip
-COSTS: tuple[Section, ...] = (
-    Section(
+COSTS: tuple[PageSection, ...] = (
+    PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],
     ),
-    Section("A pitch", "ratios", RATIO_TABLE),
-    Section("Size", "sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size", after=_power_laws),
-    Section("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
-    Section("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
-    Section("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
+    PageSection("A pitch", "ratios", RATIO_TABLE),
+    PageSection("Size", "sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size", after=_power_laws),
+    PageSection("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
+    PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
+    PageSection("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
 )  # fmt: skip
-WEAR: tuple[Section, ...] = (
-    Section("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
-    Section("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
+WEAR: tuple[PageSection, ...] = (
+    PageSection("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
+    PageSection("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
 )

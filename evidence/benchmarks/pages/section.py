@@ -21,7 +21,7 @@ def nothing(_: object) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Section(Generic[Row]):
+class PageSection(Generic[Row]):
     """A section; left out where nothing of its table was measured."""
 
     title: str

@@ -22,7 +22,7 @@ ROUNDS = 50
 
 
 @dataclass(frozen=True)
-class Section:
+class MeridianSection:
     """A mesh of the section r, z.
 
     points: (n, 2), r and z [mm].
@@ -39,7 +39,7 @@ class Section:
     axis: Ints
 
 
-def sphere_section(radius: float, side: float, height: float, a: float, cells: int) -> Section:
+def sphere_section(radius: float, side: float, height: float, a: float, cells: int) -> MeridianSection:
     """Of an upright cylinder of radius `side`, flat at z = `height`, whose underside is a sphere that touches z = 0;
     cells of a/`cells` up to 1.3 a from the axis. All lengths in mm."""
     line = np.append(np.linspace(0.0, a, cells + 1)[:-1], a + graded_ends(side - a, a / cells, 0.3 * a, 1.15))
@@ -49,10 +49,10 @@ def sphere_section(radius: float, side: float, height: float, a: float, cells: i
     points = np.stack([np.broadcast_to(r[:, None], heights.shape), heights], axis=-1).reshape(-1, 2)
     number = np.arange(len(points)).reshape(heights.shape)
     cells_of_nodes = lattice_cells((len(r) // 2, len(z) // 2), 2)[:, gmsh_permutation("quadrilateral", 2)]
-    return Section(points, cells_of_nodes, number[:, 0], number[:, -1], number[0])
+    return MeridianSection(points, cells_of_nodes, number[:, 0], number[:, -1], number[0])
 
 
-def pressed_on_plane(section: Section, material: Material, approach: float) -> tuple[float, Floats, Floats]:
+def pressed_on_plane(section: MeridianSection, material: Material, approach: float) -> tuple[float, Floats, Floats]:
     """A body whose top comes nearer to the plane by `approach` [mm]: force on the whole of it [N], radii (n,) of the
     nodes of its underside [mm], pressure (n,) there [MPa]. Raises RuntimeError where the active set keeps changing."""
     K, n = _stiffness(section, material), 2 * len(section.points)
@@ -77,7 +77,7 @@ def pressed_on_plane(section: Section, material: Material, approach: float) -> t
     raise RuntimeError(f"active set: wanted one that stays, found it changing after {ROUNDS} rounds")
 
 
-def _stiffness(section: Section, material: Material) -> sp.csr_matrix:
+def _stiffness(section: MeridianSection, material: Material) -> sp.csr_matrix:
     """∫ε:σ r dr dz, strains rr, zz, θθ, 2rz."""
     xi, w = quadrature("quadrilateral", 5)
     N, dN = tabulate("quadrilateral", 2, xi)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from evolvent.wear.gears.gear_study import study_states as study_states
     from evolvent.wear.gears.gear_wear import GearWear as GearWear
     from evolvent.wear.gears.gear_wear import PitchState as PitchState
-    from evolvent.wear.gears.pair_geometry import GearMeshMotion as GearMeshMotion
+    from evolvent.wear.gears.meshed_pair import GearMeshMotion as GearMeshMotion
     from evolvent.wear.gears.solver import wear_study as wear_study
     from evolvent.wear.gears.solver import wearing_pair as wearing_pair
     from evolvent.wear.mesh_motion import MeshInverted as MeshInverted

@@ -28,7 +28,7 @@ from evolvent.wear.archard import Archard, certify_volume
 from evolvent.wear.block_stepping import RETRIED_ERRORS, CycleEvaluation
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.gears.implicit_block import LinearBlock, PositionResponse
-from evolvent.wear.gears.pair_geometry import GearMeshMotion, PairGeometry
+from evolvent.wear.gears.meshed_pair import GearMeshMotion, MeshedPair
 from evolvent.wear.gears.passage import MeshPassage, mesh_passage
 from evolvent.wear.gears.worn_sweep import WornSweep
 from evolvent_meshes.arrays import Bools, Floats
@@ -87,7 +87,7 @@ class GearWear:
                 f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; take those of uniform_pitch"
             )
         self.pitch, self.friction, self.law, self.mesh_motion = pitch, friction, law, mesh_motion
-        self.geometry = PairGeometry.of(model)
+        self.geometry = MeshedPair.of(model)
         charted = [b.worn if b.worn is not None else np.zeros(len(b.flank.points)) for b in model.bodies]
         self.begin = np.concatenate(charted)
         self._comm, self._step = comm, step

@@ -16,7 +16,7 @@ from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import StudyState, study_states
 from evolvent.wear.gears.gear_wear import GearWear
-from evolvent.wear.gears.pair_geometry import GearMeshMotion
+from evolvent.wear.gears.meshed_pair import GearMeshMotion
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData

@@ -39,7 +39,7 @@ class GearMeshMotion:
 
 
 @dataclass(frozen=True)
-class PairGeometry:
+class MeshedPair:
     """Both gears as meshed and condensed.
 
     model: condensed gears on the present meshes.
@@ -56,11 +56,11 @@ class PairGeometry:
     mesh_updates: int = 0
 
     @staticmethod
-    def of(model: GearModel) -> PairGeometry:
+    def of(model: GearModel) -> MeshedPair:
         """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid."""
         grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         unworn = tuple((body.mesh, body.flank) for body in model.bodies)
-        return PairGeometry(model, grids, unworn, np.zeros(sum(grid.node.size for grid in grids)))
+        return MeshedPair(model, grids, unworn, np.zeros(sum(grid.node.size for grid in grids)))
 
     @cached_property
     def areas(self) -> Floats:
@@ -88,7 +88,7 @@ class PairGeometry:
         pinion, wheel = (replace(body, worn=gap) for body, gap in zip(self.model.bodies, gaps))
         return replace(self.model, bodies=(pinion, wheel))
 
-    def moved(self, depth: Floats, motion: GearMeshMotion) -> PairGeometry:
+    def moved(self, depth: Floats, motion: GearMeshMotion) -> MeshedPair:
         """The gears with meshes that include what they can of depths (n,), condensed anew.
 
         Raises MeshInverted, MeshVolumeLost.

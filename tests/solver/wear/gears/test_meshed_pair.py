@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evolvent.wear.gears.pair_geometry import MESHABLE_SLOPE
+from evolvent.wear.gears.meshed_pair import MESHABLE_SLOPE
 from evolvent.wear.mesh_motion import mesh_volume
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from tests.support.gear_wear_cases import smooth_wear, wear_scene, wearing_gears

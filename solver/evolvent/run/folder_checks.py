@@ -64,4 +64,4 @@ def foreign_files(out: Path) -> str:
     foreign = RunFolder(out).foreign_files()
     named = ", ".join(path.relative_to(out).as_posix() for path in foreign[:NAMED])
     more = f" and {len(foreign) - NAMED} more" if len(foreign) > NAMED else ""
-    return f"left alone, as no run has made them: {named}{more}" if foreign else ""
+    return f"left alone, as no run has written them: {named}{more}" if foreign else ""

@@ -76,7 +76,7 @@ def test_control_points_of_curves_are_no_nodes() -> None:
 
 
 def test_gmsh_session_of_the_caller_is_unchanged() -> None:
-    """Reading a file inside somebody's gmsh session neither ends it nor touches their model."""
+    """Reading a file inside a user's gmsh session neither ends it nor changes its model."""
     gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)

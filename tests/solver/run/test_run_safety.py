@@ -80,7 +80,7 @@ def test_overwriting_removes_files_of_runs_only(out: Path) -> None:
     ]
     assert len(json.loads((out / "summary.json").read_text(encoding="utf-8"))["positions"]) == 3
     log = (out / "run.log").read_text(encoding="utf-8")
-    assert "left alone, as no run has made them: photo.png" in log
+    assert "left alone, as no run has written them: photo.png" in log
     assert "pictures/02_mine.png" in log and "results/measured.npz" in log
 
 

@@ -70,7 +70,7 @@ class RunFolder:
         if foreign:
             raise FolderError(
                 f"{self.out}: wanted to write {', '.join(self._name(path) for path in foreign[:NAMED])}, found "
-                f"{_files(len(foreign))} of this name that no run has made, or that somebody has changed since; "
+                f"{_files(len(foreign))} of this name that no run has written, or that was changed since; "
                 f"move or remove {_all_of(foreign)}, or name another folder with --out"
             )
 

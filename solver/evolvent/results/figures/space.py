@@ -40,17 +40,17 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     _image(
         figure.add_subplot(grid[:, 0]),
         pair_picture(run, result, top, (1500, 1060)),
-        "the pair, wheel drawn as glass, which tints colours",
+        "the pair; the transparent wheel tints the colours",
     )
     _image(
         figure.add_subplot(grid[0, 1]),
         gear_picture(run, result, Member.PINION, top, (960, 560)),
-        "pinion flanks, wheel taken away",
+        "pinion flanks (wheel hidden)",
     )
     _image(
         figure.add_subplot(grid[1, 1]),
         gear_picture(run, result, Member.WHEEL, top, (960, 560)),
-        "wheel flanks, pinion taken away",
+        "wheel flanks (pinion hidden)",
     )
     bar = figure.colorbar(
         ScalarMappable(Normalize(0.0, top), PRESSURE_MAP),

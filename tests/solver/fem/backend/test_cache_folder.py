@@ -32,7 +32,7 @@ def test_forms_are_kept_without_a_writable_home(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("how", ["writable", "link", "owned"])
 def test_cache_folder_of_another_user_is_not_used(how: str, tmp_path: Path) -> None:
-    """The folder below the temporary one may be written by others, is a link, or belongs to somebody else, who could
+    """The folder below the temporary one may be written by others, is a link, or belongs to another user, who could
     leave code there: nothing is put into it or loaded from it, one line says so, what was compiled is gone at the end.
     """
     folder, other = tmp_path / f"evolvent-{os.geteuid()}", tmp_path / "other"

@@ -61,7 +61,7 @@ def test_changed_file_is_foreign(folder: RunFolder) -> None:
     """A picture that was edited after the run is neither replaced nor removed."""
     path = folder.out / "pictures/02_flank_pressure.png"
     path.write_text("painted over", encoding="utf-8")
-    with pytest.raises(FolderError, match=r"02_flank_pressure\.png, found a file of this name that no run has made"):
+    with pytest.raises(FolderError, match=r"02_flank_pressure\.png, found a file of this name that no run has written"):
         folder.write_text("pictures/02_flank_pressure.png", "new")
     folder.clear()
     assert path.read_text(encoding="utf-8") == "painted over"

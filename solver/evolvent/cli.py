@@ -149,7 +149,7 @@ def mesh(
 ) -> None:
     """Write the mesh of both sectors for gmsh.
 
-    One tooth sector of each gear, as they stand when they touch at the pitch point, with named groups.
+    One tooth sector of each gear, in contact at the pitch point, with named groups.
     """
     with reported():
         loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
@@ -167,7 +167,8 @@ def mesh(
         made = standing_pair(gear_problem(loaded))
         write_msh(made, out)
         quality = float(scaled_jacobians(made).min())
-        typer.echo(f"{out}: {len(made.cells):,} cells, {len(made.points):,} nodes, least scaled Jacobian {quality:.2g}")
+        counts = f"{len(made.cells):,} cells, {len(made.points):,} nodes"
+        typer.echo(f"{out}: {counts}, smallest scaled Jacobian {quality:.2g}")
         if quality < WORST_CELL:
             typer.echo(f"Warning: {bad_cells(quality)}", err=True)
 

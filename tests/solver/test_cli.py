@@ -133,7 +133,7 @@ def test_mesh_writes_a_gmsh_file(shape: str, order: int, scene: Path, capsys: py
     out = scene.parent / "new" / "pair.msh"
     settings = ["--set", f"mesh.shape={shape}", "--set", f"mesh.order={order}", "--level", "quick"]
     assert main(["mesh", str(scene), "--out", str(out), *settings]) == 0
-    assert "least scaled Jacobian" in capsys.readouterr().out
+    assert "smallest scaled Jacobian" in capsys.readouterr().out
     mesh = read_msh(out)
     assert (mesh.shape, mesh.order) == ({"hexahedron": "quadrilateral", "tetrahedron": "triangle"}[shape], order)
     assert {"pinion_flank", "wheel_flank", "pinion_bore"} <= set(mesh.facets)

@@ -40,7 +40,7 @@ class GearModel:
     """All that positions share."""
 
     pair: GearPair
-    """Both gears and how they stand."""
+    """Both gears and the position of their axes."""
     bodies: tuple[GearBody, GearBody]
     """Condensed pinion and wheel."""
     teeth: tuple[int, ...]

@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Stand:
-    """The rotations of both gears."""
+    """Angular position of both gears."""
 
     pair: GearPair
     """The gears' geometry."""

@@ -32,7 +32,7 @@ def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source:
     results = [name for name in COMPUTED if (out / name).exists()]
     if results and not (resume or overwrite):
         raise FolderError(
-            f"{out}: found the results of a run ({results[0]}); allowed: a folder without; remedy: --resume goes on "
+            f"{out}: found the results of a run ({results[0]}); allowed: a folder without; remedy: --resume continues "
             "after them, --overwrite removes them and computes anew, --out names another folder"
         )
 

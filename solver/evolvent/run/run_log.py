@@ -65,7 +65,7 @@ class LogFile(logging.Handler):
             write()
         except OSError as error:
             self._lost = True
-            print(f"evolvent: {self.path}: the log ends here ({error}); the run goes on", file=sys.stderr)
+            print(f"evolvent: {self.path}: the log ends here ({error}); the run continues", file=sys.stderr)
 
 
 class RunLog:

@@ -51,7 +51,7 @@ def no_results_warning(scene: Scene, archive: Archive) -> str:
     name = "state.npz" if scene.wear is None else "wear.npz"
     if (archive.folder / name).exists():
         return ""
-    return f"--resume found nothing to go on from in {archive.out} (no results/{name}); the run begins from the start."
+    return f"--resume found nothing to continue in {archive.out} (no results/{name}); the run begins from the start."
 
 
 def scene_to_solve(scene: Scene, archive: Archive, resume: bool) -> Scene:

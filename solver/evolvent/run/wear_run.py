@@ -107,7 +107,7 @@ def mesh_motion_of(run: RunContext, scene: Scene) -> GearMeshMotion:
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
         model = prepare_model(gear_problem(scene), run.comm, lambda _, member: mesh(member)).model
-        run.log.info("the meshes have followed the wear; both gears are condensed anew")
+        run.log.info("the meshes have followed the wear; both gears are condensed again")
         return model
 
     return GearMeshMotion(REFRESH * module if given is None else 1e-3 * given, condensed)

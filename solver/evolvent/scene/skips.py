@@ -72,7 +72,7 @@ def _teeth_sentence(scene: Scene) -> str:
 
 def _reuse_sentence(scene: Scene) -> str:
     count = len(scene.contact.friction)
-    return f"The stiffness is factored once a gear and reused for all {count} friction coefficients."
+    return f"The stiffness is factored once per gear and reused for all {count} friction coefficients."
 
 
 def _picture_sentence(scene: Scene) -> str:
@@ -92,7 +92,7 @@ SKIPS: tuple[Skip, ...] = (
     Skip(
         "friction-terms",
         _has_frictionless,
-        lambda _: "Friction terms where μ = 0: normal components only, and nothing is remembered.",
+        lambda _: "Friction terms where μ = 0: normal components only, no friction history.",
         tolerance=ROUND_OFF,  # the same equations, the tangential ones decoupled
     ),
     # with friction what closing a pitch leaves of where it began: of the peak-to-peak transmission error, of the error

@@ -52,7 +52,7 @@ def test_peak_at_a_zone_limit_does_not_depend_on_the_positions(runs: list[RunDat
 def test_peak_at_a_zone_limit_is_warned_of(runs: list[RunData]) -> None:
     """The sentence names the roll distance where the zone begins, which no position stands at."""
     low = runs[1].inner_path[0]
-    (said,) = [sentence for sentence in warnings_of(runs[1], GOOD) if "where the zone of a tip edge begins" in sentence]
+    (said,) = [sentence for sentence in warnings_of(runs[1], GOOD) if "where a tip-edge zone begins" in sentence]
     assert f"ξ = −{-low:.2f} mm" in said
     assert not any(abs(solved.cut.roll_distance - low).min() < 1e-4 for each in runs[1].positions for solved in each)
 

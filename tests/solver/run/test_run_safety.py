@@ -132,12 +132,12 @@ def test_changed_results_are_not_written_over(out: Path, capsys: pytest.CaptureF
 def test_resuming_without_results_is_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """--resume where no run has been, as after one that was stopped while meshing: it begins, and says so; not of a
     run that is there."""
-    said = f"--resume found nothing to go on from in {tmp_path / 'new'} (no results/state.npz)"
+    said = f"--resume found nothing to continue in {tmp_path / 'new'} (no results/state.npz)"
     assert run(tmp_path / "new", "--resume") == 0
     assert capsys.readouterr().err.count(said) == 1
     assert said in (tmp_path / "new/run.log").read_text(encoding="utf-8")
     assert run(tmp_path / "new", "--resume") == 0
-    assert "found nothing to go on from" not in capsys.readouterr().err
+    assert "found nothing to continue" not in capsys.readouterr().err
 
 
 CUT = {"results/state.npz": "--overwrite", "results/position_0002.npz": "--overwrite", "summary.json": "--resume"}

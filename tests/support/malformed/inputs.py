@@ -169,7 +169,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "check: no such scene": (["check", "{folder}/no.toml"], "scene file", "No such file", "check the path"),
     "check: two scenes": (["check", SCENE, "b.toml"], "arguments", '"b.toml"', "leave it out"),
     "check: folder": (["check", SCENE, "--out", "x"], "--out", "an unknown option", "--level, --set, --no-skip"),
-    "check: empty level": (["check", SCENE, "--level="], "mesh.level", '""', "quick is for looking"),
+    "check: empty level": (["check", SCENE, "--level="], "mesh.level", '""', "quick is for orientation"),
     "check: level twice": (["check", SCENE, "--level", "quick", "--level", "3"], "mesh.level", '"3"', "quick is for"),
     "check: level by key": (["check", SCENE, "--set", "level=quick"], "level", '"quick"', "did you mean mesh.level?"),
     "check: order true": (["check", SCENE, "--set", "mesh.order=true"], "mesh.order", "true", "give 1 or 2"),
@@ -183,7 +183,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "mesh: resume": (["mesh", SCENE, "--out", "{folder}/a.msh", "--resume"], "--resume", "unknown", "--out"),
     "mesh: no such scene": (["mesh", "no.toml", "--out", "{folder}/a.msh"], "scene file", "No such file", "check the"),
     "mesh: unknown level": (
-        ["mesh", SCENE, "--out", "{folder}/a.msh", "--level", "0"], "mesh.level", '"0"', "quick is for looking",
+        ["mesh", SCENE, "--out", "{folder}/a.msh", "--level", "0"], "mesh.level", '"0"', "quick is for orientation",
     ),
     "mesh: too large": (
         ["mesh", SCENE, "--out", "{folder}/a.msh", "--set", "load.torque_Nm=1e-4", "--set", "wheel.face_width_mm=19"],

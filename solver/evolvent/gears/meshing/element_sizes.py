@@ -25,7 +25,7 @@ elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice a
 ratio 7 1.96, ratio 70 2.7; at 3: 1.01, 1.01, 1.03. With the softer gear as pinion: 1.03 at 1.5 elements."""
 SHEAR_PER_ELEMENT = {"quick": (0.85, 0.85), "standard": (0.85, 1.05), "fine": (1.2, 1.4)}
 """By how many elements a layer of (pinion, wheel) may shear the pressure ridge, on average along the profile; near the
-pinion tip it is 1.7 times that. The pinion, in whose space the jump lives, decides: there 1.05 instead of 0.85 at
+pinion tip it is 1.7 times that. The pinion, on whose nodes the jump is defined, decides: there 1.05 instead of 0.85 at
 standard makes nine in ten peaks right within 4.5 % instead of 2.6 %, and at quick 1.25 within 28 % instead of 13 %."""
 LEAST_LAYERS = {"quick": 8, "standard": 12, "fine": 20}
 """Layers of a spur gear, whose contact line is the lead line: enough for crowning and the ends of the face."""

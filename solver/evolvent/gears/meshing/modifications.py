@@ -92,8 +92,8 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
         figures = " and ".join(f"{key} = {1e3 * given[key]:g}" for key in named)
         yield (
             f"{figures} (µm): the flanks bear on about {100.0 * whole.share:.0f} % of the length of their contact "
-            f"lines, where teeth give way by up to {1e3 * whole.deflection:.3g} µm; a pair that carries the whole load "
-            f"over the whole face gives way by {1e3 * single:.3g} µm. Check the figures, their unit and the torque."
+            f"lines, where teeth deflect by up to {1e3 * whole.deflection:.3g} µm; a pair that carries the whole load "
+            f"over the whole face deflects by {1e3 * single:.3g} µm. Check the figures, their unit and the torque."
         )
 
 

@@ -34,7 +34,7 @@ class MeshSettings:
     """
 
     level: Level = "standard"
-    """`quick` for looking, `standard` for results, `fine` for reference."""
+    """`quick` for orientation, `standard` for results, `fine` for reference."""
     elements_per_contact_width: float | None = None
     """Elements across the Hertz width 2b; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
     shape: CellShape = "hexahedron"
@@ -91,7 +91,7 @@ class GearProblem:
     """
 
     pair: GearPair
-    """Both gears and how they stand."""
+    """Both gears and the position of their axes."""
     torque: float
     """Held constant on one gear, over its whole face [N·mm]."""
     torque_on: Member = Member.PINION

@@ -107,7 +107,7 @@ def shared_position(
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
-                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that give way by less than half a module, found "
+                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that deflect by less than half a module, found "
                 "more, too much for small strain: lower the torque"
             )
         if contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):

@@ -30,7 +30,7 @@ OVER = "#1f6fd0"
 """Colour of values above the upper end of a colour scale."""
 ABOVE = "blue: above the scale, at a tip edge"
 """Note on that colour."""
-AT_ZONE_END = "where a tip-edge zone begins"
+AT_ZONE_END = "at the limit of a tip-edge zone"
 """Legend of a pressure at the limit of a tip-edge zone."""
 HOLLOW: dict[str, Any] = {"marker": "o", "markersize": 6.0, "markerfacecolor": "white", "linestyle": "", "zorder": 4.0}
 """Marker of a pressure at the limit of a tip-edge zone."""
@@ -87,7 +87,7 @@ def sheet(title: str, subtitle: str, size: tuple[float, float] = (9.6, 5.4)) -> 
 
 
 def foot(figure: Figure, *sentences: str) -> None:
-    """Adds footnotes below a figure, one sentence a line."""
+    """Adds footnotes below a figure, one sentence per line."""
     if sentences:
         left = 0.14 / figure.get_figwidth()
         figure.supxlabel("\n".join(sentences), fontsize=9.0, x=left, ha="left", color="#444444")

@@ -37,7 +37,7 @@ def long_name(run: RunData, tooth: int) -> str:
     """Name of a tooth pair with its place in the mesh."""
     if compares_yang(run.scene):
         return YANG.get(tooth, short_name(run, tooth))
-    where = AT_PITCH_POINT if tooth == 0 else "ahead" if tooth > 0 else "follows"
+    where = AT_PITCH_POINT if tooth == 0 else "ahead" if tooth > 0 else "behind"
     return f"{short_name(run, tooth)} ({where})"
 
 

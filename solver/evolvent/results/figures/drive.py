@@ -34,10 +34,10 @@ def load_sharing(run: RunData) -> Figure:
     most = [float(c.share.max()) for c in curves]
     low, high = int(np.argmin(run.frictions)), int(np.argmax(run.frictions))
     counts = [len(each[0].teeth) for each in run.positions]
-    subtitle = f"A tooth carries at most {100 * most[low]:.0f} % of the load; "
-    subtitle += f"{min(counts)} to {max(counts)} teeth share it"
+    subtitle = f"{min(counts)} to {max(counts)} tooth pairs in contact; "
+    subtitle += f"a tooth carries at most {100 * most[low]:.0f} % of the load"
     changed = round(100 * most[high]) != round(100 * most[low])
-    subtitle += f"; μ = {run.frictions[high]:g} makes that {100 * most[high]:.0f} %." if changed else "."
+    subtitle += f", {100 * most[high]:.0f} % at μ = {run.frictions[high]:g}." if changed else "."
     figure = sheet("Load sharing", subtitle)
     axes = figure.subplots()
     for curve, colour in zip(curves, friction_colours(run.frictions)):
@@ -46,7 +46,8 @@ def load_sharing(run: RunData) -> Figure:
         axes.plot(angle, 100.0 * share, color=colour, label=f"μ = {curve.friction:g}")
     angle, share = even_share(run)
     angle, share = np.degrees(angle[[0, *range(len(angle)), -1]]), np.array([0.0, *share, 0.0])
-    axes.plot(angle, 100.0 * share, color=FAINT, linestyle="--", linewidth=1.2, label="by length of contact line")
+    by_length = {"color": FAINT, "linestyle": "--", "linewidth": 1.2, "label": "proportional to contact line length"}
+    axes.plot(angle, 100.0 * share, **by_length)
     axes.set(xlabel=TOOTH_ANGLE, ylabel="share of the normal force [%]")
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper right")
@@ -95,8 +96,8 @@ def _between(positions: int, row: FrictionRow, bar: float) -> str:
     missed = row.spacing_error.transmission_error_peak_to_peak_um
     if np.isfinite(bar):
         part = f"Of the error bar at μ = {row.friction:g}, {brief(missed)} µm"
-        return f"{part} are for what the curve may do between the {positions} positions."
-    return f"Between the {positions} positions the curve may reach further: peak to peak up to {brief(missed)} µm more."
+        return f"{part} allow for extremes between the {positions} positions."
+    return f"Between the {positions} positions the curve may have extremes: peak to peak up to {brief(missed)} µm more."
 
 
 def _closed(run: RunData, values: Floats) -> tuple[Floats, Floats]:
@@ -146,8 +147,8 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         even.normal_force / length for length in (even.line_lengths[2], even.line_lengths[1], even.line_lengths[0])
     )
     inside = load[(ξ > start) & (ξ < end) & ~edge]
-    subtitle = f"Between the tip edges from {inside.min():.0f} to {inside.max():.0f} N/mm"
-    subtitle += f", at most {inside.max() / mean:.2f} times the even load (μ = {run.frictions[index]:g})."
+    subtitle = f"Away from the tip edges {inside.min():.0f} to {inside.max():.0f} N/mm"
+    subtitle += f", at most {inside.max() / mean:.2f} times the uniform line load (μ = {run.frictions[index]:g})."
     figure = sheet("Line load and sliding along the path of contact", subtitle, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(
@@ -159,8 +160,8 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         alpha=0.6,
         label="all slices of all positions",
     )
-    upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=dot_size(len(ξ)) + 1, label="bears on a tip edge")
-    upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="even load on rigid flanks, mean")
+    upper.plot(ξ[edge], load[edge], "x", color="#c98a1b", markersize=dot_size(len(ξ)) + 1, label="tip-edge contact")
+    upper.axhline(mean, color="#3b7a57", linewidth=1.2, label="uniform line load (rigid flanks), mean")
     upper.axhspan(low, high, color="#3b7a57", alpha=0.15, linewidth=0.0, label="its range over the pitch")
     upper.set_ylabel("line load [N/mm]")
     upper.set_ylim(-0.02 * float(np.max(load)), 1.3 * float(np.max(load)))
@@ -195,7 +196,7 @@ def _sliding(axes: Axes, run: RunData) -> None:
 
 def _cut_off(axes: Axes, ξ: float, sliding: float, colour: str) -> None:
     """Arrow where a curve leaves the axes, with the value at its end."""
-    value = f"{signed(sliding)} at the end" if np.isfinite(sliding) else "without bound"
+    value = f"{signed(sliding)} at the end" if np.isfinite(sliding) else "unbounded"
     inwards = 1.0 if ξ < 0.0 else -1.0
     axes.annotate(
         value, (ξ, -MOST_SLIDING), (36.0 * inwards, 0.0), textcoords="offset points", color=colour, fontsize=9,

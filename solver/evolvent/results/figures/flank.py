@@ -22,7 +22,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
 from evolvent_meshes.gears.member import Member
 
-FACE = "face width z [mm]"
+FACE = "axial position z [mm]"
 ROLL = "roll distance ξ from the pitch point [mm]"
 
 
@@ -192,5 +192,5 @@ def _map_subtitle(run: RunData, index: int) -> str:
     ξ = top.roll_distance
     side = "below the pitch line, towards the root" if ξ < 0 else "above the pitch line, towards the tip"
     where = f"at ξ = {signed(ξ, 2)} mm, {side}" if np.isfinite(ξ) else "nowhere"
-    subtitle = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, comes {where}"
+    subtitle = f"Between the tip-edge zones (dotted) the largest pressure, {top.pressure:.0f} MPa, occurs {where}"
     return subtitle + "; dashed: contact lines of rigid flanks."

@@ -39,8 +39,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     subtitle += f", at most {most:.1f} % in nine slices of ten (μ = {run.frictions[index]:g})."
     if few_cells_across(run):
         few = f"{cells_across(run):.1f} elements across the contact, fewer than {FEWEST_CELLS:g}"
-        subtitle += f" For looking only: {few}."
-    figure = sheet("Contact stress beside Hertz", subtitle, (11.4, 5.4))
+        subtitle += f" For orientation only: {few}."
+    figure = sheet("Contact stress compared with Hertz", subtitle, (11.4, 5.4))
     along, bars = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
     along.plot(
         ξ[inside],
@@ -61,9 +61,8 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
         label="Hertz, the slice's line load",
     )
     estimate, line = run.scene.hertz_estimate(), np.linspace(start, end, 200)
-    along.plot(
-        line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label="Hertz, even load on the mean line length"
-    )
+    uniform = "Hertz, uniform load on the mean line length"
+    along.plot(line, estimate.peak_pressure(line), color=INK, linewidth=1.3, label=uniform)
     _largest(along, run, index)
     along.axvline(0.0, color=FAINT, linestyle=":", linewidth=1.0)
     along.set(xlabel="roll distance ξ from the pitch point [mm]", ylabel="peak pressure [MPa]")
@@ -71,7 +70,7 @@ def hertz_comparison(run: RunData, index: int = 0) -> Figure:
     along.legend(loc="upper right")
     _estimates(bars, run, index, ξ, peak)
     if not run.plane:
-        pooled = "The largest counts a slice together with its neighbours on the line"
+        pooled = "The reported maximum is averaged with neighbouring slices (1:2:1)"
         foot(figure, f"{pooled}; single slices scatter about it.")
     return figure
 

@@ -95,7 +95,7 @@ def line_pressure_over_z(run: RunData) -> Figure:
     axes[0].set_ylim(bottom=0.0)
     axes[-1].legend(title="friction coefficient", loc="lower center", ncols=2)
     legend = [] if compares_yang(run.scene) or not shown else [_points_named(shown)]
-    foot(figure, *legend, "Nothing is drawn where a line bears on a tip edge.")
+    foot(figure, *legend, "Not drawn where a contact line bears on a tip edge.")
     return figure
 
 
@@ -165,7 +165,7 @@ def points_over_friction(run: RunData) -> Figure:
     above.set_ylim(0.0, 1.4 * max(each.values.max() for each in series))
     above.legend(ncols=len(series), loc="upper right")
     below.axhline(0.0, color=FAINT, linewidth=1.0)
-    below.set(xlabel="friction coefficient μ", ylabel=f"change against μ = {μ[0]:g} [%]")
+    below.set(xlabel="friction coefficient μ", ylabel=f"change from μ = {μ[0]:g} [%]")
     _table(side, series, heads)
     if not compares_yang(run.scene):
         foot(figure, _points_named([each.name for each in series]))

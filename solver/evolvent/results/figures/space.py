@@ -33,24 +33,24 @@ def loaded_pair(run: RunData, index: int = 0) -> Figure:
     teeth = run.positions[k][index].teeth
     peak = position_row(run, run.positions[k][index]).max_pressure_MPa
     load = f"{run.scene.load.torque_Nm:g} N·m on the {run.scene.load.on}"
-    subtitle = f"{len(teeth)} teeth carry {load}, at most {peak:.0f} MPa; φ = {np.degrees(run.angles[k]):.2f}°"
-    subtitle += f", μ = {run.frictions[index]:g}."
+    subtitle = f"{load}: {len(teeth)} tooth pairs in contact, at most {peak:.0f} MPa at this position"
+    subtitle += f" (φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g})."
     figure = sheet(f"{run.scene.title}: pressure on the flanks", subtitle, (12.4, 7.0))
     grid = figure.add_gridspec(2, 2, width_ratios=(1.72, 1.0))
     _image(
         figure.add_subplot(grid[:, 0]),
         pair_picture(run, result, top, (1500, 1060)),
-        "the pair; the transparent wheel tints the colours",
+        "gear pair, wheel transparent (colours seen through it are altered)",
     )
     _image(
         figure.add_subplot(grid[0, 1]),
         gear_picture(run, result, Member.PINION, top, (960, 560)),
-        "pinion flanks (wheel hidden)",
+        "pinion flanks, wheel hidden",
     )
     _image(
         figure.add_subplot(grid[1, 1]),
         gear_picture(run, result, Member.WHEEL, top, (960, 560)),
-        "wheel flanks (pinion hidden)",
+        "wheel flanks, pinion hidden",
     )
     bar = figure.colorbar(
         ScalarMappable(Normalize(0.0, top), PRESSURE_MAP),
@@ -100,7 +100,7 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
     """A frame: the pair, and its teeth in contact on the curve of contact stress."""
     result = run.positions[k][index].result
-    subtitle = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: the teeth in contact."
+    subtitle = f"φ = {np.degrees(run.angles[k]):.2f}°, μ = {run.frictions[index]:g}; dots: tooth pairs in contact."
     figure = sheet(run.scene.title, subtitle, (9.0, 5.0))
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     left.imshow(pair_picture(run, result, top, (620, 520), close=1.0))

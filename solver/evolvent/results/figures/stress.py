@@ -27,7 +27,7 @@ from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 
 STRESS = "maximum contact stress [MPa]"
-TOOTH_ANGLE = "pinion rotation of the tooth [°]   (0: its flanks meet at the pitch point, mid-face)"
+TOOTH_ANGLE = "pinion rotation [°]   (0: tooth pair in contact at the pitch point, mid-face)"
 MEDIAN = 5
 """Number of positions of the running median where the mesh does not resolve the contact."""
 
@@ -43,7 +43,8 @@ def engagement_stress(run: RunData) -> Figure:
     main, detail = figure.subplots(1, 2, width_ratios=(2.3, 1.0)) if len(curves) > 1 else (figure.subplots(), None)
     _curves(main, run, curves, [None] * len(curves))
     low, high = (signed(ξ) for ξ in run.inner_path)
-    foot(figure, f"Largest between the tip-edge zones, from ξ = {low} to {high} mm.", *_resolved(run), *_sampled(run))
+    between = f"The largest stress is taken between the tip-edge zones, from ξ = {low} to {high} mm."
+    foot(figure, between, *_resolved(run), *_sampled(run))
     for curve, colour in zip(curves, friction_colours(run.frictions)):
         for end in _zone_ends(curve):
             main.plot(np.degrees(end.angle), end.pressure, color=colour, **HOLLOW)
@@ -61,7 +62,7 @@ def engagement_stress(run: RunData) -> Figure:
         _detail(detail, run, curves, cross if np.isfinite(cross) else 0.0, 5.0)
         place = "where they cross" if np.isfinite(cross) else "at the pitch point"
         detail.set_title(f"enlarged {place}", fontsize=10)
-        detail.set(xlabel="pinion rotation of the tooth [°]")
+        detail.set(xlabel="pinion rotation [°]")
     return figure
 
 
@@ -80,7 +81,7 @@ def tooth_stress(run: RunData) -> Figure:
         top.set_title(long_name(run, tooth), fontsize=10)
         below.set_xlabel("pinion rotation φ [°]")
     grid[0, 0].set_ylabel(STRESS)
-    grid[1, 0].set_ylabel(f"change against μ = {_lowest(curves).friction:g} [%]")
+    grid[1, 0].set_ylabel(f"change from μ = {_lowest(curves).friction:g} [%]")
     grid[0, 0].legend(loc="best")
     foot(figure, *_resolved(run))
     return figure

@@ -39,7 +39,7 @@ def friction_trend(run: RunData) -> Figure:
         grid[1, column].set_xlabel("friction coefficient μ")
         grid[1, column].set_xlim(-0.03 * μ[-1], 1.05 * μ[-1])
     grid[0, 0].set_ylabel("contact stress [MPa]")
-    grid[1, 0].set_ylabel(f"change against μ = {μ[0]:g} [%]")
+    grid[1, 0].set_ylabel(f"change from μ = {μ[0]:g} [%]")
     handles, _ = grid[0, 1].get_legend_handles_labels()
     at_end = any(trend.at_zone_end.any() for trend in each_tooth)
     hollow = [Line2D([], [], color=INK, label=AT_ZONE_END, **HOLLOW)] if at_end else []
@@ -62,7 +62,7 @@ class Trend:
 
 
 def trends(curves: Sequence[Engagement], teeth: Sequence[int]) -> list[Trend]:
-    """Trends of these tooth pairs. curves: one a friction coefficient, ascending."""
+    """Trends of these tooth pairs. curves: one per friction coefficient, ascending."""
     return [_trend(curves, tooth) for tooth in teeth]
 
 

@@ -59,8 +59,9 @@ def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:
 def bad_cells(quality: float) -> str:
     """The warning of a smallest scaled Jacobian below `WORST_CELL`."""
     return (
-        f"The least scaled Jacobian of a cell is {quality:.1g}, below {WORST_CELL:g}: long thin cells, of which none "
-        'is inverted, but which bend too little, above all of order 1; mesh.shape = "hexahedron" has better ones.'
+        f"The smallest scaled Jacobian of a cell is {quality:.1g}, below {WORST_CELL:g}: long thin cells, none of them "
+        "inverted, but too stiff in bending, above all those of order 1; better cells are those of "
+        'mesh.shape = "hexahedron".'
     )
 
 
@@ -71,9 +72,9 @@ def _few_cells(run: RunData) -> str:
     largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
     bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
     return (
-        f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for looking only; "
-        f"the largest one is known within its error bar, {brief(bar)} %, but not where it occurs; for better ones "
-        f"{FINER}."
+        f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for orientation "
+        f"only; the largest one is known within its error bar, {brief(bar)} %, but not where it occurs; for better "
+        f"ones {FINER}."
     )
 
 
@@ -84,16 +85,16 @@ def _about_tip_edges(run: RunData) -> Iterator[str]:
         return
     share = max(_edge_share(solved) for each in run.positions for solved in each)
     yield (
-        f"A tip edge bears at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
-        "the load: the pressure there is singular, grows with every finer mesh, and is reported apart "
+        f"Tip-edge contact at {sum(bears)} of {len(bears)} positions, on teeth with up to {brief(100.0 * share)} % of "
+        "the load: the pressure there is singular, grows with mesh refinement, and is reported separately "
         "(edge_pressure_MPa); relieve the tips (tip_relief_um), or relieve them more."
     )
     peaks = [largest_peak(run, index) for index in range(len(run.frictions))]
     if any(peak.at_zone_end for peak in peaks):
         ξ = next(peak.roll_distance for peak in peaks if peak.at_zone_end)
         yield (
-            f"The largest pressure stands where the zone of a tip edge begins (ξ = {signed(ξ, 2)} mm) and would be "
-            "larger further in: its value depends on where that is, and so on the mesh; relieve the tips."
+            f"The largest pressure occurs where a tip-edge zone begins (ξ = {signed(ξ, 2)} mm) and rises further "
+            "inside it: its value depends on the limit of the zone, and so on the mesh; relieve the tips."
         )
 
 
@@ -112,10 +113,10 @@ def _about_relief(run: RunData) -> Iterator[str]:
     kink = max(kinks, key=lambda kink: kink.pressure)
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     yield (
-        f"The largest pressure stands, or may stand between positions, where a linear tip relief begins "
+        f"The largest pressure occurs, or may occur between positions, where a linear tip relief begins "
         f"(ξ = {signed(kink.roll_distance, 2)} mm): over that kink of the flank Hertz' pressure rises from "
         f"{brief(kink.hertz)} to about {brief(kink.pressure)} MPa within {2.0 * kink.half_range:.2g} mm, positions are "
-        f"{step:.2g} mm apart, and how far it rises is a matter of how sharp the kink is made; take "
+        f"{step:.2g} mm apart, and the rise depends on how sharp the kink is manufactured; take "
         'tip_relief_form = "parabolic", or more positions (sweep.positions).'
     )
 
@@ -125,7 +126,7 @@ def _about_large_bars(rows: Sequence[FrictionRow]) -> Iterator[str]:
     unknown = [text for row in rows for name in NAMES if (text := _unknown(row, name))]
     if unknown:
         yield (
-            f"Not known, for the error bar is more than half of it: {', '.join(unknown)}; nor is where a largest "
+            f"Not known, since the error bar exceeds half of the value: {', '.join(unknown)}; nor is where a largest "
             "pressure occurs. Take a finer mesh (mesh.level), or more positions (sweep.positions) where spacing_error "
             "is large."
         )
@@ -152,9 +153,9 @@ def _about_spacing(run: RunData, rows: Sequence[FrictionRow]) -> Iterator[str]:
     if figures:
         step = math.degrees(run.pitch) / len(run.positions)
         yield (
-            f"Positions are {brief(step)}° apart, and what may lie between them makes "
-            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(figures)}; more of them "
-            "(sweep.positions) make that less."
+            f"Positions are {brief(step)}° apart, and this spacing causes "
+            f"{'most of the error bars' if run.errors.figures else 'errors'}: {', '.join(figures)}; more positions "
+            "(sweep.positions) reduce them."
         )
 
 
@@ -178,4 +179,5 @@ def few_positions(row: FrictionRow) -> str:
     share = _share(row, "max_pressure_MPa")
     if not share > SPACING_SAID:
         return ""
-    return f"For looking only, positions are too few: between them pressures may be {brief(100.0 * share)} % larger."
+    more = f"{brief(100.0 * share)} % larger"
+    return f"For orientation only, positions are too few: between them pressures may be {more}."

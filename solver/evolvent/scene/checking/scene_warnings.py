@@ -39,7 +39,8 @@ def _expected(scene: Scene) -> Iterator[str]:
     if scene.mesh.shape == "tetrahedron":
         yield (
             "Tetrahedra are cut from hexahedra that are long over the face and in the body: their scaled Jacobian "
-            "falls to 1e-3 and below, and those of order 1 bend too little; hexahedra of order 2 are the better choice."
+            "falls to 1e-3 and below, and those of order 1 are too stiff in bending; hexahedra of order 2 are the "
+            "better choice."
         )
     yield from modification_warnings(problem)
     yield from folding_warnings(problem, sector_resolutions(problem))
@@ -47,4 +48,4 @@ def _expected(scene: Scene) -> Iterator[str]:
 
 def few_cells() -> str:
     """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
-    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for looking only: {FINER}."
+    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for orientation only: {FINER}."

@@ -55,7 +55,10 @@ class MeshSection(SceneSection):
     """[mesh]: the finite elements of both sectors."""
 
     level: Level = key(
-        "how fine", '"quick", "standard" or "fine"', "quick is for looking, standard for results", default="standard"
+        "how fine",
+        '"quick", "standard" or "fine"',
+        "quick is for orientation, standard for results",
+        default="standard",
     )
     elements_per_contact_width: float | None = key(
         "elements across the Hertz width 2b_H; quick 1.7, standard 3, fine 6 by default, on a stiff pinion at least 3",

@@ -181,7 +181,7 @@ def test_few_positions_are_warned_of(run: RunData) -> None:
     (row,) = friction_rows(run)
     assert row.spacing_error.max_pressure_MPa > SPACING_SAID * row.max_pressure_MPa
     errors = estimated_errors(run, Companion(run, "", 0.0))
-    for each, words in ((run, "makes errors"), (replace(run, errors=errors), "most of the error bars")):
+    for each, words in ((run, "causes errors"), (replace(run, errors=errors), "most of the error bars")):
         (said,) = [sentence for sentence in warnings_of(each, GOOD) if "sweep.positions" in sentence]
         assert words in said and "MPa of the largest pressure (" in said and "Positions are 1.0° apart" in said
     smooth = synthetic_run("contact.friction=0.1", "sweep.positions=24")
@@ -214,5 +214,6 @@ def test_few_positions_are_noted_below_pressures() -> None:
     for draw in (pressure_map, engagement_stress):
         with styled():
             words = [" ".join(text.get_text() for text in draw(each).findobj(Text)) for each in (few, many)]
-        assert words[0].count("For looking only, positions are too few") == 1 and f"{share:.1f} % larger" in words[0]
+        assert words[0].count("For orientation only, positions are too few") == 1
+        assert f"{share:.1f} % larger" in words[0]
         assert "too few" not in words[1]

@@ -119,7 +119,7 @@ def test_other_pairs_are_drawn_as_far_as_they_go(file: str) -> None:
 
 
 def test_loaded_pair_shows_the_pressure(run: RunData) -> None:
-    """Rendered with the wheel taken away, the contact lines' colours (towards red) appear, and blue of the pinion; at
+    """Rendered with the wheel hidden, the contact lines' colours (towards red) appear, and blue of the pinion; at
     a colour scale a hundred times larger no red is left."""
     from evolvent.results.figures.scene3d import gear_picture
 
@@ -201,14 +201,14 @@ def test_labels_are_not_clipped_nor_crossed(run: RunData) -> None:
 
 def test_notes_stand_below(run: RunData) -> None:
     """What one has to know to read a figure stands below it in one size, and nothing above the axes but their titles;
-    beside a difference that a coarse mesh makes stands that it is for looking only."""
+    beside a difference that a coarse mesh makes stands that it is for orientation only."""
     with styled():
         drawn = {name: draw(run) for name, draw in figures(run)}
     below = [f._supxlabel for f in drawn.values() if f._supxlabel is not None]
     assert len(below) >= 4 and len({text.get_fontsize() for text in below}) == 1
     assert all(text.get_text().endswith(".") for text in below)
     assert not any(ax.get_title(loc="left") for f in drawn.values() for ax in f.axes)
-    assert "For looking only" in drawn["10_hertz"].texts[1].get_text()
+    assert "For orientation only" in drawn["10_hertz"].texts[1].get_text()
 
 
 def test_sentence_has_the_changes_that_are_drawn(run: RunData) -> None:

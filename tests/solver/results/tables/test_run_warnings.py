@@ -51,7 +51,7 @@ def test_good_run_has_no_warning(quiet: RunData) -> None:
         (MeshFacts(0.3, 1.7, 1.2), "The contact is 1.7 elements wide (median; 1.2 in its narrowest tenth); below 2"),
         (MeshFacts(0.3, 2.1, 0.9), "The contact is 2.1 elements wide (median; 0.9 in its narrowest tenth); below 2"),
         (MeshFacts(0.3, float("nan"), float("nan")), "elements wide"),
-        (MeshFacts(2.8e-4, 3.1, 2.0), "The least scaled Jacobian of a cell is 0.0003, below 0.05"),
+        (MeshFacts(2.8e-4, 3.1, 2.0), "The smallest scaled Jacobian of a cell is 0.0003, below 0.05"),
     ],
 )
 def test_coarse_or_distorted_mesh_is_warned_of(mesh: MeshFacts, said: str, quiet: RunData) -> None:
@@ -65,7 +65,7 @@ def test_tip_edges_and_missing_error_bars_are_warned_of(quiet: RunData) -> None:
     are said; so is a companion that failed, but not one that was not asked for."""
     run = synthetic_run("contact.friction=0.1", "sweep.positions=24")
     bears, zone, bars = warnings_of(run, GOOD)
-    assert "bears at 24 of 24 positions" in bears and "relieve the tips" in bears
+    assert "Tip-edge contact at 24 of 24 positions" in bears and "relieve the tips" in bears
     assert f"ξ = −{-run.inner_path[0]:.2f} mm" in zone
     assert "There are no error bars" in bars
     failed = replace(quiet, errors=EstimatedErrors(missing="It rained."))
@@ -91,7 +91,7 @@ def test_figures_with_large_error_bars_are_warned_of(quiet: RunData) -> None:
     bars = FigureErrors(1.1 * row.max_pressure_MPa, 0.4 * row.mean_pressure_MPa, 1e-3, 1e-3, 1e-3, 1e-3)
     (said,) = warnings_of(replace(quiet, errors=EstimatedErrors((bars,), "", "")), GOOD)
     known = f"largest pressure {brief(row.max_pressure_MPa)} ±"
-    assert said.startswith(f"Not known, for the error bar is more than half of it: {known}")
+    assert said.startswith(f"Not known, since the error bar exceeds half of the value: {known}")
     assert "mean" not in said
 
 

@@ -144,8 +144,8 @@ def test_torque_on_the_wheel_gives_the_same_load() -> None:
 
 
 def test_wear_depth_is_estimated() -> None:
-    """He's pair: a million meshes under half the load take 7.25 µm off the start of the active profile; with the load
-    over the mean number of pairs, the contact ratio, 2/ε_α times as much."""
+    """He's pair: a million mesh cycles under half the load take 7.25 µm off the start of the active profile; with the
+    load over the mean number of pairs, the contact ratio, 2/ε_α times as much."""
     scene = scene_from_text(HE, ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1.3832e-10"])
     row = re.search(r"depth at the ends of the path of contact +h +µm +(\S+) +(\S+)", overview(scene))
     assert row is not None

@@ -76,7 +76,7 @@ def test_passage_of_a_constant_ridge_is_the_line_contact_depth(gear: Member, pos
 
 
 def test_line_contact_depth_of_the_paper() -> None:
-    """Problem: He's pair at r = 77 mm under half the load. Exact: 2.885 µm in a million meshes."""
+    """Problem: He's pair at r = 77 mm under half the load. Exact: 2.885 µm in a million mesh cycles."""
     pair = spur_scene().gear_pair()
     u = (77.0**2 - pair.pinion.base_radius**2) / (2.0 * pair.pinion.base_radius)
     half = 170e3 / pair.pinion.base_radius / 20.0 / 2.0

@@ -2,11 +2,12 @@
 
     python demos/he2022_wear.py [--quick] [--out DIR] [--scene FILE.toml] [--set KEY=VALUE ...]
 
-170 N·m on the pinion, K/H = 1.3832e-10 mm²/N on both gears, no friction in the contact solution, 1.6 million meshes:
-the scene demos/he2022.toml with a [wear] section, as `evolvent run` computes it. Both gears have 50 teeth, so both
-flanks wear alike. At the pitch point the flanks roll, but the contact is 0.26 mm wide and slides a little at its edges:
-4 % of the depth at the root. Without tip relief the tip edge bears before and after the path of contact. The pressure
-at an edge is singular and so is its wear; all figures are of the flank between the tip-edge zones.
+170 N·m on the pinion, K/H = 1.3832e-10 mm²/N on both gears, no friction in the contact solution, 1.6 million mesh
+cycles: the scene demos/he2022.toml with a [wear] section, as `evolvent run` computes it. Both gears have 50 teeth, so
+both flanks wear alike. At the pitch point the flanks roll, but the contact is 0.26 mm wide and slides a little at its
+edges: 4 % of the depth at the root. Without tip relief the tip edge bears before and after the path of contact. The
+pressure at an edge is singular and so is its wear; all figures are of the flank between the edge margins, 0.1 m_n along
+the profile from either end of the path of contact.
 
 Another scene wears by the same law at its first friction coefficient, until about 10 µm are worn off, unless it has a
 [wear] section of its own. The figures of the passage are drawn for plane pairs, the checks are made for He's pair.
@@ -110,15 +111,15 @@ def compared(study: WornRun, point: PointPassage, coarse: bool) -> list[Compared
     hertz_lasts = float(np.ptp(point.rotation[point.hertz > 0.0]))
     volume = pair.run.width * float(chart_grid(last, Member.PINION).areas @ last.worn[0].depth.T.ravel())
     local = 0.15 if coarse else 0.02  # accuracy of the width and peak pressure of a single contact
-    million, here = "µm a million meshes", f"r = {r:.4g} mm"
+    million, here = "µm per million mesh cycles", f"r = {r:.4g} mm"
     return [
         Compared(f"depth at {here}", million, at_point, "line contact, own load", line, 0.05),
-        Compared("depth at the pitch point", million, lowest, "Hertz ridge", ridge, 0.1),
+        Compared("depth at the pitch point", million, lowest, "passing Hertz pressure", ridge, 0.1),
         Compared("Eq. 24 over the depth, median", "", product, "4/π", 4.0 / np.pi, 0.02),
         Compared(f"stress at {here}", "MPa", peak, "Hertz, own load", hertz, local),
         Compared(f"sliding at {here}", "µm", 1e3 * sliding, "2b|ζ|", 1e3 * single_point, local),
-        Compared(f"{here} bears over", "°", np.degrees(point.lasts), "Hertz", np.degrees(hertz_lasts), local),
-        Compared("volume off a pinion's tooth", "mm³", volume, "(K/H)∫∫p|v_s| dA dt", last.volumes[0], 1e-6),
+        Compared(f"contact at {here} lasts", "°", np.degrees(point.lasts), "Hertz", np.degrees(hertz_lasts), local),
+        Compared("worn volume of a pinion tooth", "mm³", volume, "(K/H)∫∫p|v_s| dA dt", last.volumes[0], 1e-6),
     ]  # fmt: skip
 
 
@@ -126,15 +127,16 @@ def check_as_printed(study: WornRun, point: PointPassage) -> None:
     """Compares with the printed values of the paper, whose point A carries less load. Raises AssertionError."""
     start = engagement(study.pairs[0].run, 0)
     whole = Compared("whole engagement", "°", np.degrees(np.ptp(start.ends)), "printed", 13.824, 0.3 / 13.824)
-    slides = Compared("point A slides", "µm", 1e3 * point.sliding[-1], "printed", 59.0)
-    print(whole, slides, Compared("point A bears over", "°", np.degrees(point.lasts), "printed", 0.35), sep="\n")
+    slides = Compared("sliding at point A", "µm", 1e3 * point.sliding[-1], "printed", 59.0)
+    print(whole, slides, Compared("contact at point A lasts", "°", np.degrees(point.lasts), "printed", 0.35), sep="\n")
     whole.check()
     reports = [pair.report().pinion for pair in study.pairs[1:]]
     deepest = np.array([report.deepest_um for report in reports])
     places = ", ".join(f"{r.deepest_um:.2f} µm at d = {r.at_diameter_mm:.1f} mm" for r in reports)
-    print(f"deepest after each report: {places}")
+    print(f"largest depth at each report: {places}")
     first, *later = np.diff(deepest, prepend=0.0)
-    print(f"growth of the deepest: {first:.2f} µm, then {', '.join(f'{d:.2f}' for d in later)} µm; printed: it slows")
+    growth = f"{first:.2f} µm, then {', '.join(f'{d:.2f}' for d in later)} µm"
+    print(f"growth of the largest depth: {growth}; printed: it slows")
     depths = DepthProfile.of(study.pairs[0], Member.PINION, 1.0)
     pitch = study.pairs[0].run.pair.working_pitch_diameters[0] / 2.0
     radius = float(depths.radius[np.argmax(depths.computed)])
@@ -147,8 +149,8 @@ def check_as_printed(study: WornRun, point: PointPassage) -> None:
 
 
 def write_table(study: WornRun, out: Path) -> None:
-    """Writes OUT/table.csv: depths over the pinion's radius, of a million meshes by solution and formulas, and at each
-    report."""
+    """Writes OUT/table.csv: depths over the pinion's radius, of a million mesh cycles by solution and formulas, and at
+    each report."""
     wear = study.scene.wear
     assert wear is not None
     depths, reports = DepthProfile.of(study.pairs[0], Member.PINION, wear.pinion_mm2_per_N), study.pairs[1:]

@@ -32,9 +32,9 @@ UNITS = {
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (
     ("summary.json", "all figures of the run: its scene, facts, figures a friction coefficient, positions"),
-    ("positions.csv", "a line a position and friction coefficient"),
-    ("teeth.csv", "a line a tooth pair, position and friction coefficient"),
-    ("run.log", "what was skipped, a line a position, how long everything took"),
+    ("positions.csv", "one line per position and friction coefficient"),
+    ("teeth.csv", "one line per tooth pair, position and friction coefficient"),
+    ("run.log", "what was skipped, one line per position, how long everything took"),
     ("scene.toml", "the scene with all its defaults; it is a scene itself"),
     ("flank_pinion.csv", "the flank chart that the scene names, docs/scene.md; likewise flank_wheel.csv"),
     ("flank_wheel.csv", "see flank_pinion.csv"),
@@ -48,8 +48,8 @@ FILES = (
     ("results/*.npz", "what `--resume` and `evolvent plot` go on from; no interface, its form may change at any time"),
     ("results/cost.json", "wall time and memory of the run so far, to which a resumed one adds its own"),
     ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
-    (".evolvent.lock", "there while a run goes on: one run a folder"),
-    ("wear.csv", "a wear study: a line a block of cycles"),
+    (".evolvent.lock", "there while a run goes on: one run per folder"),
+    ("wear.csv", "a wear study: one line per block of cycles"),
     ("wear.json", "a wear study: the figures at each report"),
     ("worn_*", "a wear study: the pair after so many cycles, a folder with all of the above"),
 )

@@ -18,7 +18,7 @@ FROM = {"hertz2d": (20_000, 1.0), "hertz3d": (30_000, 2.0)}
 """Degrees of freedom from which a bar holds, and the bar: a peer's seconds over Evolvent's at no larger error."""
 GEAR_BARS = {"GetFEM": 10.0, "CalculiX mortar": 40.0}
 GEAR_DOFS = 100_000
-"""From which these bars hold: seconds a position over Evolvent's."""
+"""From which these bars hold: seconds per position over Evolvent's."""
 THREE_TEETH = "three teeth"
 HERTZ = Table(
     Row,

@@ -137,7 +137,7 @@ def wear(rows: Sequence[WearPrecisionRow]) -> Figure:
     """Seconds over the error of the depths, log-log; a point a tolerance."""
     see = "Down and left is better; a point a tolerance. Error: volume worn off in the wrong place, over all of it."
     with style.styled():
-        figure = style.sheet("Wear to 1.6 million meshes: run time against error of the blocks", see)
+        figure = style.sheet("Wear to 1.6 million mesh cycles: run time against error of the blocks", see)
         axes = figure.add_subplot()
         for name, colour in BLOCK_COLOURS.items():
             shown = [row for row in rows if row.method == name]

@@ -42,7 +42,7 @@ class Travel:
     Contact points take the velocity that the motion has at its start; a rotating body may turn more than once.
 
     >>> import numpy as np
-    >>> disc = Travel(body=1, rotation=(0.0, 0.0, 2.0 * np.pi), centre=(0.0, -40.0, 0.0))  # one revolution a cycle
+    >>> disc = Travel(body=1, rotation=(0.0, 0.0, 2.0 * np.pi), centre=(0.0, -40.0, 0.0))  # one revolution per cycle
     >>> disc.at(np.array([[0.0, 0.0, 0.0]])).round(3)
     array([[-251.327,    0.   ,    0.   ]])
     """

@@ -36,7 +36,7 @@ from evolvent_meshes.gears.pair import GearPair
 
 Grids = tuple[FlankGrid, FlankGrid]
 Both = tuple[Floats, Floats]
-"""One array a gear."""
+"""One array per gear."""
 DISPLACEMENT_ZONE = 3
 """Spacings of arc about loaded nodes where displacements are computed; a slope needs one beyond either neighbour."""
 
@@ -103,7 +103,7 @@ class PitchDeflection:
         return self.stands[0].pair
 
     def elastic_sliding(self, numbers: Sequence[int], points: Sequence[ContactPoints]) -> list[Floats]:
-        """Elastic part (q,) of the sliding [mm/rad] at the points of positions `numbers`, an array a position; to be
+        """Elastic part (q,) of the sliding [mm/rad] at the points of positions `numbers`, an array per position; to be
         added to the sliding of undeflected flanks."""
         if not points:
             return []

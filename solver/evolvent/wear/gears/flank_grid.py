@@ -21,7 +21,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 LAYER_TOLERANCE = 1e-6  # of a module: heights closer than this are one layer
-EDGE_ZONE = 0.1  # modules of arc from a bearing tip edge, own or mate's, in which the pressure depends on the mesh
+EDGE_MARGIN = 0.1  # modules of arc from a bearing tip edge, own or mate's, in which the pressure depends on the mesh
 ARC_TOLERANCE = 1e-2  # of a module: largest difference of the layers' arcs, from flank modifications
 
 
@@ -32,9 +32,9 @@ def line_arc(pair: GearPair, gear: Member, ξ: Floats) -> Floats:
 
 
 def inner_arcs(pair: GearPair, gear: Member) -> tuple[float, float]:
-    """Lowest and highest arc [mm] between the tip-edge zones: those of the path of contact, less EDGE_ZONE each."""
+    """Lowest and highest arc [mm] between the edge margins: those of the path of contact, less EDGE_MARGIN each."""
     low, high = sorted(line_arc(pair, gear, np.array(pair.path_of_contact)))
-    margin = EDGE_ZONE * pair.pinion.normal_module
+    margin = EDGE_MARGIN * pair.pinion.normal_module
     return float(low) + margin, float(high) - margin
 
 
@@ -79,7 +79,7 @@ class FlankGrid:
         return FlankGrid(arcs, heights, node, np.outer(widths, _hat_lengths(arcs)).ravel())
 
     def inner_nodes(self, pair: GearPair, gear: Member) -> Ints:
-        """The nodes between the tip-edge zones."""
+        """The nodes between the edge margins."""
         low, high = inner_arcs(pair, gear)
         return self.node[:, (self.arcs >= low) & (self.arcs <= high)].ravel()
 

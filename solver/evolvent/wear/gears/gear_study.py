@@ -44,7 +44,7 @@ class BlockRow:
     refreshed: int
     """How often the meshes have followed the wear so far."""
     deepest_pinion_um: float
-    """Largest worn depth so far between the tip-edge zones, pinion."""
+    """Largest worn depth so far between the edge margins (0.1 m_n), pinion."""
     deepest_wheel_um: float
     """The same of the wheel."""
     volume_pinion_mm3: float

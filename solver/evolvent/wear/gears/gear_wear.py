@@ -62,7 +62,7 @@ class PitchState(CycleEvaluation):
 
 
 class GearWear:
-    """Wear of a gear pair at one friction coefficient, a `WearModel`; a cycle is a revolution of the pinion.
+    """Wear of a gear pair at one friction coefficient, a `WearModel`; a cycle is one revolution of the pinion.
 
     pitch: the positions of one pitch.
     friction: friction coefficient of the contact solutions.
@@ -227,7 +227,7 @@ class GearWear:
 
     def _ripple_decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:
         """Cycles in which a ripple of two nodes along the profile decays to 1/e, 1/((K/H)(πE*/ℓ) s), where the flanks
-        wear fastest between the tip-edge zones; the sliding distance s of a passage from the rate (K/H) p̄ s."""
+        wear fastest between the edge margins; the sliding distance s of a passage from the rate (K/H) p̄ s."""
         points = ContactPoints.joined([position.contact for position in positions])
         mean = float(points.weights @ points.pressure**2) / float(points.weights @ points.pressure)
         wavelength = 2.0 * min(float(np.median(np.diff(grid.arcs))) for grid in self.grids)

@@ -32,7 +32,7 @@ def wearing_pair(
     problem: GearProblem, law: Archard, friction: float = 0.0, positions: int = 20, refresh: float | None = None,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> GearWear:  # fmt: skip
-    """A gear pair that wears, its gears condensed; a cycle is a revolution of the pinion. Collective.
+    """A gear pair that wears, its gears condensed; a cycle is one revolution of the pinion. Collective.
 
     law: wear coefficients of pinion and wheel. refresh: depth [mm] at which the meshes follow the wear, by default 5e-3
     modules. Raises InputError, and what `condense` raises.

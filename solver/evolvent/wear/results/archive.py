@@ -33,7 +33,7 @@ COUNTS = "refused", "searched", "refreshed"  # the integer columns of a BlockRow
 
 
 def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
-    """Writes OUT/wear.csv, a line a block, and then the checkpoint. Raises OSError."""
+    """Writes OUT/wear.csv, one line per block, and then the checkpoint. Raises OSError."""
     previous = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0)
     arrays = {
         "fingerprint": archive.fingerprint, "cycles": checkpoint.cycles, "depth": checkpoint.depth,

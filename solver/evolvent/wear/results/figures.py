@@ -27,7 +27,9 @@ from evolvent.results.drawing.style import (
 )
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_patch
+from evolvent.results.figures.drive import PINION_ANGLE
 from evolvent.results.figures.scene3d import flank_picture
+from evolvent.results.figures.stress import TOOTH_ANGLE
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.report import WornPair, WornRun
 from evolvent_meshes.arrays import Floats
@@ -85,7 +87,7 @@ def depth_over_profile(study: WornRun) -> Figure:
         f"{GEARS[gear]} {_three(report.deepest_um)} µm at d = {report.at_diameter_mm:.1f} mm"
         for gear, report in zip(gears, reports)
     )
-    see = f"Deepest on the flank after {cycles_label(last.cycles)} cycles: {deepest}; tip-edge zones left out."
+    see = f"Largest depth after {cycles_label(last.cycles)} cycles: {deepest}; edge margins, 0.1 mₙ, left out."
     figure = sheet("Wear depth over the profile", see)
     for ax, gear in zip(figure.subplots(1, len(gears), sharey=True, squeeze=False)[0], gears):
         for pair, colour in zip(study.pairs[1:], _colours(study)[1:]):
@@ -112,7 +114,7 @@ def depth_over_flank(study: WornRun) -> Figure:
         )  # fmt: skip
         ax.axhline(last.run.pair.working_pitch_diameters[gear], color=FAINT, lw=1.0, ls="--")
         ax.set_title(f"{GEARS[gear]} (dashed: pitch circle)", fontsize=10)
-        ax.set(xlabel="face width z [mm]", ylabel="diameter [mm]")
+        ax.set(xlabel="axial position z [mm]", ylabel="diameter [mm]")
         ax.grid(False)
         _depth_bar(figure, ax, shown)
     return figure
@@ -130,21 +132,21 @@ def worn_teeth(study: WornRun) -> Figure:
         depth = last.worn[gear].at(last.run.pair.gears[gear], ρ.ravel(), z.ravel()).reshape(ρ.shape)
         result = last.run.positions[0][0].result
         ax.imshow(flank_picture(last.run, result, patch, 1e3 * depth, top, (960, 720)))
-        ax.set_title(f"{GEARS[gear]}, {gear.mate.label} removed", fontsize=10)
+        ax.set_title(f"{GEARS[gear]}, {gear.mate.label} hidden", fontsize=10)
         ax.axis("off")
         _depth_bar(figure, ax, ScalarMappable(Normalize(0.0, top), PRESSURE_MAP))
     return figure
 
 
 def _depth_bar(figure: Figure, ax: Axes, shown: ScalarMappable) -> None:
-    """A colour bar a gear, as their depths may differ widely; tip edges are beyond its end."""
+    """A colour bar per gear, as their depths may differ widely; tip edges are beyond its end."""
     figure.colorbar(shown, ax=ax, label=f"wear depth [µm]   ({ABOVE})", shrink=0.85, extend="max")
 
 
 def _most(study: WornRun) -> str:
     """The caption with the depths at the upper end of the colours."""
     depths = [f"{GEARS[gear]} {_three(_deepest(study.pairs[-1], gear))} µm" for gear in wearing(study)]
-    return f"Deepest between the tip-edge zones: {', '.join(depths)}."
+    return f"Largest depth between the edge margins, 0.1 mₙ: {', '.join(depths)}."
 
 
 def _three(value: float) -> str:
@@ -153,15 +155,15 @@ def _three(value: float) -> str:
 
 
 def _deepest(pair: WornPair, gear: Member) -> float:
-    """Largest worn depth [µm] of a gear between the tip-edge zones."""
+    """Largest worn depth [µm] of a gear between the edge margins."""
     return 1e3 * float(pair.worn[gear].depth[pair.inner(gear)].max())
 
 
 def growth(study: WornRun) -> Figure:
-    """Largest depth and worn volume over the cycles; a dot a block."""
+    """Largest depth and worn volume over the cycles; one dot per block."""
     error = 100.0 * max(row.error for row in study.rows)
     see = f"{len(study.rows)} blocks of cycles; estimated error of a block's worn volume at most {error:.1f} %."
-    figure = sheet("How the wear grows", see)
+    figure = sheet("Wear depth and worn volume over the cycles", see)
     left, right = figure.subplots(1, 2)
     unit, name = _unit(study)
     for gear in wearing(study):
@@ -172,7 +174,7 @@ def growth(study: WornRun) -> Figure:
         volume = [0.0, *(getattr(row, f"volume_{GEARS[gear]}_mm3") for row in study.rows)]
         left.plot(x, deepest, **style)
         right.plot(x, volume, **style)
-    for ax, label in ((left, "deepest wear between the tip-edge zones [µm]"), (right, "volume worn off a tooth [mm³]")):
+    for ax, label in ((left, "largest depth between the edge margins [µm]"), (right, "worn volume per tooth [mm³]")):
         ax.set(xlabel=f"revolutions of the pinion [{name}]", ylabel=label, ylim=(0.0, None), xlim=(0.0, None))
         ax.legend()
     return figure
@@ -187,10 +189,11 @@ def force_on_tooth(study: WornRun) -> Figure:
     """Normal force on a tooth over its engagement at each report."""
     curves = [engagement(pair.run, 0) for pair in (study.pairs[0], study.pairs[-1])]
     (first, last), (new, worn) = (c.force.max() for c in curves), (np.degrees(np.ptp(c.ends)) for c in curves)
-    see = f"As new a tooth is engaged over {new:.2f}° and carries at most {first:.0f} N"
-    see += f"; at last {worn:.2f}°, {last:.0f} N."
-    figure = _over_rotation(study, "Force on a tooth as the flanks wear", see, "normal force on the tooth [N]", _force)
-    figure.axes[0].set(xlabel="pinion rotation of the tooth from the pitch point [°]", ylim=(0.0, None))
+    see = f"Unworn: a tooth is engaged over {new:.2f}° and carries at most {first:.0f} N"
+    see += f"; after {cycles_label(study.pairs[-1].cycles)} cycles: {worn:.2f}°, {last:.0f} N."
+    title = "Force on a tooth, unworn and worn flanks"
+    figure = _over_rotation(study, title, see, "normal force on a tooth [N]", _force)
+    figure.axes[0].set(xlabel=TOOTH_ANGLE, ylim=(0.0, None))
     return figure
 
 
@@ -204,9 +207,9 @@ def _force(pair: WornPair) -> tuple[Floats, Floats]:
 def transmission_error(study: WornRun) -> Figure:
     """Loaded transmission error minus its mean over a pitch at each report."""
     first, last = (pair.report().transmission_error_peak_to_peak_um for pair in (study.pairs[0], study.pairs[-1]))
-    see = f"Peak to peak {first:.2f} µm as new, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
-    label = "transmission error less its mean [µm]"
-    return _over_rotation(study, "Transmission error as the flanks wear", see, label, _error)
+    see = f"Peak to peak {first:.2f} µm unworn, {last:.2f} µm after {cycles_label(study.pairs[-1].cycles)} cycles."
+    label = "transmission error minus its mean [µm]"
+    return _over_rotation(study, "Transmission error, unworn and worn flanks", see, label, _error)
 
 
 def _error(pair: WornPair) -> tuple[Floats, Floats]:
@@ -222,8 +225,8 @@ def _over_rotation(
     figure = sheet(title, see)
     ax: Axes = figure.add_subplot()
     for pair, colour in zip(study.pairs, _colours(study)):
-        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "as new"
+        name = f"{cycles_label(pair.cycles)} cycles" if pair.cycles else "unworn"
         ax.plot(*curve(pair), color=colour, label=name)
-    ax.set(xlabel="pinion rotation [°]", ylabel=label)
+    ax.set(xlabel=PINION_ANGLE, ylabel=label)
     ax.legend()
     return figure

@@ -120,7 +120,7 @@ class DepthProfile:
 
     @staticmethod
     def of(pair: WornPair, gear: Member, coefficient: float) -> DepthProfile:
-        """Of a plane pair, between the tip-edge zones. coefficient: K/H [mm²/N]."""
+        """Of a plane pair, between the edge margins. coefficient: K/H [mm²/N]."""
         run, inner = pair.run, pair.inner(gear)
         radius = pair.worn[gear].diameters[inner] / 2.0
         ξ = roll_distance_at(run.pair, gear, radius)

@@ -28,7 +28,7 @@ class GearReport:
     """Wear of a gear after some cycles."""
 
     deepest_um: float
-    """Largest worn depth between the tip-edge zones."""
+    """Largest worn depth between the edge margins (0.1 m_n)."""
     at_diameter_mm: float
     """Diameter at which it is."""
     at_z_mm: float
@@ -93,13 +93,13 @@ class WornPair:
     volumes: tuple[float, float]
 
     def inner(self, gear: Member) -> np.ndarray:
-        """(k,) which diameters of the chart are between the tip-edge zones, in which pressure and wear are singular."""
+        """(k,) which diameters of the chart are between the edge margins, in which pressure and wear are singular."""
         low, high = inner_arcs(self.run.pair, gear)
         arcs = self.worn[gear].arcs(self.run.pair.gears[gear])
         return np.asarray((arcs >= low) & (arcs <= high))
 
     def profile(self, gear: Member) -> tuple[Floats, Floats]:
-        """Diameters (k,) [mm] between the tip-edge zones, and worn depth (k,) [µm] there, mean over the face."""
+        """Diameters (k,) [mm] between the edge margins, and worn depth (k,) [µm] there, mean over the face."""
         inner, chart = self.inner(gear), self.worn[gear]
         return chart.diameters[inner], 1e3 * _mean(chart)[inner]
 

@@ -15,7 +15,7 @@ ready := .venv/.ready-debian-$(release)
 # Whole files go to a worker each, for their tests share what is costly to compute; the longest first (tests/conftest.py).
 ON_ALL_CORES := -n auto --dist loadfile
 
-# One BLAS thread a process: two ranks with two threads each on two cores are slower than two with one.
+# One BLAS thread per process: two ranks with two threads each on two cores are slower than two with one.
 test verification: export OMP_NUM_THREADS ?= 1
 # Tests start mpirun: as root in a container, with more ranks than a small machine has cores, on this machine only.
 export OMPI_ALLOW_RUN_AS_ROOT ?= 1

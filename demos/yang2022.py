@@ -1,10 +1,10 @@
-"""The helical pair of Yang et al. 2022 by the Python API: friction turns the contact stress about the pitch point.
+"""The helical pair of Yang et al. 2022 by the Python API: friction and the load about the pitch point.
 
     python demos/yang2022.py [--quick] [--out DIR]
 
 The scene is demos/yang2022.toml; --quick takes a coarse mesh, two friction coefficients and four positions, to see
-that everything works. The demo asserts what the paper finds: at constant pinion torque the largest contact stress of
-a tooth grows with friction before the pitch point and falls after it.
+that everything works. The demo asserts that friction raises the load before the pitch point relative to that after it,
+at constant pinion torque.
 """
 
 from __future__ import annotations
@@ -32,14 +32,12 @@ def main(out: Path, quick: bool = False) -> None:
     run_scene(scene, out, resume=True, quiet=quick)
     if MPI.COMM_WORLD.rank == 0:
         before, after = friction_effect(read_run(out))
-        print(
-            f"mean line load, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after it"
-        )
-        assert before > after, "friction must load the approach more than the recess"
+        print(f"sum of normal forces, lowest to highest μ: {before:+.1%} before the pitch point, {after:+.1%} after it")
+        assert before > after, "friction must raise the load before the pitch point relative to that after it"
 
 
 def friction_effect(run: RunData) -> tuple[float, float]:
-    """Relative change of the mean line load from the lowest to the highest μ, before and after the pitch point."""
+    """Relative change of the sum of normal forces from lowest to highest μ, before and after the pitch point."""
     loads = []
     for index in (0, -1):
         cut = Slices.joined([each[index].cut for each in run.positions])

@@ -95,7 +95,7 @@ def _speed(tables: Path) -> Iterator[Promise]:
     gears = read_rows(tables / "gears.csv", GearRow)
     for program, bar in GEAR_BARS.items():
         (row,) = large(gears, program)
-        yield _at_least(f"gear pair, {row.dofs:,} dofs: seconds a position of {program} over ours", row.ratio, bar)
+        yield _at_least(f"gear pair, {row.dofs:,} dofs: seconds per position of {program} over ours", row.ratio, bar)
     for ratio_row in read_rows(tables / "ratios.csv", RatioRow):
         compared = _at_least if ratio_row.is_least else _at_most
         yield compared(f"{ratio_row.what}, {ratio_row.dofs:,} dofs", ratio_row.ratio, ratio_row.bar)
@@ -132,7 +132,7 @@ def _parameters(robustness: Path) -> Iterator[Promise]:
     refused = {each.quantity.split(", ")[2] for each in claims if math.isnan(each.found)}
     yield Promise("γ = 1.1 C, spur pair", "a result", f"refused, {' and '.join(sorted(refused))}", not refused)
     newton = max(each.found for each in claims if each.quantity.startswith("Newton iterations"))
-    yield _at_most("Newton iterations a position with friction, mean", newton, 8.0)
+    yield _at_most("Newton iterations per position with friction, mean", newton, 8.0)
     (kills,) = measured(robustness / "faults.md")
     yield Promise("killed 20 times and resumed: largest difference", "1e-7", f"{kills.found:.0e}", kills.held)
 

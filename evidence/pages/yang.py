@@ -24,15 +24,16 @@ def beside_hertz(docs: Path, level: str) -> str:
 def accuracy(docs: Path) -> str:
     """A sentence on both levels."""
     return (
-        "Peak pressures at mid-face of Yang's helical pair, beside Hertz for their own line load: level `quick`, which "
-        f"is for looking, {beside_hertz(docs, 'quick')}; level `standard` {beside_hertz(docs, 'standard')}."
+        "Peak pressures at mid-face of Yang's helical pair, compared with Hertz for their own line load: level "
+        f"`quick`, for orientation only, {beside_hertz(docs, 'quick')}; level `standard` "
+        f"{beside_hertz(docs, 'standard')}."
     )
 
 
 def levels(docs: Path) -> str:
     """What to expect of each level."""
     return markdown(
-        ("level", "elements across 2b_H", "peak pressure beside Hertz for its own line load"),
+        ("level", "elements across 2b_H", "peak pressure compared with Hertz for its own line load"),
         [
             ("quick", "1.7", f"{beside_hertz(docs, 'quick')} ([Yang's pair](yang2022.md), mid-face)"),
             ("standard", "3", f"{beside_hertz(docs, 'standard')} (the same)"),

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from evolvent.results.contact_slices import Slices
-from evolvent.results.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent.results.run_data import RunData, SolvedPosition
-from evolvent.results.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Floats, Ints
 
 BESIDE = 3.0 * AT_LIMIT

@@ -10,11 +10,11 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
-from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
 from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
 from evolvent_meshes.gears.pair import GearPair
 
-ADDENDUM, DEDENDUM, RACK_TIP_RADIUS = 1.0, 1.25, 0.38
+ADDENDUM, DEDENDUM = 1.0, 1.25
 """Rack of ISO 53, profile A, in normal modules."""
 HANDS = {"right": 1, "left": -1}
 """Direction of the helix -> its sign."""
@@ -148,9 +148,7 @@ def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float
     depth: of the rack tooth below the pitch line [mm].
     """
     angle = math.radians(pair.normal_pressure_angle_deg)
-    half_space = pair.normal_module_mm * (math.pi / 4 - gear.profile_shift * math.tan(angle))
-    full_round = (half_space - depth * math.tan(angle)) * math.cos(angle) / (1 - math.sin(angle))
-    return max(0.0, min(RACK_TIP_RADIUS * pair.normal_module_mm, (1 - 1e-9) * full_round))
+    return usual_rack_tip_radius(pair.normal_module_mm, angle, depth / pair.normal_module_mm + gear.profile_shift)
 
 
 def _reference_diameter(pair: PairSection, gear: GearSection) -> float:

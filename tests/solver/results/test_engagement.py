@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from evolvent.contact.hertz import line_peak_pressure
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import line_mean, line_peak
 from evolvent.results.engagement import (
     Engagement,
     crossing,
@@ -17,7 +18,6 @@ from evolvent.results.engagement import (
     largest_peak,
     sign_changes,
 )
-from evolvent.results.line_peaks import line_mean, line_peak
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.gears.flank import contact_lines
 from tests.support.synthetic_run import even_line_load, synthetic_run

@@ -26,9 +26,9 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.fields.flank_field import flank_field, line_distance
 from evolvent.results.fields.polygons import (
     Polygons,

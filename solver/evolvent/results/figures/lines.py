@@ -12,12 +12,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, sheet
 from evolvent.results.drawing.teeth import compares_yang, short_name
 from evolvent.results.figures.flank import FACE, envelope
 from evolvent.results.figures.yang import Point, has_two_lines, paper_points, paper_position
-from evolvent.results.line_peaks import pooled_peaks
 from evolvent.results.run_data import RunData
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats

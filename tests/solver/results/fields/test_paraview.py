@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import pyvista
 
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.fields.flank_field import flank_field, flank_patch, line_distance
 from evolvent.results.fields.paraview import flank_fields, write_fields
 from evolvent.results.fields.polygons import Polygons, joined, sector_surface, sliding, space_vectors

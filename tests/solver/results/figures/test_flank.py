@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from evidence.pages.tutorial import small
-from evolvent.results.contact_slices import on_tip_edge
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.results.drawing.style import ABOVE, OVER, png, styled
 from evolvent.results.engagement import largest_peak
 from evolvent.results.figures.flank import envelope, pressure_map, pressure_top

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
-from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import AT_ZONE_END, styled
 from evolvent.results.engagement import sign_changes
 from evolvent.results.figures.hertz import hertz_comparison

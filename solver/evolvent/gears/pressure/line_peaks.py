@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.results.contact_slices import Slices
-from evolvent.results.tip_zones import AT_LIMIT
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
 

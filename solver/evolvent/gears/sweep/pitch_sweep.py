@@ -23,6 +23,7 @@ from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump,
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent_meshes.arrays import Bools
 
 HALVINGS = 4
 LOG = logging.getLogger("evolvent")
@@ -45,7 +46,7 @@ class SweepState:
     histories: Histories
     patch: ContactPatch | None = None
 
-    def of(self, coefficients: np.ndarray) -> SweepState:
+    def of(self, coefficients: Bools) -> SweepState:
         """The same for some of its friction coefficients, (frictions,) bool."""
         return replace(self, histories=tuple(compress(self.histories, coefficients)))
 
@@ -72,7 +73,7 @@ class SweptPosition:
     again: bool = False
     closes: bool = False
 
-    def of(self, coefficients: np.ndarray) -> SweptPosition:
+    def of(self, coefficients: Bools) -> SweptPosition:
         """The same for some of its friction coefficients, (frictions,) bool."""
         return replace(self, results=tuple(compress(self.results, coefficients)), state=self.state.of(coefficients))
 

@@ -25,6 +25,7 @@ from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.redraw import plot_folder
 from evolvent.scene.plain_text import signed
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.run_parts import store
 from tests.support.synthetic_run import synthetic_run
@@ -133,7 +134,7 @@ def test_loaded_pair_shows_the_pressure(run: RunData) -> None:
     assert blue > 0.1
 
 
-def _red(image: np.ndarray) -> int:
+def _red(image: Floats) -> int:
     return int((image[..., 0] > image[..., 2] + 70).sum())
 
 

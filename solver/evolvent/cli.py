@@ -105,7 +105,8 @@ def run(
 ) -> None:
     """Compute a scene.
 
-    One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
+    The positions of one angular pitch 2π/z_1 (one mesh cycle) for every friction coefficient; tables, fields and
+    pictures go to DIR.
     """
     with reported(parallel=True, advice=RESUME):
         loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)

@@ -47,13 +47,13 @@ class GearParameters(GearGeometry):
         hand: int = 1,
         modifications: Modifications | None = None,
     ) -> GearParameters:
-        """A gear from the coefficients of its rack, which are multiples of m_n: d_a = d + 2 m_n (h_a* + x − Δy),
-        d_f = d − 2 m_n (h_f* − x), ISO 21771:2007, 4.5.
+        """A gear from the coefficients of its basic rack, which are multiples of m_n: d_a = d + 2 m_n (h_aP* + x + k),
+        d_f = d − 2 m_n (h_fP* − x), ISO 21771:2007, 4.5.
 
-        addendum_coefficient: h_a*.
-        dedendum_coefficient: h_f*.
+        addendum_coefficient: h_aP*.
+        dedendum_coefficient: h_fP*.
         rack_tip_radius_coefficient: ρ_fP*; by default that of `usual_rack_tip_radius`.
-        tip_shortening_coefficient: Δy.
+        tip_shortening_coefficient: −k, the negative of the tip alteration coefficient.
         The other parameters are the fields of `GearGeometry`. Raises GeometryError if no such gear can be cut.
 
         >>> gear = GearParameters.from_rack(

@@ -57,7 +57,7 @@ class SolvedPosition:
 
 @dataclass(frozen=True)
 class RunData:
-    """A scene and its results over one base pitch."""
+    """A scene and its results over one angular pitch."""
 
     scene: Scene
     """The scene as it was solved."""
@@ -95,7 +95,7 @@ class RunData:
 
     @property
     def pitch(self) -> float:
-        """Pinion rotation of a base pitch, 2π/z_1 [rad]."""
+        """Angular pitch 2π/z_1 of the pinion [rad]."""
         return 2.0 * np.pi / self.pair.pinion.z
 
     @cached_property

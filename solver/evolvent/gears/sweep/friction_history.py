@@ -49,8 +49,8 @@ class FrictionHistory:
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
     def earlier(self, pitches: int) -> FrictionHistory:
-        """The same so many base pitches earlier, where other teeth of both gears stand as these do. Teeth without load
-        are left out: the contact need not look at them at that time."""
+        """The same so many angular pitches earlier, where other teeth of both gears stand as these do. Teeth without
+        load are left out: the contact need not look at them at that time."""
         d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
         turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
         loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]

@@ -80,7 +80,7 @@ def test_nodes_stand_where_the_solver_had_them(run: RunData, tmp_path: Path) -> 
     loaded = (flanks["pressure_MPa (mu=0)"] > 0.0) & (flanks["gear"] == 0)  # NaN is not
     assert loaded.sum() > 100
     pair = run.pair
-    angle, base = pair.operating_pressure_angle, pair.pinion.base_radius
+    angle, base = pair.working_pressure_angle, pair.pinion.base_radius
     off_plane = flanks.points[loaded] @ [np.cos(angle), -np.sin(angle), 0.0] - base
     assert np.abs(off_plane).max() < 0.25
     turned = flanks.points[loaded] @ [np.cos(angle), np.sin(angle), 0.0] - base

@@ -160,7 +160,7 @@ def texts_of(run: RunData) -> dict[str, str]:
 
 def test_a_study_is_shown_where_it_is_asked_for(run: RunData) -> None:
     """Yang's estimates, teeth and points are in the pictures of a scene that compares with them, and in no other: there
-    tooth pairs have their numbers of teeth.csv, and points the names of ISO 21771."""
+    tooth pairs have their numbers of teeth.csv, and points the names of ISO 21771:2007."""
     compared = texts_of(run)
     assert "Yang Eq. 4" in compared["10_hertz"] and "1788" in compared["10_hertz"]
     assert "tooth 2" in compared["06_pressure_along_lines"] and "tooth 3 (enters" in compared["04_stress_of_teeth"]

@@ -115,12 +115,13 @@ def run(
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         _require_room(loaded, "run", force, MPI.COMM_WORLD)
-        from evolvent.run.output import whereabouts
+        from evolvent.results.tables.headlines import headlines
+        from evolvent.run.output import SUMMARY, whereabouts
         from evolvent.run.scene_run import run_scene
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
         if not quiet:
-            typer.echo(whereabouts(out, loaded))
+            typer.echo("\n".join([*headlines(out / SUMMARY), whereabouts(out, loaded)]))
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

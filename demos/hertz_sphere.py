@@ -43,7 +43,7 @@ from evolvent import (
     von_mises,
 )
 from evolvent.fem.backend import dolfinx_compat
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.shapes.blocks import graded_box, sphere_quarter
 from evolvent_meshes.shapes.rings import ring_block, ring_sphere
 from evolvent_meshes.shapes.variants import with_part
@@ -229,7 +229,7 @@ def _section(axis: Axes, solution: Solution) -> None:
     axis.figure.colorbar(cells, ax=axis, label="von Mises stress [MPa]", shrink=0.85)
 
 
-def _cells_of(mesh: MeshData, facets: np.ndarray) -> np.ndarray:
+def _cells_of(mesh: MeshData, facets: Ints) -> Ints:
     """The cell (f,) that has the corners of each facet."""
     on_facet = np.zeros(len(mesh.points), dtype=bool)
     on_facet[facets] = True

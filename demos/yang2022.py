@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.run_data import RunData, read_run
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import load_scene

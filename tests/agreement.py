@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from demos.hertz_cylinder import Slip, cylinder_on_block
 from demos.hertz_sphere import ball_on_block
@@ -78,9 +79,9 @@ def keep(path: Path, solution: Solution) -> None:
     write_bytes(path, arrays_bytes(arrays))
 
 
-def results(folder: Path) -> dict[tuple[str, str], np.ndarray]:
+def results(folder: Path) -> dict[tuple[str, str], NDArray[Any]]:
     """(file, name) -> value of all results below a folder."""
-    found: dict[tuple[str, str], np.ndarray] = {}
+    found: dict[tuple[str, str], NDArray[Any]] = {}
     for path in sorted(folder.rglob("*.npz")):
         found |= {(str(path.relative_to(folder)), name): value for name, value in read_arrays(path).items()}
     for path in sorted(folder.rglob("summary.json")):
@@ -98,7 +99,7 @@ def leaves(tree: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, float("nan") if tree is None else tree
 
 
-def difference(one: np.ndarray, other: np.ndarray) -> float:
+def difference(one: NDArray[Any], other: NDArray[Any]) -> float:
     """Largest |one − other| over the largest entry of both; infinite where they cannot be compared."""
     if one.shape != other.shape or one.dtype.kind != other.dtype.kind:
         return np.inf

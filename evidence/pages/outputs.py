@@ -31,7 +31,7 @@ UNITS = {
 }  # fmt: skip
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (
-    ("summary.json", "all figures of the run: its scene, facts, figures a friction coefficient, positions"),
+    ("summary.json", "all values of the run: its scene, facts, values per friction coefficient, positions"),
     ("positions.csv", "one line per position and friction coefficient"),
     ("teeth.csv", "one line per tooth pair, position and friction coefficient"),
     ("run.log", "what was skipped, one line per position, how long everything took"),
@@ -50,7 +50,7 @@ FILES = (
     ("results/evolvent-files.jsonl", "what runs have written here, with a checksum: only that is ever removed again"),
     (".evolvent.lock", "there while a run goes on: one run per folder"),
     ("wear.csv", "a wear study: one line per block of cycles"),
-    ("wear.json", "a wear study: the figures at each report"),
+    ("wear.json", "a wear study: the values at each report"),
     ("worn_*", "a wear study: the pair after so many cycles, a folder with all of the above"),
 )
 ARRAYS = (

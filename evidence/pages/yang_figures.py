@@ -15,14 +15,14 @@ import numpy as np
 
 from evidence.checkout import DOCS
 from evidence.tables import read_rows, write_rows
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import between, pooled_peaks
 from evolvent.results.drawing.teeth import YANG
 from evolvent.results.engagement import Engagement, crossing, engagement, largest_peak
 from evolvent.results.figures.lines import at_point
 from evolvent.results.figures.stress import relative_change
 from evolvent.results.figures.trend import trends
 from evolvent.results.figures.yang import paper_points, paper_position
-from evolvent.results.line_peaks import between, pooled_peaks
 from evolvent.results.run_data import RunData, read_run
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow

@@ -8,8 +8,10 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evidence.checkout import ROOT
 from evidence.claims import Claim, regression
@@ -134,7 +136,7 @@ def differs(found: Path, wanted: Path) -> float:
     return max(_difference(one[name], other[name]) for name in one)
 
 
-def _numbers(out: Path) -> dict[str, np.ndarray]:
+def _numbers(out: Path) -> dict[str, NDArray[Any]]:
     return {
         f"{path.name}/{key}": array
         for path in (out / "results").glob("*.npz")
@@ -144,7 +146,7 @@ def _numbers(out: Path) -> dict[str, np.ndarray]:
     }
 
 
-def _difference(one: np.ndarray, other: np.ndarray) -> float:
+def _difference(one: NDArray[Any], other: NDArray[Any]) -> float:
     if one.shape != other.shape or one.dtype.kind != other.dtype.kind:
         return float("inf")
     if one.dtype.kind != "f":

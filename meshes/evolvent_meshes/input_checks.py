@@ -7,6 +7,7 @@ for the message.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from enum import Enum
 from numbers import Integral, Real
 from typing import Any, NoReturn, TypeVar
 
@@ -38,9 +39,11 @@ class Words(str):
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: shortened, a large array by its shape and type."""
+    """A value as a message shows it: shortened, a large array by its shape and type, an Enum by its name."""
     if isinstance(value, np.ndarray) and value.size > 6:
         return f"an array of shape {value.shape} and type {value.dtype}"
+    if isinstance(value, Enum):
+        return f"{type(value).__name__}.{value.name}"
     text = " ".join(repr(value).split())
     text = text if len(text) <= SHOWN_LENGTH else text[: SHOWN_LENGTH - 3] + "..."
     return text if isinstance(value, str | Real | None | list | tuple | np.ndarray) else f"{kind_of(value)} {text}"
@@ -124,4 +127,4 @@ def members(what: str, value: Any, kinds: tuple[type[T], ...], example: str) -> 
 def one_of(what: str, value: object, allowed: tuple[object, ...]) -> None:
     """Raises InputError for any other value; True is not 1."""
     if not any(type(value) is type(each) and value == each for each in allowed):
-        refuse(what, " or ".join(map(repr, allowed)), value, "take one of them")
+        refuse(what, " or ".join(map(shown, allowed)), value, "take one of them")

@@ -105,7 +105,8 @@ def run(
 ) -> None:
     """Compute a scene.
 
-    One base pitch of positions for every friction coefficient; tables, fields and pictures go to DIR.
+    The positions of one angular pitch 2π/z_1 (one mesh cycle) for every friction coefficient; tables, fields and
+    pictures go to DIR.
     """
     with reported(parallel=True, advice=RESUME):
         loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)
@@ -114,12 +115,13 @@ def run(
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         _require_room(loaded, "run", force, MPI.COMM_WORLD)
-        from evolvent.run.output import whereabouts
+        from evolvent.results.tables.headlines import headlines
+        from evolvent.run.output import SUMMARY, whereabouts
         from evolvent.run.scene_run import run_scene
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
         if not quiet:
-            typer.echo(whereabouts(out, loaded))
+            typer.echo("\n".join([*headlines(out / SUMMARY), whereabouts(out, loaded)]))
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

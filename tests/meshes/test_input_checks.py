@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from evolvent_meshes.errors import InputError
-from evolvent_meshes.input_checks import array, members, number, shown, text, vector
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.input_checks import array, members, number, one_of, shown, text, vector
 
 NAN = float("nan")
 
@@ -29,6 +30,9 @@ NAN = float("nan")
         (lambda: text("name", "", "give a name"), "name: wanted a name, found ''; give a name"),
         (lambda: members("loads", 3, (int,), "(1, 2)"), "loads: wanted a tuple of int, found 3; write (1, 2)"),
         (lambda: members("loads", [1, "x"], (int,), "(1, 2)"), "found 'x' in it"),
+        (lambda: one_of("order", 3, (1, 2)), "order: wanted 1 or 2, found 3; take one of them"),
+        (lambda: one_of("on", "pinion", tuple(Member)), "on: wanted Member.PINION or Member.WHEEL, found 'pinion'"),
+        (lambda: one_of("on", Member.WHEEL, ("wheel",)), "on: wanted 'wheel', found Member.WHEEL; take one of them"),
     ],
 )
 def test_wrong_values_are_refused(check: Callable[[], Any], message: str) -> None:

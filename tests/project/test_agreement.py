@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from evolvent.results.archive.archive import arrays_bytes, read_arrays
 from evolvent_meshes.files import write_bytes
 from tests.agreement import TOLERANCE, differences, keep, main
 
-Change = Callable[[dict, dict], None]
+Change = Callable[[dict[str, Any], dict[str, Any]], None]
 
 
 def write(folder: Path, change: Change | None = None) -> Path:
@@ -32,7 +33,7 @@ def write(folder: Path, change: Change | None = None) -> Path:
     return folder
 
 
-def scaled(row: dict, arrays: dict, by: float) -> None:
+def scaled(row: dict[str, Any], arrays: dict[str, Any], by: float) -> None:
     row["torque_gear_Nm"] *= by
     arrays["0/contact/traction"][0] *= by
 

@@ -51,7 +51,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
-    "gears.solution": ("meshes", "fem.backend", "gears.problem", "gears", "gears.sweep"),
+    "gears.pressure": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep"),
+    "gears.solution": ("meshes", "fem.backend", "gears.problem", "gears", "gears.sweep", "gears.pressure"),
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
     "scene.checking": (
@@ -61,19 +62,23 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "results.archive": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
     ),
-    "results": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep", "scene", "scene.checking", "results.archive"),
+    "results": (
+        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "scene.checking",
+        "results.archive",
+    ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (
-        "meshes.gears", "gears.solution", "scene", "scene.checking", "results.archive", "results", "results.error_bars",
+        "meshes.gears", "gears.pressure", "gears.solution", "scene", "scene.checking", "results.archive", "results",
+        "results.error_bars",
     ),
     "results.fields": (
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears", "gears.sweep",
-        "results.archive", "results",
+        "gears.pressure", "results.archive", "results",
     ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
-        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "scene", "scene.checking",
-        "results.archive", "results", "results.tables", "results.fields", "results.drawing",
+        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
+        "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
     ),
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
@@ -81,8 +86,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
-        "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "scene", "results.*", "wear",
-        "wear.gears",
+        "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
+        "results.*", "wear", "wear.gears",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",

@@ -14,7 +14,7 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.checkout import ROOT
 
@@ -78,7 +78,7 @@ class Curves:
         return torques[:, 1] / (torques[:, 0] * self.results[0].stand.pair.ratio)
 
     @property
-    def tip_edge(self) -> np.ndarray:
+    def tip_edge(self) -> Bools:
         """(k,) bool: a tooth bears on a tip edge."""
         return np.array([bool(result.contact.edge.any()) for result in self.results])
 

@@ -18,6 +18,7 @@ from evolvent.wear.archard import Archard
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
 from evolvent.wear.gears.meshed_pair import GearMeshMotion
 from evolvent.wear.results.report import WornPair
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from tests.support.gear_cases import helical_scene, model_of, spur_scene
@@ -46,7 +47,7 @@ def wearing_gears(scene: Scene, positions: int = 4, refresh: float = np.inf) -> 
     return GearWear(model, pitch, 0.0, Archard(K, K), MPI.COMM_SELF, following)
 
 
-def smooth_wear(gears: GearWear, depth: float) -> np.ndarray:
+def smooth_wear(gears: GearWear, depth: float) -> Floats:
     """A smooth wear of both flanks: nothing at root and tip, `depth` in the middle."""
     parts = []
     for grid in gears.grids:

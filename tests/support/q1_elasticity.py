@@ -8,10 +8,12 @@ from itertools import product
 import numpy as np
 import scipy.sparse as sp
 
+from evolvent_meshes.arrays import Floats, Ints
+
 E_MODULUS, POISSON = 210e3, 0.3
 
 
-def hooke(dimension: int) -> np.ndarray:
+def hooke(dimension: int) -> Floats:
     """Elasticity tensor C_ijkl (plane strain in 2D)."""
     shear = E_MODULUS / (2 * (1 + POISSON))
     lame = E_MODULUS * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
@@ -20,7 +22,7 @@ def hooke(dimension: int) -> np.ndarray:
     return lame * np.einsum("ij,kl->ijkl", one, one) + shear * mixed
 
 
-def stiffness(points: np.ndarray, cells: np.ndarray, corners_of: np.ndarray | None = None) -> sp.csr_matrix:
+def stiffness(points: Floats, cells: Ints, corners_of: Ints | None = None) -> sp.csr_matrix:
     """K of order-1 quadrilaterals or hexahedra, `cells` with lexicographic corners (last coordinate fastest).
 
     `corners_of` are the cells as the points have them, where `cells` joins nodes at equal places.
@@ -44,7 +46,7 @@ def stiffness(points: np.ndarray, cells: np.ndarray, corners_of: np.ndarray | No
     return sp.coo_matrix((local.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count)).tocsr()
 
 
-def grid_cells(counts: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+def grid_cells(counts: tuple[int, ...]) -> tuple[Ints, Ints]:
     """Node numbers (counts + 1, C order) and cells of a structured grid."""
     numbers = np.arange(np.prod(np.add(counts, 1))).reshape(np.add(counts, 1))
     shifts = product((0, 1), repeat=len(counts))
@@ -52,12 +54,12 @@ def grid_cells(counts: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
     return numbers, np.stack(corners, axis=1)
 
 
-def dofs_of(nodes: np.ndarray, dimension: int) -> np.ndarray:
+def dofs_of(nodes: Ints, dimension: int) -> Ints:
     """Degrees of freedom of `nodes`, node by node."""
     return (dimension * np.ravel(nodes)[:, None] + np.arange(dimension)).ravel()
 
 
-def block(counts: tuple[int, int, int]) -> tuple[sp.csr_matrix, np.ndarray, sp.csr_matrix]:
+def block(counts: tuple[int, int, int]) -> tuple[sp.csr_matrix, Ints, sp.csr_matrix]:
     """K of a block with unit cells, free dofs (bottom z = 0 held), and displacement + traction-like functionals."""
     numbers, cells = grid_cells(counts)
     points = np.indices(numbers.shape).reshape(3, -1).T.astype(float)
@@ -75,10 +77,10 @@ class Ring:
     """
 
     stiffness: sp.csr_matrix
-    free: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    surface: list[np.ndarray]
+    free: Ints
+    low: Ints
+    high: Ints
+    surface: list[Ints]
     dimension: int
 
 

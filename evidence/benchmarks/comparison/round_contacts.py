@@ -8,7 +8,7 @@ import numpy as np
 
 from evidence.benchmarks.comparison.task import Push, Task
 from evolvent.contact import hertz
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.structured_grid import split_to_simplices
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
@@ -90,7 +90,7 @@ def ball_and_block(
     return with_part(upper, "arc", "contact", 1.5 * a), with_part(lower, "top", "contact", 1.5 * a)
 
 
-def _columns(points: Floats) -> np.ndarray:
+def _columns(points: Floats) -> Ints:
     """A number for each column of nodes above each other, by radius and then angle (n,)."""
     x, y = points[:, 0], points[:, 1]
     key = np.round(np.column_stack([np.hypot(x, y), np.arctan2(y, x) * (np.hypot(x, y) > 1e-9)]), 9)

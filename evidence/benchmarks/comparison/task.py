@@ -9,8 +9,10 @@ import json
 from dataclasses import asdict, dataclass, field
 from math import nan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -66,7 +68,7 @@ class Task:
 
     def write(self, path: Path) -> None:
         """As one .npz."""
-        arrays: dict[str, np.ndarray] = {}
+        arrays: dict[str, NDArray[Any]] = {}
         for index, mesh in enumerate(self.bodies):
             arrays |= {f"{index}/points": mesh.points, f"{index}/cells": mesh.cells}
             arrays |= {f"{index}/facets/{name}": nodes for name, nodes in mesh.facets.items()}

@@ -38,7 +38,7 @@ class SpurMesh:
     """A mesh of He's pair."""
 
     elements: float
-    """Across the Hertz width 2b."""
+    """Across the Hertz width 2b_H."""
     layers: int = 0
     """Over the face width; 0 in 2D."""
     fine_body: bool = False

@@ -29,7 +29,7 @@ ROTATION = 1.78e-3  # rad of the pinion, which takes three teeth to about 250 NÂ
 
 
 def pair_scene(elements: float, *settings: str, level: str = "quick") -> Scene:
-    """The pair at constant pinion torque with so many elements across the Hertz width 2b."""
+    """The pair at constant pinion torque with so many elements across the Hertz width 2b_H."""
     mesh = f"mesh.elements_per_contact_width={elements}", f'mesh.level="{level}"'
     return helical_pair(*mesh, f"contact.friction=[{FRICTION}]", *settings)
 

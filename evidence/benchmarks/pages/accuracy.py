@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def _spacing_said(rows: Sequence[BarRow]) -> list[str]:
     ]
 
 
-SECTIONS: tuple[PageSection, ...] = (
+SECTIONS: tuple[PageSection[Any], ...] = (
     PageSection("Error bars", "bars", Table(BarRow), words=_bars_said, after=_hits),
     PageSection("The spacing of positions", "spacing", Table(BarRow), words=_spacing_said, after=_hits),
 )

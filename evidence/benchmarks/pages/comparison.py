@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from evidence.benchmarks.comparison.programs import EVOLVENT
 from evidence.benchmarks.comparison.work_precision import OverkillRow, Row
@@ -123,7 +124,7 @@ def _gears_said(rows: Sequence[GearRow]) -> list[str]:
     return [*ratios, *anew(rows)]
 
 
-SECTIONS: tuple[PageSection, ...] = (
+SECTIONS: tuple[PageSection[Any], ...] = (
     *(
         PageSection(
             title, name, HERTZ, partial(_overkill_said, name), partial(figures.work_precision, title=title), title,

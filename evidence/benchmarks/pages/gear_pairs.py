@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
@@ -145,7 +146,7 @@ WEAR_TABLE = Table(
         Column("of the volume %", "volume_error", "+.2%"),
     ),
 )  # fmt: skip
-COSTS: tuple[PageSection, ...] = (
+COSTS: tuple[PageSection[Any], ...] = (
     PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],
@@ -156,7 +157,7 @@ COSTS: tuple[PageSection, ...] = (
     PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
     PageSection("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
 )  # fmt: skip
-WEAR: tuple[PageSection, ...] = (
+WEAR: tuple[PageSection[Any], ...] = (
     PageSection("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
     PageSection("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
 )

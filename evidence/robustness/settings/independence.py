@@ -22,8 +22,8 @@ from evolvent.contact.problem.definition import Nitsche
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.condensed_gear import condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.pressure.contact_slices import slices
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
-from evolvent.results.contact_slices import slices
 from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
 

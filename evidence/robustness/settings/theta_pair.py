@@ -20,7 +20,7 @@ from evolvent.gears.contact.tooth_contact import GAP
 from evolvent.gears.full_gear import whole_mesh
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.results.contact_slices import fitted_peak
+from evolvent.gears.pressure.contact_slices import fitted_peak
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.arrays import Floats

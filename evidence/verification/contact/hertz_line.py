@@ -19,6 +19,7 @@ from evolvent import Contact, Problem, Solution, solve
 from evolvent.contact import hertz
 from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 from evolvent_meshes.shapes.variants import with_part
 
@@ -74,7 +75,7 @@ def verify() -> Verification:
     )
 
 
-def _exact_stress(depth: np.ndarray) -> np.ndarray:
+def _exact_stress(depth: Floats) -> Floats:
     """σ_xx, σ_yy (vertical), σ_zz (n, 3) over p0 at depth/b."""
     stress = hertz.line_axis_stress(depth, STEEL.poissons_ratio)
     return np.stack([stress.width, stress.depth, stress.line], axis=1)

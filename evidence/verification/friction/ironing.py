@@ -16,7 +16,7 @@ from evolvent.fem.body import Body, Fixed, Freedom, Rigid
 from evolvent.fem.material import STEEL, Material
 from evolvent.fem.stress import cell_stress, von_mises
 from evolvent.results.drawing.style import INK, PINION, TEETH, WHEEL, note
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
 from evolvent_meshes.shapes.variants import with_part
 
@@ -50,7 +50,7 @@ class Ironed:
         return force * np.sign(force[-1, 1]) * np.array([-1.0, 1.0])
 
     @property
-    def settled(self) -> np.ndarray:
+    def settled(self) -> Bools:
         """(k,) bool: past the distance over which friction builds up."""
         return np.asarray(self.x >= self.x[0] + SETTLING * ELEMENT - 1e-12)
 

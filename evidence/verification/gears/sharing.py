@@ -16,7 +16,7 @@ from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform
 from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
 from evolvent.scene.gear_problem import gear_problem
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.pair import GearPair
 
 POSITIONS = 40  # a pitch
@@ -145,7 +145,7 @@ def _claims(pair: GearPair, computed: Shares, angles: tuple[float, float]) -> li
     ]
 
 
-def _double(pair: GearPair, roll: Floats) -> np.ndarray:
+def _double(pair: GearPair, roll: Floats) -> Bools:
     """Where two pairs are on the rigid path of contact."""
     half = 0.5 * pair.transverse_contact_ratio
     return np.asarray((np.abs(roll) < half) & (np.abs(roll) > 1.0 - half))

@@ -18,7 +18,7 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.drawing.style import PINION, WHEEL, note
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 SMOOTH = "contact.friction=0.0"
 WIDTH, RELIEF = 8.0, 15.0  # mm, µm: of the helical pair
@@ -41,7 +41,7 @@ class Ratios:
 
     degrees: Floats
     off: Floats
-    edge: np.ndarray
+    edge: Bools
 
     @property
     def mean(self) -> float:

@@ -206,13 +206,13 @@ def nominal_angles(pair: GearPair, rotation: ArrayLike) -> tuple[Floats, Floats]
 def action_plane_points(pair: GearPair, roll_distance: ArrayLike, z: ArrayLike) -> Floats:
     """Points (…, 3) [mm] of the plane of action at roll distances ξ and z (…) [mm], fixed frame, aligned axes."""
     xi, height = np.broadcast_arrays(np.asarray(roll_distance, dtype=float), np.asarray(z, dtype=float))
-    angle, pitch = pair.operating_pressure_angle, pair.working_pitch_diameters[0] / 2.0
+    angle, pitch = pair.working_pressure_angle, pair.working_pitch_diameters[0] / 2.0
     return np.stack([pitch + xi * math.sin(angle), xi * math.cos(angle), height], axis=-1)
 
 
 def contact_normal(pair: GearPair) -> Floats:
     """Outward unit normal (3,) of the pinion's flank at all contact lines, fixed frame, aligned axes."""
-    angle, base = pair.operating_pressure_angle, pair.pinion.base_helix_angle
+    angle, base = pair.working_pressure_angle, pair.pinion.base_helix_angle
     axial = -pair.pinion.hand * math.sin(base)
     return np.array([math.cos(base) * math.sin(angle), math.cos(base) * math.cos(angle), axial])
 
@@ -223,7 +223,7 @@ def misalignment_rotation(pair: GearPair) -> Floats:
     It moves the wheel's axis along the line of action by misalignment_um over the common face width, at +z away from
     the pinion's loaded flank.
     """
-    angle = pair.operating_pressure_angle
+    angle = pair.working_pressure_angle
     tilt = math.atan(pair.misalignment_um * MICROMETRE / pair.face_width)
     return tilt * np.array([-math.cos(angle), math.sin(angle), 0.0])
 

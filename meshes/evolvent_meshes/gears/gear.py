@@ -8,6 +8,16 @@ from dataclasses import dataclass
 from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
 from evolvent_meshes.gears.gear_limits import check_gear
 
+RACK_TIP_RADIUS = 0.38
+"""ρ_fP* of the basic rack of ISO 53, profile A."""
+
+
+def usual_rack_tip_radius(normal_module: float, normal_pressure_angle: float, dedendum_coefficient: float) -> float:
+    """ρ_fP [mm] of ISO 53, profile A, or of a fully rounded rack tooth if that is less, for h_fP* and α_n [rad]."""
+    half_tip = math.pi / 4.0 - dedendum_coefficient * math.tan(normal_pressure_angle)
+    full_round = half_tip * math.cos(normal_pressure_angle) / (1.0 - math.sin(normal_pressure_angle))
+    return normal_module * max(0.0, min(RACK_TIP_RADIUS, (1.0 - 1e-9) * full_round))
+
 
 @dataclass(frozen=True, kw_only=True)
 class GearParameters(GearGeometry):
@@ -28,7 +38,7 @@ class GearParameters(GearGeometry):
         normal_pressure_angle_deg: float,
         addendum_coefficient: float = 1.0,
         dedendum_coefficient: float = 1.25,
-        rack_tip_radius_coefficient: float = 0.25,
+        rack_tip_radius_coefficient: float | None = None,
         tip_shortening_coefficient: float = 0.0,
         face_width: float,
         bore_diameter: float,
@@ -37,13 +47,13 @@ class GearParameters(GearGeometry):
         hand: int = 1,
         modifications: Modifications | None = None,
     ) -> GearParameters:
-        """A gear from the coefficients of its rack, which are multiples of m_n: d_a = d + 2 m_n (h_a* + x − Δy),
-        d_f = d − 2 m_n (h_f* − x), ISO 21771:2007, 4.5.
+        """A gear from the coefficients of its basic rack, which are multiples of m_n: d_a = d + 2 m_n (h_aP* + x + k),
+        d_f = d − 2 m_n (h_fP* − x), ISO 21771:2007, 4.5.
 
-        addendum_coefficient: h_a*.
-        dedendum_coefficient: h_f*.
-        rack_tip_radius_coefficient: ρ_f*.
-        tip_shortening_coefficient: Δy.
+        addendum_coefficient: h_aP*.
+        dedendum_coefficient: h_fP*.
+        rack_tip_radius_coefficient: ρ_fP*; by default that of `usual_rack_tip_radius`.
+        tip_shortening_coefficient: −k, the negative of the tip alteration coefficient.
         The other parameters are the fields of `GearGeometry`. Raises GeometryError if no such gear can be cut.
 
         >>> gear = GearParameters.from_rack(
@@ -55,6 +65,12 @@ class GearParameters(GearGeometry):
         """
         d = z * normal_module / math.cos(math.radians(helix_angle_deg))
         addendum = addendum_coefficient + profile_shift - tip_shortening_coefficient
+        angle = math.radians(normal_pressure_angle_deg)
+        rounded = (
+            usual_rack_tip_radius(normal_module, angle, dedendum_coefficient)
+            if rack_tip_radius_coefficient is None
+            else rack_tip_radius_coefficient * normal_module
+        )
         return cls(
             z=z,
             normal_module=normal_module,
@@ -64,7 +80,7 @@ class GearParameters(GearGeometry):
             face_width=face_width,
             tip_diameter=d + 2.0 * normal_module * addendum,
             root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - profile_shift),
-            rack_tip_radius=rack_tip_radius_coefficient * normal_module,
+            rack_tip_radius=rounded,
             hand=hand,
             bore_diameter=bore_diameter,
             modifications=modifications or Modifications(),

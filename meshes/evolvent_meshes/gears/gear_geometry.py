@@ -49,7 +49,7 @@ class GearGeometry:
     face_width: b [mm].
     tip_diameter: d_a [mm].
     root_diameter: d_f [mm].
-    rack_tip_radius: ρ_f, radius of the generating rack's rounded tip in its normal section [mm].
+    rack_tip_radius: ρ_fP, root fillet radius of the basic rack: tip radius of the generating rack, normal section [mm].
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
     modifications: of the loaded flank.
@@ -119,13 +119,13 @@ class GearGeometry:
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
 
     @property
-    def addendum_coefficient(self) -> float:
-        """(d_a − d) / 2m_n − x, the addendum coefficient h_a* of the rack less the tip shortening [4.5.3]."""
+    def tip_coefficient(self) -> float:
+        """h_aP* + k = (d_a − d) / 2m_n − x, addendum and tip alteration together; k is known in a pair [4.5.3]."""
         return (self.tip_diameter - self.reference_diameter) / (2.0 * self.normal_module) - self.profile_shift
 
     @property
     def dedendum_coefficient(self) -> float:
-        """h_f* = (d − d_f) / 2m_n + x [4.5]."""
+        """h_fP* = (d − d_f) / 2m_n + x [4.5]."""
         return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.profile_shift
 
     @property
@@ -162,7 +162,7 @@ class GearGeometry:
     def rack_form_roll_length(self) -> float:
         """ρ_Ff, roll length at the root form circle as cut by the straight flank of the rack; negative: undercut [7.6].
 
-        The straight flank ends h = (d − d_f)/2 − ρ_f(1 − sin α_n) below the pitch line; the line of action is there at
+        The straight flank ends h = (d − d_f)/2 − ρ_fP(1 − sin α_n) below the pitch line; the line of action is there at
         the distance h / sin α_t before the pitch point.
         """
         depth = (self.reference_diameter - self.root_diameter) / 2.0
@@ -179,7 +179,7 @@ class GearGeometry:
     def rack_tip_half_land(self) -> float:
         """Half the width of the flat land at the rack's tip, normal section; 0: the tip is a full round.
 
-        The tip circle (radius ρ_f, lowest point (d − d_f)/2 below the pitch line) is tangent to the straight flank of
+        The tip circle (radius ρ_fP, lowest point (d − d_f)/2 below the pitch line) is tangent to the straight flank of
         the rack, which is half a space width from the centre line of the rack tooth at the pitch line.
         """
         angle, radius = self.normal_pressure_angle, self.rack_tip_radius

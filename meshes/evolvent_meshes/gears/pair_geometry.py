@@ -20,6 +20,17 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.gear_geometry import involute_function
 
 
+def tip_alteration(shifts: float, spread: float, normal_module: float) -> float:
+    """Tip alteration coefficient k = (a − a_0)/m_n − (x_1 + x_2) that keeps the tip clearance of the basic racks; 0
+    where that is positive: the clearance is larger there, and tips are not made longer.
+
+    shifts: x_1 + x_2.
+    spread: a − a_0, centre distance less that of the reference circles [mm].
+    normal_module: m_n [mm].
+    """
+    return min(0.0, spread / normal_module - shifts)
+
+
 @dataclass(frozen=True)
 class PairGeometry:
     """Data of a pinion that drives a wheel, not checked; `pair.GearPair` is a pair that can run.
@@ -52,7 +63,7 @@ class PairGeometry:
         return min(self.pinion.face_width, self.wheel.face_width)
 
     @cached_property
-    def operating_pressure_angle(self) -> float:
+    def working_pressure_angle(self) -> float:
         """Working transverse pressure angle α_wt, cos α_wt = (r_b1 + r_b2) / a [5.2.4]."""
         return math.acos((self.pinion.base_radius + self.wheel.base_radius) / self.centre_distance)
 
@@ -76,13 +87,13 @@ class PairGeometry:
     @property
     def working_pitch_diameters(self) -> tuple[float, float]:
         """Working pitch diameters (d_w1, d_w2) = d_b / cos α_wt [5.2.5]."""
-        cosine = math.cos(self.operating_pressure_angle)
+        cosine = math.cos(self.working_pressure_angle)
         return self.pinion.base_diameter / cosine, self.wheel.base_diameter / cosine
 
     @cached_property
     def pitch_point_roll_lengths(self) -> tuple[float, float]:
         """Transverse radii of curvature (ρ_C1, ρ_C2) = r_b tan α_wt at the pitch point [5.4.5.3]."""
-        tangent = math.tan(self.operating_pressure_angle)
+        tangent = math.tan(self.working_pressure_angle)
         return self.pinion.base_radius * tangent, self.wheel.base_radius * tangent
 
     @cached_property
@@ -110,7 +121,7 @@ class PairGeometry:
 
     @property
     def engagement_angle(self) -> float:
-        """Rotation of the pinion during the engagement of one tooth, ε_γ 2π/z_1."""
+        """Total angle of transmission of the pinion: its rotation during the engagement of one tooth, ε_γ 2π/z_1."""
         return self.total_contact_ratio * 2.0 * math.pi / self.pinion.z
 
     @property
@@ -122,17 +133,17 @@ class PairGeometry:
         return 2.0 * math.hypot(pinion, pitch_1 + start), 2.0 * math.hypot(wheel, pitch_2 - end)
 
     @property
-    def tip_shortening(self) -> float:
-        """Tip shortening Δy = x_1 + x_2 − (a − a_0)/m_n that keeps the tip clearance of the racks [4.5.2]."""
+    def tip_alteration_coefficient(self) -> float:
+        """Tip alteration coefficient k ≤ 0 that keeps the tip clearance of the basic racks [4.5.2]."""
         reference = (self.pinion.reference_diameter + self.wheel.reference_diameter) / 2.0
-        spread = (self.centre_distance - reference) / self.pinion.normal_module
-        return self.pinion.profile_shift + self.wheel.profile_shift - spread
+        shifts = self.pinion.profile_shift + self.wheel.profile_shift
+        return tip_alteration(shifts, self.centre_distance - reference, self.pinion.normal_module)
 
     @property
     def addendum_coefficients(self) -> tuple[float, float]:
-        """Addendum coefficients (h_a1*, h_a2*) of the racks, before tip shortening."""
-        shortening = self.tip_shortening
-        return self.pinion.addendum_coefficient + shortening, self.wheel.addendum_coefficient + shortening
+        """(h_aP1*, h_aP2*) of the basic racks, from d_a = d + 2 m_n (h_aP* + x + k)."""
+        k = self.tip_alteration_coefficient
+        return self.pinion.tip_coefficient - k, self.wheel.tip_coefficient - k
 
     @property
     def tip_clearances(self) -> tuple[float, float]:
@@ -150,7 +161,7 @@ class PairGeometry:
     @property
     def normal_backlash(self) -> float:
         """Normal backlash j_bn = j_wt cos α_wt cos β_b."""
-        cosines = math.cos(self.operating_pressure_angle) * math.cos(self.pinion.base_helix_angle)
+        cosines = math.cos(self.working_pressure_angle) * math.cos(self.pinion.base_helix_angle)
         return self.circumferential_backlash * cosines
 
     def curvature_radii(self, roll_distance: ArrayLike) -> tuple[Floats, Floats]:

@@ -37,7 +37,7 @@ def check_partners(pair: PairGeometry) -> None:
         "hand",
         wheel.hand,
         f"{-pinion.hand:+d}",
-        "The hands of helical gears on parallel axes are opposite: turn one round.",
+        f"Helical gears on parallel axes need opposite hands: give one gear hand = {-pinion.hand:+d}.",
     )
 
 

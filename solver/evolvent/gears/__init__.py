@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from evolvent.gears.contact.contact_points import ContactPoints as ContactPoints
     from evolvent.gears.gear_model import GearModel as GearModel
     from evolvent.gears.meshing.modifications import TooMuchRelief as TooMuchRelief
+    from evolvent.gears.pressure.line_peaks import LinePeak as LinePeak
+    from evolvent.gears.pressure.pitch_pressure import PitchPressure as PitchPressure
     from evolvent.gears.problem.flank_deviations import FlankChart as FlankChart
     from evolvent.gears.problem.gear_problem import GearOptions as GearOptions
     from evolvent.gears.problem.gear_problem import GearProblem as GearProblem

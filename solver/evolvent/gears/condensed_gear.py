@@ -21,7 +21,7 @@ from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
 from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -76,7 +76,7 @@ class GearBody:
         return np.sqrt(np.maximum(r**2 - self.gear.base_radius**2, 0.0))
 
     @cached_property
-    def tip_zone(self) -> np.ndarray:
+    def tip_zone(self) -> Bools:
         """(n,) bool: the flank nodes on the tip edge."""
         r = np.hypot(self.flank.points[:, 0], self.flank.points[:, 1])
         return r > r.max() - 1e-6 * self.gear.normal_module

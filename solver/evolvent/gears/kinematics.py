@@ -74,7 +74,7 @@ class Stand:
 def line_of_action(pair: GearPair, d: int) -> Floats:
     """(2, d): unit vector n along the line of action in the transverse section, from pinion to wheel, in which ξ grows,
     and e_z × n, along which the pinion slides over the wheel by (1 + 1/u) ξ per radian."""
-    α = pair.operating_pressure_angle
+    α = pair.working_pressure_angle
     return np.array([[np.sin(α), np.cos(α), 0.0], [-np.cos(α), np.sin(α), 0.0]])[:, :d]
 
 

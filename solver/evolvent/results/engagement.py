@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from evolvent.results.contact_slices import Slices
-from evolvent.results.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent.results.run_data import RunData, SolvedPosition
-from evolvent.results.tip_zones import AT_LIMIT
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
 BESIDE = 3.0 * AT_LIMIT
 """A position of a spur pair within this roll distance [mm] of a tip-edge zone's limit lies at the limit."""
@@ -55,7 +55,7 @@ class Engagement:
     max_pressure: Floats
     """(n,) largest peak pressure along the contact line [MPa], see `line_peak`; NaN where no part of the line lies
     between the tip-edge zones."""
-    at_zone_end: np.ndarray
+    at_zone_end: Bools
     """(n,) bool, whether that pressure lies at the limit of a tip-edge zone."""
     mean_pressure: Floats
     """(n,) mean peak pressure along the contact line [MPa], see `line_mean`; NaN as `max_pressure`."""

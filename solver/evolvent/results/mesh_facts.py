@@ -22,13 +22,13 @@ class MeshFacts:
     min_scaled_jacobian: float
     """Smallest scaled Jacobian of the cells of both sectors; 1 is a cube, 0 a cell that is folded."""
     cells_across_contact_width: float
-    """Elements across the fitted contact width 2b, median of all slices."""
+    """Elements across the fitted contact width, median of all slices."""
     cells_across_narrow_contact: float
     """Elements across the narrowest tenth of the contact: nine of ten slices of all positions have more."""
 
 
 def cells_across(run: RunData, share: float = 0.5) -> float:
-    """Fitted contact width 2b over the mean length of a profile element: this quantile of all slices, by default the
+    """Fitted contact width over the mean length of a profile element: this quantile of all slices, by default the
     median."""
     widths = np.concatenate([2.0 * solved.cut.half_width for each in run.positions for solved in each])
     known, flank = widths[np.isfinite(widths)], run.flank

@@ -21,8 +21,7 @@ def loss_percent(_: RunData, solved: SolvedPosition) -> float:
 def mesh_stiffness(run: RunData, solved: SolvedPosition) -> float:
     """Tangent stiffness dF/dδ along the line of action [N/(mm·µm)] at the torque, without friction.
 
-    F: torque over base radius and face width, δ: transmission error. Its mean over the pitch is c_γ of ISO 6336-1 where
-    the gear bodies are stiff.
+    F: torque over base radius and face width, δ: transmission error.
     """
     return 1e-3 * solved.result.stiffness * run.width / run.pair.face_width
 

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from evolvent.gears.pressure.contact_slices import Slices, ToothSummary, slices, tooth_summaries
+from evolvent.gears.pressure.tip_zones import path_between_zones, row_before_tip
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.archive import Archive, ArchiveError, GearShape
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
-from evolvent.results.contact_slices import Slices, ToothSummary, slices, tooth_summaries
-from evolvent.results.tip_zones import path_between_zones, row_before_tip
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
@@ -57,7 +57,7 @@ class SolvedPosition:
 
 @dataclass(frozen=True)
 class RunData:
-    """A scene and its results over one base pitch."""
+    """A scene and its results over one angular pitch."""
 
     scene: Scene
     """The scene as it was solved."""
@@ -95,7 +95,7 @@ class RunData:
 
     @property
     def pitch(self) -> float:
-        """Pinion rotation of a base pitch, 2π/z_1 [rad]."""
+        """Angular pitch 2π/z_1 of the pinion [rad]."""
         return 2.0 * np.pi / self.pair.pinion.z
 
     @cached_property

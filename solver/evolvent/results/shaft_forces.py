@@ -1,7 +1,7 @@
 """Loads of the mesh on the shafts: force and tilting moment on each gear, from the nodal contact forces.
 
-Without friction and with the flanks' nominal normals they are, at the pitch point (ISO 21771): tangential force T/r_w,
-radial force F_t tan α_wt, axial force F_t tan β_w.
+Without friction and with the flanks' nominal normals they are, at the pitch point (ISO 21771:2007): tangential force
+T/r_w, radial force F_t tan α_wt, axial force F_t tan β_w.
 """
 
 from __future__ import annotations

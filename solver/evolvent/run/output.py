@@ -25,7 +25,7 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, wanted_output
 from evolvent_meshes.mesh.quality import scaled_jacobians
 
-FIELDS = "fields for ParaView"
+SUMMARY, FIELDS = "summary.json", "fields for ParaView"
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def whereabouts(out: Path, scene: Scene) -> str:
     wanted = wanted_output(scene)
     asked = {"pictures": wanted.pictures or wanted.animation, FIELDS: wanted.fields or wanted.deformation}
     kinds = {
-        "figures with error bars": ("summary.json",),
+        "figures with error bars": (SUMMARY,),
         "tables": ("positions.csv", "teeth.csv", "wear.csv"),
         "figures of wear": ("wear.json",),
         "pictures": ("pictures",),

@@ -10,12 +10,13 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
-from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
 from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.gears.pair_geometry import tip_alteration
 
-ADDENDUM, DEDENDUM, RACK_TIP_RADIUS = 1.0, 1.25, 0.38
-"""Rack of ISO 53, profile A, in normal modules."""
+ADDENDUM, DEDENDUM = 1.0, 1.25
+"""Basic rack of ISO 53, profile A, in normal modules."""
 HANDS = {"right": 1, "left": -1}
 """Direction of the helix -> its sign."""
 
@@ -60,7 +61,7 @@ def make_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> Gea
     gears: dict[str, GearParameters] = {}
     for name, gear, turn in (("pinion", pinion, hand), ("wheel", wheel, -hand)):
         try:
-            gears[name] = make_gear(pair, gear, turn, tip_shortening(pair, pinion, wheel, distance))
+            gears[name] = make_gear(pair, gear, turn, tip_alteration_of(pair, pinion, wheel, distance))
         except GeometryError as error:
             raise ImpossibleGears(_in_scene_keys(error, f"{name}.", pair, sections)) from error
     try:
@@ -69,14 +70,14 @@ def make_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> Gea
         raise ImpossibleGears(_in_scene_keys(error, "wheel.", pair, sections)) from error
 
 
-def make_gear(pair: PairSection, gear: GearSection, hand: int, shortening: float) -> GearParameters:
+def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float) -> GearParameters:
     """One gear of a scene.
 
-    hand: +1 right, −1 left. shortening: tip shortening Δy in normal modules. Raises GeometryError.
+    hand: +1 right, −1 left. alteration: tip alteration coefficient k ≤ 0. Raises GeometryError.
     """
     module = pair.normal_module_mm
     reference = _reference_diameter(pair, gear)
-    addendum = gear.profile_shift + _or(gear.addendum_coefficient, ADDENDUM) - shortening
+    addendum = gear.profile_shift + _or(gear.addendum_coefficient, ADDENDUM) + alteration
     dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - gear.profile_shift
     tip = _or(gear.tip_diameter_mm, reference + 2 * module * addendum)
     root = _or(gear.root_diameter_mm, reference - 2 * module * dedendum)
@@ -118,8 +119,7 @@ def centre_distance(pair: PairSection, pinion: GearSection, wheel: GearSection) 
 
 
 def working_angle(normal: float, transverse: float, shift_per_tooth: float) -> float:
-    """Working pressure angle α_wt [rad] without backlash: inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 + z2)
-    (ISO 21771, 5.5).
+    """Working pressure angle α_wt [rad] without backlash, by the equation of `PairGeometry.tight_pressure_angle`.
 
     normal, transverse: pressure angles α_n and α_t [rad]. shift_per_tooth: (x1 + x2)/(z1 + z2). Raises ValueError where
     no angle from 0 to 60° satisfies the equation.
@@ -134,12 +134,10 @@ def working_angle_of(pinion: GearParameters, wheel: GearParameters) -> float:
     return working_angle(pinion.normal_pressure_angle, pinion.transverse_pressure_angle, shift)
 
 
-def tip_shortening(pair: PairSection, pinion: GearSection, wheel: GearSection, distance: float) -> float:
-    """Tip shortening Δy = x1 + x2 − (a − a0)/m_n ≥ 0 in normal modules, with which the clearance is that of the racks.
-    """
+def tip_alteration_of(pair: PairSection, pinion: GearSection, wheel: GearSection, distance: float) -> float:
+    """Tip alteration coefficient k ≤ 0 of a scene at this centre distance [mm], see `tip_alteration`."""
     reference = (_reference_diameter(pair, pinion) + _reference_diameter(pair, wheel)) / 2
-    shift = pinion.profile_shift + wheel.profile_shift
-    return max(0.0, shift - (distance - reference) / pair.normal_module_mm)
+    return tip_alteration(pinion.profile_shift + wheel.profile_shift, distance - reference, pair.normal_module_mm)
 
 
 def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float:
@@ -148,9 +146,7 @@ def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float
     depth: of the rack tooth below the pitch line [mm].
     """
     angle = math.radians(pair.normal_pressure_angle_deg)
-    half_space = pair.normal_module_mm * (math.pi / 4 - gear.profile_shift * math.tan(angle))
-    full_round = (half_space - depth * math.tan(angle)) * math.cos(angle) / (1 - math.sin(angle))
-    return max(0.0, min(RACK_TIP_RADIUS * pair.normal_module_mm, (1 - 1e-9) * full_round))
+    return usual_rack_tip_radius(pair.normal_module_mm, angle, depth / pair.normal_module_mm + gear.profile_shift)
 
 
 def _reference_diameter(pair: PairSection, gear: GearSection) -> float:

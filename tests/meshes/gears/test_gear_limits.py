@@ -55,7 +55,7 @@ def test_impossible_gears(change: dict[str, Any], key: str) -> None:
 
 
 def test_undercut_limit() -> None:
-    """Without shift, 20 degrees and h_a* = 1 the sharp-cornered standard rack undercuts below 2/sin²α = 17.1 teeth."""
+    """Without shift, 20 degrees and h_aP* = 1 the sharp-cornered standard rack undercuts below 2/sin²α = 17.1 teeth."""
 
     def gear(z: int) -> GearParameters:
         return GearParameters.from_rack(

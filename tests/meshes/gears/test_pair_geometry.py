@@ -15,7 +15,7 @@ def figures(pair: GearPair) -> dict[str, float]:
     """Every figure of the reference table, by its symbol."""
     result: dict[str, float] = {
         "alpha_t": math.degrees(pair.pinion.transverse_pressure_angle),
-        "alpha_wt": math.degrees(pair.operating_pressure_angle),
+        "alpha_wt": math.degrees(pair.working_pressure_angle),
         "p_bt": pair.pinion.transverse_base_pitch,
         "eps_alpha": pair.transverse_contact_ratio,
         "eps_beta": pair.overlap_ratio,
@@ -59,7 +59,7 @@ ZHANG = (
 def test_every_printed_figure_to_the_last_digit(pair: GearPair, printed: str) -> None:
     """Problem: the data of a paper. Solution: the figures of reference-numbers, section C, to their last digit.
 
-    The table's operating pressure angles follow from the profile shifts (no backlash), not from the rounded centre
+    The table's working pressure angles follow from the profile shifts (no backlash), not from the rounded centre
     distance, which would give 20.7597 and 19.2132 degrees: the figures are taken at the tight centre distance, 0.07 and
     0.19 µm off the printed one. One exception: the wheel's tip thickness of Yang is 1.34549, printed 1.346.
     """
@@ -89,15 +89,22 @@ def test_contact_line_length_over_a_pitch() -> None:
     assert {he().contact_line_length(phi) for phi in np.linspace(0.0, 0.125, 50)} == {20.0, 40.0}
 
 
-def test_tip_shortening_of_zhang() -> None:
-    """Zhang: Δy = x_1 + x_2 − (a − a_0)/m = 0.0094 at the printed centre distance."""
-    assert f"{zhang().tip_shortening:.4f}" == "0.0094"
+def test_tip_alteration_of_zhang() -> None:
+    """Zhang: k = (a − a_0)/m − (x_1 + x_2) = −0.0094 at the printed centre distance."""
+    assert f"{zhang().tip_alteration_coefficient:.4f}" == "-0.0094"
+
+
+def test_tips_are_not_made_longer_at_a_larger_centre_distance() -> None:
+    """He's pair 0.3 mm apart, a tenth of a module: k = 0, not +0.1, and the racks' addenda are the 1 of their gears."""
+    pair = replace(he(), centre_distance=150.3)
+    assert pair.tip_alteration_coefficient == 0.0
+    assert pair.addendum_coefficients == pytest.approx((1.0, 1.0))
 
 
 def zhang_with(addendum: float, angle_deg: float = 18.0) -> GearPair:
-    """Zhang's pair with a common rack addendum and another pressure angle, da = d + 2(h_a* + x − Δy)m, tight mesh."""
+    """Zhang's pair with a common rack addendum and another pressure angle, d_a = d + 2(h_aP* + x + k)m, tight mesh."""
 
-    def gear(z: int, shift: float, shortening: float) -> GearParameters:
+    def gear(z: int, shift: float, alteration: float) -> GearParameters:
         return GearParameters.from_rack(
             z=z,
             normal_module=2.3,
@@ -105,21 +112,21 @@ def zhang_with(addendum: float, angle_deg: float = 18.0) -> GearPair:
             addendum_coefficient=addendum,
             dedendum_coefficient=1.57,
             rack_tip_radius_coefficient=0.2,
-            tip_shortening_coefficient=shortening,
+            tip_shortening_coefficient=-alteration,
             face_width=25.0,
             bore_diameter=40.0,
             profile_shift=shift,
         )
 
-    # a large distance first: the tight one and with it the shortening follow from the shifts alone
+    # a large distance first: the tight one and with it k follow from the shifts alone
     loose = GearPair(gear(33, 0.300, 0.0), gear(46, -0.008, 0.0), 92.0)
-    shortening = replace(loose, centre_distance=loose.tight_centre_distance).tip_shortening
-    gears = gear(33, 0.300, shortening), gear(46, -0.008, shortening)
+    alteration = replace(loose, centre_distance=loose.tight_centre_distance).tip_alteration_coefficient
+    gears = gear(33, 0.300, alteration), gear(46, -0.008, alteration)
     return GearPair(*gears, loose.tight_centre_distance)
 
 
 def test_zhang_contact_ratio_of_common_addendum() -> None:
-    """Contact ratio 2 at a common h_a* = 1.1905; with h_a* = 1.25 it is 2.036 at 19 and 1.988 at 20 degrees."""
+    """Contact ratio 2 at a common h_aP* = 1.1905; with h_aP* = 1.25 it is 2.036 at 19 and 1.988 at 20 degrees."""
     assert zhang_with(1.1905).transverse_contact_ratio == pytest.approx(2.0, abs=1e-4)
     assert [f"{zhang_with(1.25, angle).transverse_contact_ratio:.3f}" for angle in (19.0, 20.0)] == ["2.036", "1.988"]
 

@@ -51,7 +51,7 @@ def test_allowed_value_in_the_message_is_allowed() -> None:
 def test_hands_and_helix_angles_of_a_pair() -> None:
     """Helical gears on parallel axes: opposite hands, equal helix angles; a spur pair's hands don't matter."""
     pair = yang()
-    with pytest.raises(GeometryError, match="hand"):
+    with pytest.raises(GeometryError, match=r"hand: found 1, allowed -1\..* opposite hands: give one gear hand = -1\."):
         replace(pair, wheel=replace(pair.wheel, hand=1))
     with pytest.raises(GeometryError, match="helix_angle_deg"):
         replace(pair, wheel=replace(pair.wheel, helix_angle_deg=28.5, tip_diameter=148.6, root_diameter=136.3))

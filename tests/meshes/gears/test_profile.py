@@ -48,7 +48,7 @@ def test_involute_is_the_unwound_string(gear: GearParameters) -> None:
 
 @every_gear
 def test_tooth_thickness_of_the_profile(gear: GearParameters) -> None:
-    """On the reference circle the tooth is s_t = m_t(π/2) + 2x m_n tan α_t thick (ISO 21771, 4.7.1)."""
+    """On the reference circle the tooth is s_t = m_t(π/2) + 2x m_n tan α_t thick (ISO 21771:2007, 4.7.1)."""
     shift = 2.0 * gear.profile_shift * gear.normal_module * math.tan(gear.transverse_pressure_angle)
     thickness = gear.transverse_module * math.pi / 2.0 + shift
     angle = float(Profile(gear).angle(gear.reference_diameter / 2.0))
@@ -79,7 +79,7 @@ def rack_distance(gear: GearParameters, points: Floats) -> Floats:
     """Signed distances in the normal section of points (…, 2) = (u, v) in the rack's transverse section, + outside.
 
     The rack tooth is built here from the standard's drawing: flanks through half the space width at the pitch line,
-    inclined by α_n; the tip line; a circle ρ_f tangent to both. Written apart from the code under test.
+    inclined by α_n; the tip line; a circle ρ_fP tangent to both. Written apart from the code under test.
     """
     alpha, radius = gear.normal_pressure_angle, gear.rack_tip_radius
     u, v = np.abs(points[..., 0]) * math.cos(gear.helix_angle), points[..., 1]

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.pressure.contact_slices import slices
 from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
-from evolvent.results.contact_slices import slices
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import Curves, force, friction_force, model_of, spur_scene, swept, touches, with_load
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from evolvent.contact.hertz import line_peak_pressure
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import line_mean, line_peak
 from evolvent.results.engagement import (
     Engagement,
     crossing,
@@ -17,8 +18,8 @@ from evolvent.results.engagement import (
     largest_peak,
     sign_changes,
 )
-from evolvent.results.line_peaks import line_mean, line_peak
 from evolvent.results.run_data import RunData, SolvedPosition
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import contact_lines
 from tests.support.synthetic_run import even_line_load, synthetic_run
 
@@ -159,12 +160,12 @@ def test_engagement_ends_where_the_force_is_zero(step: float) -> None:
     np.testing.assert_allclose(_loaded(x, np.full(5, 10.0)).ends, (-step, 5.0 * step))
 
 
-def _loaded(angle: np.ndarray, force: np.ndarray) -> Engagement:
+def _loaded(angle: Floats, force: Floats) -> Engagement:
     zero = np.zeros(len(angle))
     return Engagement(0.0, angle, zero.astype(int), zero.astype(int), force, zero, zero, zero > 0.0, zero, zero)
 
 
-def _curve(friction: float, angle: np.ndarray, pressure: np.ndarray) -> Engagement:
+def _curve(friction: float, angle: Floats, pressure: Floats) -> Engagement:
     zero = np.zeros(len(angle))
     none = zero.astype(int)
     return Engagement(friction, angle, none, none, zero, zero, pressure, zero > 0.0, pressure, zero)

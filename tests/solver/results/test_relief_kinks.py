@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.results.contact_slices import fitted_peak
+from evolvent.gears.pressure.contact_slices import fitted_peak
 from evolvent.results.error_bars.position_spacing import limited_on_kinks
 from evolvent.results.relief_kinks import relief_kinks, wedge_factor
 from evolvent.results.run_data import RunData

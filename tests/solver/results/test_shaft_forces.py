@@ -53,7 +53,7 @@ def textbook(run: RunData, gear: Member) -> tuple[float, float, float, float]:
     tangential = float(torque) / radius
     tilt = radius / pair.gears[gear].base_radius * np.tan(pair.pinion.base_helix_angle)  # tan β_w
     axial = tangential * float(tilt)
-    return tangential, tangential * float(np.tan(pair.operating_pressure_angle)), axial, 1e-3 * axial * radius
+    return tangential, tangential * float(np.tan(pair.working_pressure_angle)), axial, 1e-3 * axial * radius
 
 
 @pytest.mark.parametrize("gear", Member)
@@ -84,9 +84,9 @@ def test_friction_makes_the_radial_force_alternate(spur: RunData) -> None:
     """Friction turns about at the pitch point, and with it the direction of the force: the radial force swings by about
     2 μ F, the tangential one by no more than it does by 2 μ F tan α_wt."""
     smooth, rough = shaft_forces(spur, Member.PINION, 0), shaft_forces(spur, Member.PINION, 1)
-    swing = 2.0 * FRICTION * smooth.tangential_N / np.cos(spur.pair.operating_pressure_angle)
+    swing = 2.0 * FRICTION * smooth.tangential_N / np.cos(spur.pair.working_pressure_angle)
     assert 0.3 * swing < rough.radial_peak_to_peak_N < swing
-    assert rough.tangential_peak_to_peak_N < swing * np.tan(spur.pair.operating_pressure_angle)
+    assert rough.tangential_peak_to_peak_N < swing * np.tan(spur.pair.working_pressure_angle)
     assert smooth.radial_peak_to_peak_N < 0.01 * swing
 
 
@@ -97,7 +97,7 @@ def test_load_at_a_face_end_tilts_the_shafts() -> None:
     run = solved(scene)
     pinion, wheel = (shaft_forces(run, gear, 0) for gear in Member)
     arm = -1e3 * pinion.moment_x_Nm / pinion.tangential_N
-    farthest = max(np.abs(run.pair.path_of_contact)) * np.cos(run.pair.operating_pressure_angle)
+    farthest = max(np.abs(run.pair.path_of_contact)) * np.cos(run.pair.working_pressure_angle)
     assert 0.5 < arm < run.pair.face_width / 2.0 + farthest * pinion.axial_N / pinion.tangential_N
     assert wheel.moment_x_Nm == pytest.approx(-pinion.moment_x_Nm, rel=0.05)
 

@@ -44,7 +44,7 @@ def scene_of(*settings: str) -> Scene:
 
 
 def test_pitch_generates_its_positions_in_order(run: RunContext) -> None:
-    """Three equal steps of the base pitch, of which only the last closes it; nothing is archived by `generate`."""
+    """Three equal steps of the angular pitch, of which only the last closes it; nothing is archived by `generate`."""
     pitch = ScenePitch(run, scene_of("contact.friction=0.0"))
     swept = list(pitch.generate())
     assert [position.angle for position in swept] == list(pitch.pitch.angles)

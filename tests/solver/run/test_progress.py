@@ -84,8 +84,8 @@ def test_hidden_progress_prints_nothing() -> None:
 
 
 def test_run_in_a_pipe_prints_its_stages(run_script: Run, tmp_path: Path) -> None:
-    """He's pair at two positions: every stage once and in order on stderr, plainly; the only, and last, line on stdout
-    names tables, pictures and figures that are there. With --quiet nothing but warnings."""
+    """He's pair at two positions: every stage once and in order on stderr, plainly; on stdout the figures, and last
+    a line that names tables, pictures and figures that are there. With --quiet nothing but warnings."""
     out = tmp_path / "out"
     scene = "demos/he2022.toml", "--level", "quick", "--set", "sweep.positions=2", "--set", "output.animation=false"
     done = run_script("solver/evolvent/__main__.py", "run", *scene, "--out", str(out))
@@ -100,7 +100,8 @@ def test_run_in_a_pipe_prints_its_stages(run_script: Run, tmp_path: Path) -> Non
         if line.endswith(f"s  {stage}") or ("0 of" in line and stage in line)
     ]
     assert begun == list(STAGES)
-    (line,) = done.stdout.splitlines()
+    figures, line = done.stdout.splitlines()
+    assert re.match(r"μ = 0: largest pressure \d+ ± \d+ MPa, transmission error [\d.]+ ± [\d.]+ µm", figures)
     named = [Path(word.rstrip(",;")) for word in line.split() if str(out) in word]
     assert {path.relative_to(out).parts[0] for path in named} >= {"summary.json", "positions.csv", "pictures"}
     assert all(path.exists() for path in named)

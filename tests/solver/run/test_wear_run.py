@@ -16,6 +16,7 @@ from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
 from evolvent.wear.results.report import read_worn
+from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import HELICAL
 from tests.support.running.processes import BROKEN_RUN, Run
 
@@ -38,14 +39,14 @@ def computed(run_script: Run, out: Path, *settings: str, how: str = "ok", ranks:
     return done.returncode
 
 
-def blocks(out: Path) -> np.ndarray:
+def blocks(out: Path) -> Floats:
     """wear.csv without how many positions were searched and how often the meshes followed since the start."""
     with open(out / "wear.csv", encoding="utf-8") as file:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
     return np.array([[value for name, value in row.items() if name not in ("searched", "refreshed")] for row in rows])
 
 
-def depths(out: Path, cycles: str) -> list[np.ndarray]:
+def depths(out: Path, cycles: str) -> list[Floats]:
     """Of pinion and wheel [mm]."""
     return [FlankChart.read(out / f"worn_{cycles}" / f"flank_{name}.csv").depth for name in ("pinion", "wheel")]
 
@@ -134,7 +135,7 @@ def test_worn_pair_is_solved_from_its_own_scene(worn_pair: Path, run_script: Run
     assert np.ptp(found["worn"] - found["new"]) > 0.1 * wear
 
 
-def errors(out: Path) -> np.ndarray:
+def errors(out: Path) -> Floats:
     """Transmission errors [µm]."""
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     return np.array([position["transmission_error_um"] for position in summary["positions"]])

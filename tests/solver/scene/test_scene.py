@@ -121,7 +121,7 @@ def test_default_centre_distance_has_no_backlash() -> None:
 
 
 def test_coefficients_give_the_diameters() -> None:
-    """Zhang: h_a* = 1.25/1.32, h_f* = 1.57/1.50 give the printed addenda 3.544/2.996 and height 6.465 mm."""
+    """Zhang: h_aP* = 1.25/1.32, h_fP* = 1.57/1.50 give the printed addenda 3.544/2.996 and height 6.465 mm."""
     text = (DEMOS / "zhang2023.toml").read_text(encoding="utf-8")
     for key, coefficients in (("tip_diameter_mm", (1.25, 1.32)), ("root_diameter_mm", (1.57, 1.50))):
         name = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}[key]

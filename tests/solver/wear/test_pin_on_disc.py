@@ -9,13 +9,14 @@ import pytest
 
 from evolvent.cli import Exit, main
 from evolvent.wear import PinOnDisc, Record, coefficient
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.csv_tables import TableError
 
 K = 1.3832e-10  # mm²/N, He 2022
 HE = PinOnDisc(500.0, 6.0)
 
 
-def written(path: Path, distance: np.ndarray, depth: np.ndarray, header: str = "sliding_distance_km,depth_um") -> Path:
+def written(path: Path, distance: Floats, depth: Floats, header: str = "sliding_distance_km,depth_um") -> Path:
     """A record."""
     path.write_text(header + "\n" + "\n".join(f"{s:.9g},{h:.9g}" for s, h in zip(distance, depth)) + "\n")
     return path

@@ -14,9 +14,11 @@ import numpy as np
 import scipy.sparse as sp
 import ufl
 from dolfinx import fem
+from numpy.typing import NDArray
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.material import Material
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 
@@ -33,7 +35,7 @@ class Merged:
         return self.upper.dimension
 
     @cached_property
-    def twin(self) -> np.ndarray:
+    def twin(self) -> Ints:
         """(N_lower,) merged node of each node of the lower block; those of the upper block come first."""
         n = len(self.upper.points)
         number = np.arange(n, n + len(self.lower.points))
@@ -58,7 +60,7 @@ class Merged:
         return fem.VectorFunctionSpace(self.mesh, ("Discontinuous Lagrange", 1))
 
     @cached_property
-    def in_upper(self) -> np.ndarray:
+    def in_upper(self) -> Bools:
         """(n_cells,) bool, in dolfinx's order of cells."""
         return dolfinx_compat.input_cells(self.mesh) < len(self.upper.cells)
 
@@ -69,7 +71,7 @@ class Merged:
         function.x.array[:] = np.where(self.in_upper, upper, lower)
         return function
 
-    def per_node(self, upper: np.ndarray) -> Any:
+    def per_node(self, upper: Floats) -> Any:
         """A continuous scalar on the upper block from its nodal values (N_upper,), zero on the lower one."""
         make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
         function = fem.Function(make(self.mesh, ("Discontinuous Lagrange", 1)))
@@ -77,7 +79,7 @@ class Merged:
         function.x.array[dofs[self.in_upper]] = upper[nodes[self.in_upper]]
         return function
 
-    def _cells_of(self, space: Any) -> tuple[np.ndarray, np.ndarray]:
+    def _cells_of(self, space: Any) -> tuple[Ints, NDArray[np.int32]]:
         """(n_cells, k) node of the own body (the lower one's come after the upper one's) and block of `space`."""
         n_upper, n_lower = len(self.upper.points), len(self.lower.points)
         cell_nodes = dolfinx_compat.cell_nodes(self.mesh)

@@ -23,7 +23,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.contact_operator import ContactLaw, ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues, coulomb, starting_guess
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 60
@@ -113,7 +113,7 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
-def frictionless(system: CondensedSystem, start: np.ndarray | None = None) -> Equilibrium:
+def frictionless(system: CondensedSystem, start: Bools | None = None) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
     start: (q,) bool, points assumed in contact in the first, linear, solve; by default all. Raises NotConverged.
@@ -253,7 +253,7 @@ def _accuracy(residual: float, scale: float) -> float:
     return max(min(QUADRATIC * relative, ROUGHEST), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)
 
 
-def _assumed_contact(system: CondensedSystem, touching: np.ndarray, slip: Floats | None = None) -> Floats:
+def _assumed_contact(system: CondensedSystem, touching: Bools, slip: Floats | None = None) -> Floats:
     """x of the linear problem in which the points `touching` (q,) bool are bonded: they may also pull."""
 
     def law(trial: Floats) -> LawValues:

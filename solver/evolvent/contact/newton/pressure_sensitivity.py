@@ -12,7 +12,7 @@ from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium
 from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.coulomb import LawValues
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 
 class PressureSensitivity:
@@ -23,7 +23,7 @@ class PressureSensitivity:
     Raises NotConverged where nothing touches.
     """
 
-    def __init__(self, system: CondensedSystem, state: Equilibrium, leaving: np.ndarray | None = None) -> None:
+    def __init__(self, system: CondensedSystem, state: Equilibrium, leaving: Bools | None = None) -> None:
         operator, pressure = system.operator, state.traction[:, :1]
         gone = np.zeros(len(pressure), dtype=bool) if leaving is None else leaving & (pressure[:, 0] > 0.0)
         touching = (pressure[:, 0] > 0.0) & ~gone

@@ -21,7 +21,7 @@ from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
 SLIDING = 0.05  # a point slides if its traction changes with the tangential jump by less than this fraction of γ_t
 
@@ -71,14 +71,14 @@ class Tangent:
         return first + second
 
 
-def _columns(M: sp.csr_matrix) -> np.ndarray:
+def _columns(M: sp.csr_matrix) -> Bools:
     """Columns of M that are not zero, (m,) bool."""
     used = np.zeros(M.shape[1], dtype=bool)
     used[M.indices[M.data != 0.0]] = True
     return used
 
 
-def _sticking_nodes(operator: ContactOperator, law: LawValues) -> np.ndarray:
+def _sticking_nodes(operator: ContactOperator, law: LawValues) -> Bools:
     """(n,) bool: nodes of facets with a point whose traction changes with the tangential jump."""
     sticking = np.abs(law.derivative[:, 1:, 1:]).max(axis=(1, 2), initial=0.0) > SLIDING
     near = np.zeros(len(operator.nodes), dtype=bool)

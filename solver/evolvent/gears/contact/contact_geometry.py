@@ -21,7 +21,7 @@ from evolvent.gears.contact.search_window import arc_distance
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.kinematics import Stand, spin
 from evolvent.gears.ring.ring_compliance import MappedNodes
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 
@@ -109,7 +109,7 @@ class ContactGeometry:
         return result[0], result[1]
 
     @cached_property
-    def at_tip_edge(self) -> np.ndarray:
+    def at_tip_edge(self) -> Bools:
         """(q,) bool: points in the last row of facets before a tip edge of either gear. Where these carry load the
         flank ends in a corner and the pressure is singular, a matter of the mesh."""
         pinion, wheel = self.bodies
@@ -147,7 +147,7 @@ class ContactGeometry:
         ]
         return np.asarray(self.operator.hat @ np.concatenate(parts))
 
-    def reaches_rim(self, pressed: np.ndarray) -> bool:
+    def reaches_rim(self, pressed: Bools) -> bool:
         """Whether a point in contact (q,) bool lies at the window's rim, where the pressure may have been cut off."""
         return bool(np.any(pressed & (self.window_distance > 1.0)))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from evolvent.gears.contact.contact_geometry import ContactGeometry, relative_velocity
 from evolvent.gears.kinematics import line_of_action
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 
@@ -41,8 +41,8 @@ class ContactPoints:
     traction: Floats
     rate: Floats
     sliding: Floats
-    sticks: np.ndarray
-    edge: np.ndarray
+    sticks: Bools
+    edge: Bools
 
     @staticmethod
     def joined(positions: Sequence[ContactPoints]) -> ContactPoints:

@@ -7,7 +7,7 @@ import numpy as np
 from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.kinematics import Stand
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 EXTENSION = 0.5  # [module of ξ] beyond the path of contact, where deflection may keep tip edges in contact
@@ -33,13 +33,13 @@ def placed_flanks(bodies: tuple[GearBody, ...], stand: Stand, tooth: int) -> tup
     return first, second
 
 
-def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+def facets_in_window(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
     """(m,) bool: the pinion's facets that have a node within the window."""
     near = _near_line(pinion, stand, tooth, half_width)
     return np.asarray(near[pinion.flank.facets].any(axis=1))
 
 
-def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> np.ndarray:
+def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) -> Bools:
     """(n,) bool: the flank nodes within the window; all where its half-width is infinite."""
     every = np.arange(len(pinion.flank.points))
     if np.isinf(half_width):
@@ -47,7 +47,7 @@ def _near_line(pinion: GearBody, stand: Stand, tooth: int, half_width: float) ->
     return (arc_distance(pinion, stand, tooth, every) <= half_width) & _line_within_reach(pinion, stand, tooth)
 
 
-def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> np.ndarray:
+def _line_within_reach(pinion: GearBody, stand: Stand, tooth: int) -> Bools:
     """(n,) bool: the flank nodes in slices whose contact line is on the path of contact, or near enough its ends that
     deflection can bring the tip's edge into contact."""
     pair = stand.pair

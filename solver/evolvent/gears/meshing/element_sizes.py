@@ -17,7 +17,7 @@ from evolvent_meshes.sector.root_band import FIRST_CELL_ASPECT
 from evolvent_meshes.sector.section import SectorResolution
 
 ELEMENTS_PER_WIDTH = {"quick": 1.7, "standard": 3.0, "fine": 6.0}
-"""Elements across the Hertz width 2b. Fitted peak against Hertz at mid-face of the Yang pair, median and nine in ten:
+"""Elements across the Hertz width 2b_H. Fitted peak against Hertz at mid-face of the Yang pair, median and nine in ten:
 quick 4 and 13 %, standard 0.3 and 2.6 %."""
 STIFF_PINION, STIFF_ELEMENTS = 5.0, 3.0
 """Where the pinion, which carries the pressure, is so many times as stiff as the wheel, the contact is at least so many
@@ -32,7 +32,7 @@ LEAST_LAYERS = {"quick": 8, "standard": 12, "fine": 20}
 LEAST_ROWS = 4
 """Coarse rows of a tooth, each as high as three profile elements: fewer are too high for a thin tip."""
 LAYER_DEPTHS = np.array([0.57, 0.86, 1.26])
-"""Thin layers below the flank in half-widths b; measured as enough for 3 elements across 2b."""
+"""Thin layers below the flank in half-widths b_H; measured as enough for 3 elements across 2b_H."""
 DEEPEST = 0.35
 """Largest depth of the thin layers together, in modules: deeper, they don't fit into the root under a heavy load."""
 LEAST_NECK = 3
@@ -49,7 +49,7 @@ FORE_LAND = 1.2
 
 
 def elements_per_contact_width(problem: GearProblem) -> float:
-    """Elements across 2b: as given, or the level's; more on a pinion much stiffer than its wheel."""
+    """Elements across 2b_H: as given, or the level's; more on a pinion much stiffer than its wheel."""
     given = problem.mesh.elements_per_contact_width
     if given is not None:
         return given
@@ -70,9 +70,9 @@ def sector_resolutions(problem: GearProblem) -> tuple[SectorResolution, SectorRe
 def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     """The resolution of the pinion's or the wheel's sector.
 
-    Along the profile the elements are h = 2b/n long with the local half-width b: ∫ds/h of them, with ds = ρ/r_b dρ the
-    arc of the involute. A layer of length L shears the contact line by s = L tan β_b ρ/r_b along the profile; s/h is
-    held at what the level allows, on average over the path of contact.
+    Along the profile the elements are h = 2b_H/n long with the local half-width b_H: ∫ds/h of them, with ds = ρ/r_b dρ
+    the arc of the involute. A layer of length L shears the contact line by s = L tan β_b ρ/r_b along the profile; s/h
+    is held at what the level allows, on average over the path of contact.
     """
     estimate, gear, level = problem.hertz_estimate, problem.pair.gears[member], problem.mesh.level
     count = elements_per_contact_width(problem)
@@ -119,7 +119,7 @@ def _neck_elements(depth: float) -> int:
 
 
 class _ContactWidth:
-    """Hertz width 2b [mm] along one gear's profile; beyond the path of contact that of its nearest end."""
+    """Hertz width 2b_H [mm] along one gear's profile; beyond the path of contact that of its nearest end."""
 
     def __init__(self, estimate: HertzEstimate, member: Member) -> None:
         self.estimate, self.member, self.gear = estimate, member, estimate.pair.gears[member]

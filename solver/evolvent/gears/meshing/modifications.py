@@ -29,7 +29,7 @@ FOLDING = 0.5
 """Of the thin layers' depth: modifications above it may fold them. The papers' pairs at a tenth to ten times their
 loads can have 0.5 to 0.95 of it, least near thin tips and on helical gears."""
 POSITIONS, POINTS = 12, 64
-"""Of a base pitch; along a contact line."""
+"""Of an angular pitch; along a contact line."""
 
 
 class TooMuchRelief(InputError):

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.gears.gear import GearParameters
 
@@ -138,7 +138,7 @@ def _read(path: Path, changed: int, size: int) -> FlankChart:
     return FlankChart.parsed(path)
 
 
-def _levels(values: Floats) -> tuple[Floats, np.ndarray]:
+def _levels(values: Floats) -> tuple[Floats, Ints]:
     """Different values, ascending, and the index of each value among them (n,)."""
     order = np.argsort(values)
     new = np.concatenate([[False], np.diff(values[order]) > SAME])

@@ -36,7 +36,7 @@ class MeshSettings:
     level: Level = "standard"
     """`quick` for orientation, `standard` for results, `fine` for reference."""
     elements_per_contact_width: float | None = None
-    """Elements across the Hertz width 2b; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
+    """Elements across the Hertz width 2b_H; None: 1.7, 3 or 6 by the level, at least 3 on a stiff pinion."""
     shape: CellShape = "hexahedron"
     """Cells of sectors in space; plane sections have quadrilaterals or triangles."""
     order: Literal[1, 2] = 2
@@ -138,7 +138,7 @@ class GearProblem:
 
     @cached_property
     def pitches(self) -> int:
-        """How many base pitches are swept: one, or all in which a tooth is in mesh."""
+        """How many angular pitches 2π/z_1 are swept: one, or all in which a tooth is in mesh."""
         if not self.options.whole_engagement:
             return 1
         return math.ceil(self.pair.engagement_angle * self.pair.pinion.z / (2 * math.pi))

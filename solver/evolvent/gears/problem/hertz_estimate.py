@@ -70,7 +70,7 @@ class HertzEstimate:
         return (between if reach == 0 else np.append(corners, between)) / pinion.base_radius
 
     def half_width(self, roll_distance: float | Floats) -> Floats:
-        """b [mm] at roll distances ξ [mm], with the mean line length."""
+        """b_H [mm] at roll distances ξ [mm], with the mean line length."""
         load = np.asarray(self.normal_force / self.line_lengths[1])
         return line_half_width(load, self.pair.relative_curvature_radius(roll_distance), self.modulus)
 

@@ -14,6 +14,8 @@ from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.pressure.line_peaks import LinePeak
+from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.problem.load_limits import check_load
 from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
@@ -33,10 +35,12 @@ class PitchSolution:
     friction: float
     """Coulomb's coefficient μ."""
     results: tuple[PositionResult, ...]
-    """One a position; forces and torques of a plane problem are per mm of face width."""
-    width: float
-    """By what forces and torques of the results are multiplied to be those of the gears: the face width [mm] where the
-    problem is plane, else 1."""
+    """(k,) of each position; forces and torques of a plane problem are per mm of face width."""
+    pressure: PitchPressure
+    """Fitted peak pressures between the tip-edge zones."""
+    width_factor: float
+    """Factor from forces and torques in `results` to those of the gears: the face width [mm] where the problem is
+    plane, else 1."""
     deflected: bool
     """Whether contact was searched again on deflected flanks, because energy did not balance without."""
 
@@ -47,32 +51,39 @@ class PitchSolution:
 
     @property
     def transmission_error(self) -> Floats:
-        """r_b1 φ_1 − r_b2 φ_2 (k,) [mm], along the line of action."""
+        """r_b1 φ_1 − r_b2 φ_2 (k,) [mm], along the line of action; positive where the wheel lags behind the pinion."""
         return np.array([result.transmission_error for result in self.results])
 
     @property
-    def peak_to_peak(self) -> float:
+    def transmission_error_peak_to_peak(self) -> float:
         """Largest less smallest transmission error [mm]."""
         return float(np.ptp(self.transmission_error))
 
     @property
     def torques(self) -> Floats:
-        """Moments of the contact forces about both axes (k, 2) [N·mm]: pinion, wheel."""
-        return self.width * np.array([result.torques for result in self.results])
+        """Moments of the contact forces about both axes (k, 2) [N·mm]: input on the pinion, output of the wheel, both
+        positive."""
+        return self.width_factor * np.array([result.torques for result in self.results])
 
     @property
     def mesh_stiffness(self) -> Floats:
-        """Tangent stiffness along the line of action (k,) [N/mm], without friction."""
-        return self.width * np.array([result.stiffness for result in self.results])
+        """Tangent stiffness of the whole face along the line of action (k,) [N/mm], without friction."""
+        return self.width_factor * np.array([result.stiffness for result in self.results])
 
     @property
-    def largest_pressure(self) -> Floats:
-        """Largest pressure at the contact points (k,) [MPa]; singular where a tip edge bears."""
-        return np.array([result.contact.pressure.max() for result in self.results])
+    def max_pressure(self) -> Floats:
+        """Largest fitted peak pressure between the tip-edge zones (k,) [MPa], `max_pressure_MPa` of positions.csv; NaN
+        where all contact lies in these zones."""
+        return self.pressure.at_positions
 
     @property
-    def loss(self) -> float:
-        """Friction work over input work."""
+    def peak(self) -> LinePeak:
+        """The largest pressure of the whole engagement, `max_pressure_MPa` of summary.json, and where it occurs."""
+        return self.pressure.peak
+
+    @property
+    def loss_ratio(self) -> float:
+        """Friction work over input work of the pitch."""
         lost = sum(result.friction_loss for result in self.results)
         return float(lost / sum(abs(result.torques[0]) for result in self.results))
 
@@ -122,10 +133,11 @@ def solve_pitch(
 def solve_pitches(
     gears: GearModel, frictions: Sequence[float], positions: int = 20, comm: MPI.Comm = MPI.COMM_WORLD
 ) -> tuple[PitchSolution, ...]:
-    """One base pitch in equal steps, repeated until the friction state is periodic; one solution a coefficient.
+    """One angular pitch 2π/z_1 in equal steps, repeated until the friction state is periodic; one solution per
+    coefficient.
 
     All coefficients share search and compliance. Where energy does not balance over the pitch, it is solved again on
-    deflected flanks. positions: steps of a base pitch. Raises InputError, NotConverged, SearchError, BalanceError.
+    deflected flanks. positions: steps of the pitch. Raises InputError, NotConverged, SearchError, BalanceError.
     """
     check_frictions(frictions)
     check_positions(positions)
@@ -141,9 +153,10 @@ def solve_pitches(
         LOG.info("%s; solved again, on deflected flanks", imbalance)
         return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
     width = gears.pair.face_width if gears.bodies[0].d == 2 else 1.0
+    by_position = [position.results for position in swept]
     return tuple(
-        PitchSolution(friction, tuple(position.results[i] for position in swept), width, gears.deflected)
-        for i, friction in enumerate(frictions)
+        PitchSolution(friction, results, pressure, width, gears.deflected)
+        for friction, results, pressure in zip(frictions, zip(*by_position), pitch_pressures(gears, by_position))
     )
 
 
@@ -158,4 +171,4 @@ def check_frictions(frictions: Sequence[float]) -> None:
 def check_positions(positions: int) -> None:
     """Raises InputError unless it is a whole number from 2 on."""
     if not (is_index(positions) and positions >= 2):
-        refuse("positions", "a whole number from 2 on", positions, "20 a base pitch is usual")
+        refuse("positions", "a whole number from 2 on", positions, "20 are usual")

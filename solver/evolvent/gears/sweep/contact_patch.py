@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from evolvent.gears.contact.contact_geometry import ContactGeometry
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 SLICE_WEIGHT = 0.5  # of distances along ξ beside those across the contact line; 0.02 to 0.5 predict equally well
 
@@ -23,14 +23,14 @@ class ContactPatch:
     """
 
     places: Floats
-    pressed: np.ndarray
+    pressed: Bools
 
     @staticmethod
     def of(geometry: ContactGeometry, pressure: Floats) -> ContactPatch:
         """From the pressures (q,) at the points."""
         return ContactPatch(_places(geometry), pressure > 0.0)
 
-    def at(self, geometry: ContactGeometry) -> np.ndarray:
+    def at(self, geometry: ContactGeometry) -> Bools:
         """(q,) bool: the points of another position whose nearest point in this patch is pressed."""
         return np.asarray(self.pressed[cKDTree(self.places).query(_places(geometry))[1]])
 

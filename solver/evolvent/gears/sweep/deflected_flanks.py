@@ -25,6 +25,7 @@ from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.friction_history import FrictionHistory, previous_jumps
 from evolvent.gears.sweep.frictional_position import frictional_equilibrium
 from evolvent.gears.sweep.position_search import free_rotation, free_shift
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 CONVERGED = 5e-4
@@ -102,7 +103,7 @@ def _displaced_flanks(geometry: ContactGeometry, equilibrium: Equilibrium) -> di
     contact_operator.py)."""
     loads = [(geometry.rows(gear)[0], geometry.flank_forces(gear, equilibrium.force)) for gear in Member]
 
-    def displacements(gear: Member, tooth: int) -> np.ndarray:
+    def displacements(gear: Member, tooth: int) -> Floats:
         body, (rows, forces) = geometry.bodies[gear], loads[gear]
         u = body.chain.apply(rows, forces, body.rows(tooth, np.arange(len(body.flank.points))))
         return np.asarray(u @ geometry.stand.rotation(gear, geometry.d).T)

@@ -16,7 +16,7 @@ from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand, turn
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
 
 NO_LOAD = 1e-9  # of the largest force: what Newton's method may leave on a tooth without contact
@@ -49,8 +49,8 @@ class FrictionHistory:
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
 
     def earlier(self, pitches: int) -> FrictionHistory:
-        """The same so many base pitches earlier, where other teeth of both gears stand as these do. Teeth without load
-        are left out: the contact need not look at them at that time."""
+        """The same so many angular pitches earlier, where other teeth of both gears stand as these do. Teeth without
+        load are left out: the contact need not look at them at that time."""
         d, angle, step = self.flux.shape[1], 2.0 * np.pi * pitches, np.array([pitches, 0])
         turns = [-gear.sign * angle / self.stand.pair.gears[gear].z for gear in Member]
         loaded = [_on_loaded_teeth(rows, forces) for rows, forces in zip(self.rows, self.forces)]
@@ -83,7 +83,7 @@ def previous_jumps(geometry: ContactGeometry, histories: Sequence[FrictionHistor
     return [PreviousJump(each.stand, _jump(geometry, each.stand, *u)) for each, *u in zip(histories, u1, u2)]
 
 
-def _on_loaded_teeth(rows: Ints, forces: Floats) -> np.ndarray:
+def _on_loaded_teeth(rows: Ints, forces: Floats) -> Bools:
     """(m,) bool: the rows of teeth that carry load."""
     size = np.abs(forces).max(axis=1)
     return np.isin(rows[:, 0], rows[size > NO_LOAD * size.max(), 0])

@@ -20,7 +20,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.parallel_sweep import positions_at_once, sweep_on_ranks
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 TOLERANCE = 1e-2
 """Of the peak-to-peak transmission error: a position with a smaller error closes the pitch."""
@@ -96,7 +96,7 @@ def transmission_errors(position: SweptPosition, frictions: Sequence[float]) -> 
     return np.array([errors.get(μ, np.nan) for μ in frictions])
 
 
-def _still_changing(errors: Sequence[Floats], pitch: Pitch, rubs: np.ndarray) -> np.ndarray:
+def _still_changing(errors: Sequence[Floats], pitch: Pitch, rubs: Bools) -> Bools:
     """(frictions,) bool: those to go on with after these transmission errors. rubs: (frictions,) bool, those with
     friction terms."""
     if len(errors) < len(pitch.angles):

@@ -1,6 +1,6 @@
 """A pitch of gear positions, one after the other; a generator of converged results.
 
-All teeth of a gear are alike, so one base pitch holds every tooth's whole engagement: at pinion rotation φ + 2π/z_1
+All teeth of a gear are alike, so one angular pitch holds every tooth's whole engagement: at pinion rotation φ + 2π/z_1
 tooth pair i stands where pair i + 1 stood at φ. Later pitches are never computed, they are put together by shifting.
 """
 
@@ -23,6 +23,7 @@ from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump,
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent_meshes.arrays import Bools
 
 HALVINGS = 4
 LOG = logging.getLogger("evolvent")
@@ -45,12 +46,12 @@ class SweepState:
     histories: Histories
     patch: ContactPatch | None = None
 
-    def of(self, coefficients: np.ndarray) -> SweepState:
+    def of(self, coefficients: Bools) -> SweepState:
         """The same for some of its friction coefficients, (frictions,) bool."""
         return replace(self, histories=tuple(compress(self.histories, coefficients)))
 
     def earlier(self, pitches: int) -> SweepState:
-        """The same so many base pitches earlier."""
+        """The same so many angular pitches earlier."""
         histories = tuple(None if history is None else history.earlier(pitches) for history in self.histories)
         return replace(self, histories=histories)
 
@@ -72,7 +73,7 @@ class SweptPosition:
     again: bool = False
     closes: bool = False
 
-    def of(self, coefficients: np.ndarray) -> SweptPosition:
+    def of(self, coefficients: Bools) -> SweptPosition:
         """The same for some of its friction coefficients, (frictions,) bool."""
         return replace(self, results=tuple(compress(self.results, coefficients)), state=self.state.of(coefficients))
 
@@ -89,7 +90,7 @@ class Pitch:
     """The positions to solve.
 
     angles: pinion rotations [rad].
-    pitches: number of base pitches that they cover, where they are equal steps of some.
+    pitches: number of angular pitches that they cover, where they are equal steps of some.
     """
 
     angles: tuple[float, ...]
@@ -97,7 +98,7 @@ class Pitch:
 
 
 def uniform_pitch(z1: int, positions: int, pitches: int = 1) -> Pitch:
-    """`positions` equal steps over each base pitch 2π/z_1."""
+    """`positions` equal steps over each angular pitch 2π/z_1."""
     step = 2.0 * np.pi / z1 / positions
     return Pitch(tuple(float(step * k) for k in range(pitches * positions)), pitches)
 

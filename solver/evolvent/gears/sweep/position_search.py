@@ -23,6 +23,7 @@ from evolvent.gears.contact.pair_contact import GearContact, gear_contact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent_meshes.arrays import Bools
 from evolvent_meshes.gears.member import Member
 
 RELOCATE = 1.7e-4
@@ -153,7 +154,7 @@ def _at_a_multiple(model: GearModel, stand: Stand) -> Stand:
     return stand.turned(on, float(np.round(stand.extra[on] / step)) * step - stand.extra[on])
 
 
-def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> np.ndarray:
+def _initially_pressed(geometry: ContactGeometry, before: ContactPatch | None) -> Bools:
     """(q,) bool: the points that are taken for pressed at first. Those in the last position's contact patch; without
     one, or where it has none of them, those near the contact lines."""
     pressed = None if before is None else before.at(geometry)

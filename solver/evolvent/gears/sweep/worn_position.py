@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
 from evolvent.gears.contact.overlap_check import NEARLY, overlap_outside
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
+from evolvent_meshes.arrays import Bools
 
 STALE = NEARLY
 """Largest displacement of the flanks [modules] since the search of a position that is reused: He's pair worn by 6 µm in
@@ -20,7 +19,7 @@ STALE = NEARLY
 errors within 3 nm of 5 µm; 24 searches instead of 400."""
 
 
-def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None = None) -> SharedPosition | None:
+def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = None) -> SharedPosition | None:
     """The same position with the present wear of the model's flanks.
 
     pressed: (q,) bool, points to start from, by default those that were pressed before.
@@ -42,7 +41,7 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: np.ndarray | None
     return SharedPosition(contact, system, smooth, shared.unsearched, tangent_stiffness(normal, smooth))
 
 
-def _first_solution(system: CondensedSystem, starts: Sequence[np.ndarray | None]) -> Equilibrium | None:
+def _first_solution(system: CondensedSystem, starts: Sequence[Bools | None]) -> Equilibrium | None:
     """From the first of the starts, (q,) bool or None, that leads to a solution; None where none does."""
     for start in (start for start in starts if start is not None):
         try:

@@ -12,9 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
@@ -80,7 +82,7 @@ def _placed(tooth: DeformedTooth, result: PositionResult) -> tuple[Floats, Ints,
     return points, cells.reshape(len(mesh.cells), -1), u @ R.T, R @ tooth.stress @ R.T
 
 
-def _add(data: object, name: str, values: np.ndarray) -> None:
+def _add(data: object, name: str, values: NDArray[Any]) -> None:
     """Adds an array in single precision to VTK's point or cell data."""
     array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
     array.SetName(name)

@@ -26,9 +26,9 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.fields.flank_field import flank_field, line_distance
 from evolvent.results.fields.polygons import (
     Polygons,
@@ -42,7 +42,7 @@ from evolvent.results.fields.polygons import (
     space_vectors,
 )
 from evolvent.results.run_data import RunData, SolvedPosition, flank_nodes
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.vtk_xml import xml_bytes
 
@@ -96,7 +96,7 @@ def _tooth_arrays(run: RunData, solved: tuple[SolvedPosition, ...], gear: Member
     return {name: on_flank(shape, value) for name, value in arrays.items()}
 
 
-def _without_edges(values: Arrays, edge: np.ndarray) -> Arrays:
+def _without_edges(values: Arrays, edge: Bools) -> Arrays:
     """The arrays with the pressures on tip edges in an array of their own. edge: (n,) bool, nodes on a tip edge."""
     pressure = values["pressure_MPa"]
     bears = edge & (pressure > 0.0)

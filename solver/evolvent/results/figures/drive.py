@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.archive.error_bar_data import plus_minus
-from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, sheet
 from evolvent.results.engagement import engagements
 from evolvent.results.figures.stress import TOOTH_ANGLE

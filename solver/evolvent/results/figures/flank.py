@@ -9,11 +9,11 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from evolvent.results.contact_slices import Slices, on_tip_edge
+from evolvent.gears.pressure.contact_slices import Slices, on_tip_edge
+from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.results.drawing.style import ABOVE, INK, PRESSURE_MAP, foot, sheet
 from evolvent.results.engagement import largest_peak
 from evolvent.results.fields.flank_field import flank_field, flank_patch
-from evolvent.results.line_peaks import pooled_peaks
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import few_positions

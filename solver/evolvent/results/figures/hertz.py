@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from evolvent.contact.yang_estimate import LoadFactors
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
-from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import AT_ZONE_END, FAINT, HOLLOW, INK, PINION, dot_size, foot, note, sheet
 from evolvent.results.drawing.teeth import compares_yang
 from evolvent.results.engagement import largest_peak

@@ -12,15 +12,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import pooled_peaks
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, sheet
 from evolvent.results.drawing.teeth import compares_yang, short_name
 from evolvent.results.figures.flank import FACE, envelope
 from evolvent.results.figures.yang import Point, has_two_lines, paper_points, paper_position
-from evolvent.results.line_peaks import pooled_peaks
 from evolvent.results.run_data import RunData
 from evolvent.scene.plain_text import signed
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
 
 MOST_LINES = 4
@@ -172,7 +172,7 @@ def points_over_friction(run: RunData) -> Figure:
     return figure
 
 
-def _of_study(run: RunData, k: int, point: Point, order: np.ndarray) -> Series:
+def _of_study(run: RunData, k: int, point: Point, order: Ints) -> Series:
     """Pressure at a point of the study. order: friction coefficients, ascending."""
     values = np.array([at_point(run.positions[k][i].cut, point) for i in order])
     return Series(point.name, (f"{2 - point.tooth}", signed(point.z, 2), signed(point.roll_distance, 2)), values)
@@ -186,7 +186,7 @@ def _points_to_follow(pair: GearPair) -> list[tuple[str, float]]:
     return sorted([*points, *halfway], key=lambda point: point[1])
 
 
-def _of_path(run: RunData, order: np.ndarray) -> list[Series]:
+def _of_path(run: RunData, order: Ints) -> list[Series]:
     """Pressure at those points that have one at mid-face; A and E often lie on a tip edge. order: friction
     coefficients, ascending."""
     names, ξ = zip(*_points_to_follow(run.pair))

@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from PIL import Image
 
 from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, palette, reduced, sheet
@@ -71,7 +72,7 @@ def most_loaded_position(run: RunData, index: int) -> int:
     return max(range(len(keys)), key=keys.__getitem__)
 
 
-def _image(axes: Axes, image: np.ndarray, title: str) -> None:
+def _image(axes: Axes, image: NDArray[np.uint8], title: str) -> None:
     """Shows a rendered image without axes."""
     axes.imshow(image)
     axes.set_title(title, fontsize=10)

@@ -24,7 +24,7 @@ from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import few_positions
 from evolvent.scene.plain_text import signed
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 STRESS = "maximum contact stress [MPa]"
 TOOTH_ANGLE = "pinion rotation [°]   (0: tooth pair in contact at the pitch point, mid-face)"
@@ -88,7 +88,7 @@ def tooth_stress(run: RunData) -> Figure:
 
 
 def _curves(
-    axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray | None], tooth: int = 0
+    axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[Bools | None], tooth: int = 0
 ) -> None:
     """Curves of the maximum pressure over the tooth's rotation. members: for each curve, the entries (n,) bool of tooth
     pair `tooth`, drawn over φ; None for all entries."""
@@ -152,7 +152,7 @@ def running_median(values: Floats) -> Floats:
     return medians
 
 
-def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int) -> tuple[Floats, Floats]:
+def _shown(run: RunData, curve: Engagement, here: Bools | None, tooth: int) -> tuple[Floats, Floats]:
     """Rotations [°] and pressures [MPa] to draw, see `_curves`."""
     if here is None:
         angle, pressure = curve.pressure_curve
@@ -160,7 +160,7 @@ def _shown(run: RunData, curve: Engagement, here: np.ndarray | None, tooth: int)
     return np.degrees(curve.angle[here] - tooth * run.pitch), curve.max_pressure[here]
 
 
-def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[np.ndarray], tooth: int) -> None:
+def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Sequence[Bools], tooth: int) -> None:
     """Curves of the change of the maximum pressure against the smallest μ [%]."""
     lowest = _lowest(curves)
     axes.axhline(0.0, color=FAINT, linewidth=1.0)
@@ -169,7 +169,7 @@ def _change(axes: Axes, run: RunData, curves: Sequence[Engagement], members: Seq
         axes.plot(np.degrees(angle - tooth * run.pitch), 100.0 * change, color=colour)
 
 
-def relative_change(curve: Engagement, lowest: Engagement, here: np.ndarray) -> tuple[Floats, Floats]:
+def relative_change(curve: Engagement, lowest: Engagement, here: Bools) -> tuple[Floats, Floats]:
     """Rotations (m,) [rad] and relative change (m,) of the maximum pressure against the curve `lowest` of another
     friction coefficient. here: (n,) bool, entries of the curve to compare."""
     key = np.round(curve.angle, 9)

@@ -14,7 +14,7 @@ from evolvent.results.drawing.teeth import long_name, short_name, shown_teeth
 from evolvent.results.engagement import Engagement, engagements
 from evolvent.results.run_data import RunData
 from evolvent.scene.plain_text import signed
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 
 
 def friction_trend(run: RunData) -> Figure:
@@ -57,7 +57,7 @@ class Trend:
     """(n,), mean along the contact line and over the positions [MPa]."""
     largest: Floats
     """(n,), maximum [MPa]."""
-    at_zone_end: np.ndarray
+    at_zone_end: Bools
     """(n,) bool, whether the maximum lies at the limit of a tip-edge zone."""
 
 

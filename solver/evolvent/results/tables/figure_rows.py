@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from evolvent.gears.pressure.contact_slices import ToothSummary
+from evolvent.gears.pressure.line_peaks import line_peak
 from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
-from evolvent.results.contact_slices import ToothSummary
 from evolvent.results.engagement import Engagement, crossing, engagements
 from evolvent.results.error_bars.position_spacing import spacing_errors
-from evolvent.results.line_peaks import line_peak
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.relief_kinks import peak_over_kink

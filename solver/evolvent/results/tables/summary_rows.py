@@ -74,7 +74,7 @@ class PositionRow:
     torque_gear_Nm: float
     """Torque on the wheel's shaft."""
     transmission_error_um: float
-    """Transmission error r_b1 φ_1 − r_b2 φ_2: lag of the wheel behind the pinion along the path of contact."""
+    """Transmission error r_b1 φ_1 − r_b2 φ_2: lag of the wheel behind the pinion along the line of action."""
     mesh_stiffness_N_per_mm_um: float
     """Tangent stiffness at this load without friction: derivative of the force by the deflection along the line of
     action, over the face width."""
@@ -101,7 +101,7 @@ class PositionRow:
 
 @dataclass(frozen=True)
 class FrictionRow:
-    """Figures of one pitch at one friction coefficient."""
+    """Values of one pitch at one friction coefficient."""
 
     friction: float
     """Coulomb friction coefficient μ."""
@@ -115,12 +115,13 @@ class FrictionRow:
     """Whether it lies, or may lie between two positions, at the start of a linear tip relief. Over that kink of the
     flank its value depends on how sharp the kink is."""
     mean_pressure_MPa: float
-    """Mean over the engagement of the mean contact pressure along the line between the tip-edge zones."""
+    """Mean over the engagement of the peak pressure p0 across the contact, averaged along the line between the tip-edge
+    zones."""
     transmission_error_peak_to_peak_um: float
     """Largest less smallest transmission error of the pitch."""
     mesh_stiffness_N_per_mm_um: float
-    """Tangent stiffness, mean over the pitch. It corresponds to c_γ of ISO 6336-1, which covers the teeth alone: here
-    the whole gears on rigid bores count, with rims, webs and tilting under the axial force."""
+    """Tangent stiffness, mean over the pitch. Not comparable with c_γα of ISO 6336-1 without care: it is the tangent,
+    and includes torsion of both gear bodies down to the rigid bore."""
     secant_stiffness_N_per_mm_um: float
     """Secant stiffness, mean over the pitch; null where a flank has a chart."""
     loss_percent: float
@@ -136,7 +137,7 @@ class FrictionRow:
     forces_on_wheel: ShaftForces
     """Loads of the mesh on the wheel and its shaft."""
     estimated_error: FigureErrors | None
-    """Error bars of the figures with the same names: sum of the parts of the mesh and of the spacing of positions; null
+    """Error bars of the values with the same names: sum of the parts of the mesh and of the spacing of positions; null
     where there are none."""
     spacing_error: FigureErrors
     """The part of the error bars due to the spacing of positions (`sweep.positions`); known without error bars too."""
@@ -161,10 +162,10 @@ class Summary(RunFacts):
     scene: Mapping[str, object]
     """The scene with all its defaults, docs/scene.md."""
     warnings: tuple[str, ...]
-    """Limits on the accuracy of the figures, a sentence each."""
+    """Limits on the accuracy of the values, a sentence each."""
     estimated_error: ErrorBars
     """Method of the error bars."""
     frictions: tuple[FrictionRow, ...]
-    """Figures of the pitch, one entry a friction coefficient."""
+    """Values of the pitch, one entry a friction coefficient."""
     positions: tuple[PositionRow, ...]
-    """Figures of the positions, one entry a position and friction coefficient."""
+    """Values at the positions, one entry a position and friction coefficient."""

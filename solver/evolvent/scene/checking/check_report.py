@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
 
 def overview(scene: Scene) -> str:
-    """The text that `evolvent check` prints, with the symbols of ISO 21771."""
+    """The text that `evolvent check` prints, with the symbols of ISO 21771:2007."""
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     blocks = [
         scene.title,
@@ -99,16 +99,16 @@ def _gear_rows(pair: GearPair) -> list[Row]:
         each("root diameter", "d_f", "mm", 3, "root_diameter"),
         _both("working pitch diameter", "d_w", "mm", 3, pair.working_pitch_diameters),
         _both("diameter at start of active profile", "d_Nf", "mm", 3, pair.active_start_diameters),
-        each("form diameter, where the fillet begins", "d_Ff", "mm", 3, "root_form_diameter"),
-        _both("addendum of the rack", "h_a*", "m_n", 2, pair.addendum_coefficients),
-        each("dedendum of the rack", "h_f*", "m_n", 2, "dedendum_coefficient"),
-        each("tip radius of the rack", "ρ_f", "mm", 3, "rack_tip_radius"),
+        each("root form diameter", "d_Ff", "mm", 3, "root_form_diameter"),
+        _both("addendum of the basic rack", "h_aP*", "m_n", 2, pair.addendum_coefficients),
+        each("dedendum of the basic rack", "h_fP*", "m_n", 2, "dedendum_coefficient"),
+        each("root fillet radius of the basic rack", "ρ_fP", "mm", 3, "rack_tip_radius"),
         _both("normal tooth thickness at the tip", "s_an", "mm", 4, tips),
         _both("tip clearance to the mate's root", "c", "mm", 3, pair.tip_clearances),
         each("face width", "b", "mm", 3, "face_width"),
         each("bore diameter, held rigidly", "d_i", "mm", 3, "bore_diameter"),
-        _both("tip relief", "C_a", "µm", 1, reliefs),
-        _both("lead crowning", "C_b", "µm", 1, crownings),
+        _both("tip relief", "C_αa", "µm", 1, reliefs),
+        _both("lead crowning", "C_β", "µm", 1, crownings),
     ]
 
 
@@ -121,7 +121,7 @@ def _chart_rows(scene: Scene) -> list[Row]:
     deepest = ["–" if chart is None else fixed(1e3 * float(chart.depth.max()), 1) for chart in charts]
     return [
         Row("chart of the flank", "", "", tuple(files)),
-        Row("  missing at most, beside C_a and C_b", "", "µm", tuple(deepest)),
+        Row("  missing at most, beside C_αa and C_β", "", "µm", tuple(deepest)),
     ]
 
 
@@ -136,18 +136,18 @@ def _pair_rows(pair: GearPair) -> list[Row]:
         _one("transverse module", "m_t", "mm", 4, pinion.transverse_module),
         _one("normal pressure angle", "α_n", "°", 4, pinion.normal_pressure_angle_deg),
         _one("transverse pressure angle", "α_t", "°", 4, math.degrees(pinion.transverse_pressure_angle)),
-        _one("operating pressure angle", "α_wt", "°", 4, math.degrees(pair.operating_pressure_angle)),
+        _one("working transverse pressure angle", "α_wt", "°", 4, math.degrees(pair.working_pressure_angle)),
         _one("  without backlash, from x1 + x2", "α_wt", "°", 4, math.degrees(working_angle_of(*pair.gears))),
         _one("helix angle", "β", "°", 4, pinion.helix_angle_deg),
         _one("base helix angle", "β_b", "°", 4, math.degrees(pinion.base_helix_angle)),
         _one("centre distance", "a", "mm", 4, pair.centre_distance),
-        _one("tip shortening that keeps the clearance", "Δy", "m_n", 4, pair.tip_shortening),
+        _one("tip alteration coefficient", "k", "", 4, pair.tip_alteration_coefficient),
         _one("transverse base pitch", "p_bt", "mm", 4, pinion.transverse_base_pitch),
         _one("transverse contact ratio", "ε_α", "", 4, pair.transverse_contact_ratio),
         _one("overlap ratio", "ε_β", "", 4, pair.overlap_ratio),
         _one("total contact ratio", "ε_γ", "", 4, pair.total_contact_ratio),
         _one("normal backlash", "j_bn", "µm", 2, 1e3 * pair.normal_backlash),
-        _one("pinion rotation of one engagement", "", "°", 3, math.degrees(pair.engagement_angle)),
+        _one("total angle of transmission of the pinion", "", "°", 3, math.degrees(pair.engagement_angle)),
         _one("misalignment over the face width", "", "µm", 1, pair.misalignment_um),
     ]
 

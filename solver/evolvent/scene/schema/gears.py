@@ -78,7 +78,8 @@ class GearSection(SceneSection):
         "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     addendum_coefficient: float | None = key(
-        "addendum h_a*, d_a = d + 2 m_n (h_a* + x − Δy), Δy ≥ 0 the tip shortening; 1 if there is no tip_diameter_mm",
+        "addendum h_aP* of the basic rack, d_a = d + 2 m_n (h_aP* + x + k), k ≤ 0 the tip alteration coefficient; 1 if "
+        "there is no tip_diameter_mm",
         "a number from 0.1 to 3, times m_n",
         default=None,
         ge=0.1,
@@ -88,14 +89,15 @@ class GearSection(SceneSection):
         "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     dedendum_coefficient: float | None = key(
-        "dedendum h_f*, d_f = d − 2 m_n (h_f* − x); 1.25 if there is no root_diameter_mm",
+        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x); 1.25 if there is no root_diameter_mm",
         "a number from 0.1 to 3, times m_n",
         default=None,
         ge=0.1,
         le=3,
     )
     rack_tip_radius_mm: float | None = key(
-        "tip radius of the generating rack in its normal section; 0.38 m_n, or the full round if that is less",
+        "root fillet radius ρ_fP of the basic rack: tip radius of the generating rack in its normal section; 0.38 m_n, "
+        "or the full round if that is less",
         "a number from 0 to 1e6, in mm",
         "delete the key for the default",
         default=None,

@@ -63,8 +63,13 @@ class LoadSection(SceneSection):
 
 
 class SweepSection(SceneSection):
-    """[sweep]: the positions of one base pitch, from which the whole engagement is assembled."""
+    """[sweep]: the positions of one angular pitch 2π/z_1, from which the whole engagement is assembled."""
 
     positions: int = key(
-        "positions a base pitch", "a whole number from 2 to 1000", "20 is usual", default=20, ge=2, le=1000
+        "positions per angular pitch 2π/z_1 (one mesh cycle)",
+        "a whole number from 2 to 1000",
+        "20 is usual",
+        default=20,
+        ge=2,
+        le=1000,
     )

@@ -21,9 +21,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.contact.contact_points import ContactPoints
@@ -140,7 +142,7 @@ class PitchDeflection:
         """The teeth of all given positions, in the order of the positions."""
         parts = [deflection for _, deflection in sorted(self.deflections.items())]
 
-        def both(name: str) -> tuple[np.ndarray, np.ndarray]:
+        def both(name: str) -> tuple[NDArray[Any], NDArray[Any]]:
             first, second = (np.concatenate([getattr(part, name)[gear] for part in parts]) for gear in Member)
             return first, second
 

@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from mpi4py import MPI
+from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, normal_part
@@ -111,7 +113,7 @@ class PositionResponse:
         """Whether its matrix is stored."""
         return len(self.separating) <= SMALL
 
-    def at_all_points(self, values: np.ndarray) -> np.ndarray:
+    def at_all_points(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values (q, ...) at all points of the position, from values (p, ...) at the pressed ones; zero elsewhere."""
         everywhere = np.zeros((len(self._state.traction), *values.shape[1:]), dtype=values.dtype)
         everywhere[self._pressed] = values

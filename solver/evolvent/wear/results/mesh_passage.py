@@ -20,8 +20,8 @@ from scipy.integrate import cumulative_trapezoid
 
 from evolvent.contact.hertz import line_half_width, line_peak_pressure
 from evolvent.fem.material import contact_modulus
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.contact_slices import Slices
 from evolvent.results.engagement import engagement
 from evolvent.results.fields.flank_field import flank_field
 from evolvent.results.run_data import RunData

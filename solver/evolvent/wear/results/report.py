@@ -19,7 +19,7 @@ from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.archive import read_checkpoint, worn_folder
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
 
 
@@ -92,7 +92,7 @@ class WornPair:
     worn: tuple[FlankChart, FlankChart]
     volumes: tuple[float, float]
 
-    def inner(self, gear: Member) -> np.ndarray:
+    def inner(self, gear: Member) -> Bools:
         """(k,) which diameters of the chart are between the edge margins, in which pressure and wear are singular."""
         low, high = inner_arcs(self.run.pair, gear)
         arcs = self.worn[gear].arcs(self.run.pair.gears[gear])

@@ -29,6 +29,7 @@ from evolvent.contact.newton.equilibrium import (
     stuck,
 )
 from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
+from evolvent_meshes.arrays import Floats
 from tests.support.contact_cases import FRICTION, ball, cylinder
 
 
@@ -89,7 +90,7 @@ def test_work_along_a_step_is_the_derivative_of_the_energy(make: Callable[[], Pr
     solution = frictionless(system)
     op = system.operator
 
-    def energy(x: np.ndarray) -> float:
+    def energy(x: Floats) -> float:
         force, motion = problem.split(x)
         f = force.ravel()
         p = np.maximum(op.trial(system.jumps(force, motion))[:, 0], 0.0)
@@ -106,7 +107,7 @@ def test_work_along_a_step_is_the_derivative_of_the_energy(make: Callable[[], Pr
         assert slopes[0] < 0.0 and np.all(np.diff(slopes) >= 0.0)
 
 
-def _tangent(problem: ContactEquations, x: np.ndarray) -> np.ndarray:
+def _tangent(problem: ContactEquations, x: Floats) -> Floats:
     M = problem.system.operator.tangent(problem.state(x)[2])
     H = problem.system.motion / problem.system.lever
     contact = np.hstack([np.eye(len(H)) + M @ problem.system.compliance, -(M @ H)])

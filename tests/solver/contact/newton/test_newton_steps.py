@@ -11,19 +11,19 @@ from evolvent.contact.newton import newton_steps
 from evolvent.contact.newton.newton_steps import NewtonSteps
 from evolvent.contact.newton.reduced_tangent import Reals, ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
-from evolvent_meshes.arrays import Ints
+from evolvent_meshes.arrays import Floats, Ints
 
 N, K = 60, 3
 RNG = np.random.default_rng
 
 
-def compliance() -> np.ndarray:
+def compliance() -> Floats:
     """A (m, m) of 60 nodes in a row on a soft body: 1/(1 + distance) between equal components, m = 180."""
     place = np.arange(N)
     return np.kron(1.0 / (1.0 + np.abs(place[:, None] - place)), np.eye(K))
 
 
-def motion() -> np.ndarray:
+def motion() -> Floats:
     """H (m, 1): all nodes along their normals."""
     return np.tile([1.0, 0.0, 0.0], N)[:, None].copy()
 
@@ -37,13 +37,13 @@ def sliding(first: int, last: int, friction: float, tangential: float = 0.01) ->
     return Tangent(M, compliance(), motion(), K * np.arange(first, last), whole=False)
 
 
-def dense(tangent: Tangent) -> np.ndarray:
+def dense(tangent: Tangent) -> Floats:
     """[I + M A, −M H; Hᵀ, 0]."""
     M, A, H = tangent.M.toarray(), tangent.A, tangent.H
     return np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
 
 
-def error(tangent: Tangent, found: np.ndarray, right: np.ndarray) -> float:
+def error(tangent: Tangent, found: Floats, right: Floats) -> float:
     """Residual of T y = b over |b|."""
     return float(np.linalg.norm(right - dense(tangent) @ found) / np.linalg.norm(right))
 

@@ -36,7 +36,7 @@ from evolvent.contact.nitsche.flux_recovery import nitsche_traction
 from evolvent.contact.solution.full_system import FullContact
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.surface import surface_of
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.shapes.blocks import box, rectangle
 from tests.support.meshes.merged_mesh import Merged
 
@@ -65,7 +65,7 @@ def _position(merged: Merged, friction: float = FRICTION, theta: float = 1.0) ->
     return StepSystem(problem, condense_bodies(problem), Step())
 
 
-def _surface_dofs(merged: Merged) -> tuple[np.ndarray, np.ndarray]:
+def _surface_dofs(merged: Merged) -> tuple[Ints, Ints]:
     """Degrees of freedom of the nodes of both contact surfaces among those of both bodies."""
     first, second = surface_of(merged.upper, "bottom").nodes, surface_of(merged.lower, "top").nodes
     upper, lower = (
@@ -122,7 +122,7 @@ def _stabilisers(merged: Merged, values: Floats) -> list[Any]:
     return result
 
 
-def _flux(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
+def _flux(merged: Merged, values: Floats) -> sp.csr_matrix:
     """F = Γ⁻¹S at the surface's nodes in the displacements of all nodes; elsewhere zero."""
     d, (dofs, _) = merged.d, _surface_dofs(merged)
     Γ = np.repeat(values[:, 1:], d, axis=1)
@@ -132,7 +132,7 @@ def _flux(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
     return (place @ sp.diags(1.0 / Γ.ravel()) @ S).tocsr()
 
 
-def _constant_term(merged: Merged, values: np.ndarray) -> sp.csr_matrix:
+def _constant_term(merged: Merged, values: Floats) -> sp.csr_matrix:
     u, v = ufl.TrialFunction(merged.space), ufl.TestFunction(merged.space)
     (u1, _), (v1, _), n = merged.sides(u), merged.sides(v), _normal(merged)
     γ, γ_t = _stabilisers(merged, values)
@@ -153,7 +153,7 @@ def test_constant_term_agrees_with_ufl(merged: Merged) -> None:
 class _UflContact:
     """∫ (λn + τ)·[v] and its derivative, differentiated by UFL, at a jump of nodal fields (extended trace above)."""
 
-    def __init__(self, merged: Merged, values: np.ndarray, friction: float) -> None:
+    def __init__(self, merged: Merged, values: Floats, friction: float) -> None:
         self.merged, self.state = merged, fem.Function(merged.space)
         n, degree = _normal(merged), 5 if merged.d == 2 else 4  # the search's own rule: 3 points, 6 points
         γ, γ_t = _stabilisers(merged, values)
@@ -168,7 +168,7 @@ class _UflContact:
         self.force = dolfinx_compat.compile_form(form)
         self.slope = dolfinx_compat.compile_form(ufl.derivative(form, self.state, ufl.TrialFunction(merged.space)))
 
-    def __call__(self, w: np.ndarray) -> tuple[np.ndarray, sp.csr_matrix]:
+    def __call__(self, w: Floats) -> tuple[Floats, sp.csr_matrix]:
         R = self.merged.nodes_of_dofs
         self.state.x.array[:] = R @ w
         slope = R.T @ dolfinx_compat.assemble_csr(self.slope) @ R
@@ -218,7 +218,7 @@ def test_sandwiched_product_agrees_with_dense_matrices() -> None:
         assert sandwiched(N[:0], D[:0]).shape == wanted.shape and sandwiched(N[:0], D[:0]).nnz == 0
 
 
-def _unknowns(position: StepSystem, size: int) -> np.ndarray:
+def _unknowns(position: StepSystem, size: int) -> Floats:
     """(nodal displacements of both bodies) from (free degrees of freedom, the upper body's rigid motion)."""
     first, second = (b.assembled for b in position.condensed)
     n = first.stiffness.shape[0]

@@ -23,7 +23,7 @@ def _block(shape: str, order: int) -> MeshData:
     return box((2.0, 2.0, 1.0), (3, 2, 2), order, shape)
 
 
-def _field(points: np.ndarray, order: int, seed: int = 0) -> tuple[Floats, Floats]:
+def _field(points: Floats, order: int, seed: int = 0) -> tuple[Floats, Floats]:
     """A polynomial displacement (N, d) of this degree, and its gradient (N, d, d)."""
     d = points.shape[1]
     rng = np.random.default_rng(seed)

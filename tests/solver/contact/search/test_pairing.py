@@ -19,11 +19,11 @@ QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangl
 FACES = [(QUAD1, QUAD1), (QUAD2, QUAD2), (TRI1, TRI1), (TRI2, TRI2), (QUAD2, TRI1), (TRI2, QUAD2), (QUAD1, TRI2)]
 
 
-def where(surface: Surface, facets: Ints, xi: Floats) -> np.ndarray:
+def where(surface: Surface, facets: Ints, xi: Floats) -> Floats:
     return surface.positions(facets, xi[:, None])[:, 0]
 
 
-def covered(surface: Surface, p: Pairing) -> np.ndarray:
+def covered(surface: Surface, p: Pairing) -> Floats:
     """Share of each facet of surface 1 that has points, in its reference plane."""
     measure = np.linalg.norm(surface.area_vectors(p.facet1, p.xi1[:, None])[:, 0], axis=1)
     total = np.bincount(p.facet1, p.weight / measure, minlength=len(surface.facets))

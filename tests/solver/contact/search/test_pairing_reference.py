@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from evolvent.contact.search.pairing import Pairing, pair_surfaces
 from evolvent.contact.search.pairing_reference import pair_surfaces_slowly
 from evolvent.fem.reference_facets import hats
 from evolvent.fem.surface import Surface
+from evolvent_meshes.arrays import Floats
 from tests.support.meshes.surface_shapes import cap, curve, facing, lattice
 
 Kind = tuple[str, int]
@@ -16,10 +20,11 @@ Kind = tuple[str, int]
 QUAD1, QUAD2, TRI1, TRI2 = ("quadrilateral", 1), ("quadrilateral", 2), ("triangle", 1), ("triangle", 2)
 
 
-def by_pair(first: Surface, second: Surface, p: Pairing, values: np.ndarray) -> np.ndarray:
+def by_pair(first: Surface, second: Surface, p: Pairing, values: Floats) -> Floats:
     """Sums over the points of each pair of facets."""
     n = len(second.facets)
-    return np.bincount(p.facet1 * n + p.facet2, values, minlength=len(first.facets) * n)
+    sums: NDArray[Any] = np.bincount(p.facet1 * n + p.facet2, values, minlength=len(first.facets) * n)
+    return sums  # floats: numpy's hints give integers, whatever the weights
 
 
 @pytest.mark.parametrize(("first", "second"), [(QUAD2, QUAD2), (TRI2, QUAD1)])

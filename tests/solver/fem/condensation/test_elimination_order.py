@@ -18,6 +18,7 @@ from evolvent.fem.condensation.elimination_order import (
     compress,
     dissect,
 )
+from evolvent_meshes.arrays import Ints
 
 
 def grid(n: int, m: int, dofs: int = 1) -> sp.csr_matrix:
@@ -28,7 +29,7 @@ def grid(n: int, m: int, dofs: int = 1) -> sp.csr_matrix:
     return graph
 
 
-def cut(matrix: sp.csr_matrix, graph: sp.csr_matrix | None = None) -> np.ndarray:
+def cut(matrix: sp.csr_matrix, graph: sp.csr_matrix | None = None) -> Ints:
     """FIRST, SECOND or SEPARATOR for each row."""
     vertices, place = compress(matrix, graph)
     return bisect(vertices)[place]

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from evolvent.fem.condensation.packed_triangle import HEIGHT, PackedTriangle
+from evolvent_meshes.arrays import Floats
 
 
-def square_of(triangle: PackedTriangle) -> np.ndarray:
+def square_of(triangle: PackedTriangle) -> Floats:
     """The upper triangle as a square, zero below."""
     square = np.zeros((triangle.size, triangle.size))
     for start, strip in zip(triangle.starts, triangle.strips):

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
@@ -54,7 +56,7 @@ def test_geometry_does_not_depend_on_wear(name: str, model: GearModel, contact: 
     assert all(np.array_equal(one, other) for one, other in zip(new, used, strict=True))
 
 
-def flat(value: object) -> list[np.ndarray]:
+def flat(value: object) -> list[NDArray[Any]]:
     """The arrays of a quantity of the geometry."""
     if isinstance(value, tuple):
         return [array for part in value for array in flat(part)]

@@ -2,7 +2,7 @@
 
 Problem: He's spur pair on springs of stiffness c along its contact lines. Let δ0 = F/(ncb) be the approach of flanks as
 designed where n pairs touch over the face width b. Exact, by integration of the overlap: under misalignment f over the
-face the share √(2 δ0/f) of the lines bears, with crowning C_b of one gear (3 δ0/2C_b)^(1/3).
+face the share √(2 δ0/f) of the lines bears, with crowning C_β of one gear (3 δ0/2C_β)^(1/3).
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def test_bearing_share_of_misaligned_flanks(times: float) -> None:
 
 @pytest.mark.parametrize("times", [12.0, 100.0])
 def test_bearing_share_of_crowned_flanks(times: float) -> None:
-    """C_b = 12 δ0 and 100 δ0 of one pair: shares 0.5 and 0.247."""
+    """C_β = 12 δ0 and 100 δ0 of one pair: shares 0.5 and 0.247."""
     pair = spur_scene().gear_pair()
     δ0 = FORCE / STIFFNESS / pair.face_width
     crowned = replace(pair.pinion, modifications=replace(pair.pinion.modifications, lead_crowning_um=1e3 * times * δ0))

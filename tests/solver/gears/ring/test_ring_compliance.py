@@ -16,6 +16,7 @@ from evolvent.fem.condensation.schur_complement import (
     compliance,
 )
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, MappedNodes
+from evolvent_meshes.arrays import Floats, Ints
 from tests.support.q1_elasticity import Ring, ring
 
 PITCH = 2 * np.pi / 17
@@ -23,17 +24,17 @@ SHAPES = {"2D": (4, 6), "3D": (3, 4, 3)}
 TEETH, FIRST = 4, -1
 
 
-def picker(rows: np.ndarray, size: int) -> sp.csr_matrix:
+def picker(rows: Ints, size: int) -> sp.csr_matrix:
     return sp.csr_matrix((np.ones(len(rows)), (np.arange(len(rows)), rows)), shape=(len(rows), size))
 
 
-def turned(angle: float, dimension: int) -> np.ndarray:
+def turned(angle: float, dimension: int) -> Floats:
     matrix = np.eye(dimension)
     matrix[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     return matrix
 
 
-def free_model(model: Ring, surface: np.ndarray) -> tuple[sp.csr_matrix, sp.csr_matrix, np.ndarray, np.ndarray]:
+def free_model(model: Ring, surface: Ints) -> tuple[sp.csr_matrix, sp.csr_matrix, Ints, Ints]:
     """K and the displacements of `surface` on the free dofs, cut faces in the numbering of the free dofs."""
     everything = picker(surface, model.stiffness.shape[0])
     number = np.full(model.stiffness.shape[0], -1)
@@ -42,7 +43,7 @@ def free_model(model: Ring, surface: np.ndarray) -> tuple[sp.csr_matrix, sp.csr_
     return restricted, everything[:, model.free], number[model.low], number[model.high]
 
 
-def sector_parts(shape: str, pitch: float = PITCH) -> tuple[sp.csr_matrix, sp.csr_matrix, np.ndarray, np.ndarray]:
+def sector_parts(shape: str, pitch: float = PITCH) -> tuple[sp.csr_matrix, sp.csr_matrix, Ints, Ints]:
     model = ring(SHAPES[shape], 1, pitch)
     return free_model(model, model.surface[0])
 
@@ -51,7 +52,7 @@ def sector_of(shape: str, pitch: float = PITCH) -> SectorCondensation:
     return SectorSystem.of(*sector_parts(shape, pitch)).condensed()
 
 
-def merged(shape: str) -> tuple[Ring, np.ndarray]:
+def merged(shape: str) -> tuple[Ring, Floats]:
     model = ring(SHAPES[shape], TEETH, PITCH, FIRST)
     restricted, functionals, _, _ = free_model(model, np.concatenate(model.surface))
     return model, functionals @ Factor(restricted).solve(functionals.T.toarray())
@@ -62,11 +63,11 @@ def chained(shape: str) -> ChainedCompliance:
     return ChainedCompliance(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=len(SHAPES[shape]), ends="free"))
 
 
-def all_rows(body: ChainedCompliance) -> np.ndarray:
+def all_rows(body: ChainedCompliance) -> Ints:
     return np.array([(tooth, node) for tooth in body.teeth for node in range(body.node_count)])
 
 
-def parts(rows: np.ndarray) -> list[MappedNodes]:
+def parts(rows: Ints) -> list[MappedNodes]:
     """Rows (tooth, node), sorted by tooth, as a block wants them."""
     return [MappedNodes(int(tooth), rows[rows[:, 0] == tooth, 1]) for tooth in np.unique(rows[:, 0])]
 
@@ -93,7 +94,7 @@ def test_displacements_under_forces_equal_the_merged_model(shape: str) -> None:
     rows_in, rows_out = chosen[:9], chosen[5:20]
     forces = random.normal(size=(9, d))
 
-    def dofs(rows: np.ndarray) -> np.ndarray:
+    def dofs(rows: Ints) -> Ints:
         return (((rows[:, 0] - FIRST) * gear.node_count + rows[:, 1])[:, None] * d + np.arange(d)).ravel()
 
     wanted = (exact[np.ix_(dofs(rows_out), dofs(rows_in))] @ forces.ravel()).reshape(-1, d)

@@ -12,11 +12,12 @@ from scipy.linalg import block_diag
 from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
 from evolvent.gears.ring.ring_modes import Coupling, compressed, coupling, smooth_faces
 from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
+from evolvent_meshes.arrays import Floats
 from tests.support.q1_elasticity import ring
 
 TEETH, NAMED = 40, 3
 TOLERANCES = [1e-4, 1e-6, 1e-8]
-JOINED: dict[str, Callable[[np.ndarray], JoinedSectors]] = {
+JOINED: dict[str, Callable[[Floats], JoinedSectors]] = {
     "ring": lambda stiffness: ClosedRing(stiffness, TEETH, NAMED),
     "chain": lambda stiffness: OpenChain(stiffness, NAMED, clamped=True),
 }
@@ -41,7 +42,7 @@ def frames(sector: SectorCondensation) -> sp.csr_array:
     return sp.csr_array(sp.block_diag([sp.eye(c), sp.kron(sp.eye(c // 3), turn_about_z(2 * np.pi / TEETH))]))
 
 
-def turn_about_z(angle: float) -> np.ndarray:
+def turn_about_z(angle: float) -> Floats:
     return np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
 
 

@@ -22,14 +22,19 @@ from evolvent.gears import (
     solve_single_position,
 )
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.solution import solver
 from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
 from evolvent.results.archive.archive import Archive
-from evolvent.scene.scene import load_scene
+from evolvent.results.tables.figure_rows import friction_rows, position_rows
+from evolvent.run.coarse_run import solved_run
+from evolvent.run.pitch_run import pitch_of
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene, load_scene
 from evolvent.wear import Archard, wear_study, wearing_pair
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT
-from tests.support.gear_cases import QUIET
+from tests.support.gear_cases import QUIET, helical_scene, spur_scene
 from tests.support.gears_api_curve import he_problem
 from tests.support.running.processes import Run, on_ranks
 
@@ -71,7 +76,10 @@ def test_figures_of_the_page_are_those_of_its_program() -> None:
     exec(compile(program, "gears_api.md", "exec"), names)
     stated = re.search(r"It prints ([\d.]+) µm and ([\d.]+) %", text)
     assert stated is not None
-    assert (f"{1e3 * names['pitch'].peak_to_peak:.2f}", f"{100 * names['pitch'].loss:.2f}") == stated.groups()
+    pitch = names["pitch"]
+    assert stated.groups() == (
+        f"{1e3 * pitch.transmission_error_peak_to_peak:.2f}", f"{100 * pitch.loss_ratio:.2f}",
+    )  # fmt: skip
 
 
 def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:
@@ -80,10 +88,30 @@ def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:
     pitch = solve_pitch(gears, friction=0.1, positions=POSITIONS, comm=MPI.COMM_SELF)
     np.testing.assert_allclose(pitch.torques[:, 0], 170e3, rtol=1e-9)
     lost = 1.0 - pitch.torques[:, 1].sum() / pitch.torques[:, 0].sum()  # 50/50: both turn alike
-    assert lost == pytest.approx(pitch.loss, rel=1e-3)
+    assert lost == pytest.approx(pitch.loss_ratio, rel=1e-3)
     np.testing.assert_allclose(pitch.angles, 2.0 * np.pi / 50 / POSITIONS * np.arange(POSITIONS), rtol=1e-12)
-    assert pitch.peak_to_peak == pytest.approx(np.ptp(pitch.transmission_error))
-    assert (pitch.largest_pressure > 400.0).all() and not pitch.deflected
+    assert pitch.transmission_error_peak_to_peak == pytest.approx(np.ptp(pitch.transmission_error))
+    assert not pitch.deflected
+
+
+@pytest.mark.parametrize(
+    "scene", [spur_scene("mesh.level=quick", "sweep.positions=8"), helical_scene()], ids=("spur", "helical")
+)
+def test_pressures_of_the_api_are_those_of_a_run(scene: Scene) -> None:
+    """Problem: a spur and a helical pair at their friction coefficients, solved as a run does and by the API. Exact:
+    the pressures that positions.csv and summary.json print, of each position and of the whole engagement."""
+    run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
+    assert run is not None
+    pitches = solve_pitches(
+        condense(gear_problem(scene), MPI.COMM_SELF), run.frictions, len(run.positions), MPI.COMM_SELF
+    )
+    printed = np.reshape([row.max_pressure_MPa for row in position_rows(run)], (-1, len(pitches)))
+    np.testing.assert_allclose([pitch.max_pressure for pitch in pitches], printed.T, rtol=1e-9)
+    for pitch, row in zip(pitches, friction_rows(run)):
+        assert pitch.peak.pressure == pytest.approx(row.max_pressure_MPa, rel=1e-9)
+        assert pitch.peak.at_zone_end == row.max_pressure_at_zone_end
+        radius = run.pair.pinion.base_radius
+        assert pitch.peak.roll_distance / radius == pytest.approx(np.radians(row.max_pressure_angle_deg), abs=0.05)
 
 
 def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel) -> None:

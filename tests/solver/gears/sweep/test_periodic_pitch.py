@@ -25,6 +25,7 @@ from evolvent.gears.sweep.periodic_pitch import (
 )
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_search import shared_position
+from evolvent_meshes.arrays import Floats
 from tests.support.gear_cases import helical_scene, model_of
 
 POSITIONS = 6
@@ -57,7 +58,7 @@ def solved(model: GearModel, friction: float) -> list[SweptPosition]:
     return list(sweep_until_periodic(model, pitch, [friction], initial_state([friction]), MPI.COMM_SELF))
 
 
-def errors(swept: list[SweptPosition]) -> np.ndarray:
+def errors(swept: list[SweptPosition]) -> Floats:
     """Their transmission errors [mm]."""
     return np.array([position.results[0].transmission_error for position in swept])
 
@@ -202,7 +203,7 @@ def test_history_a_pitch_earlier_has_no_teeth_without_load() -> None:
     assert set(history.earlier(1).rows[0][:, 0]) <= set(chain.teeth)
 
 
-def earlier_jumps(model: GearModel) -> tuple[np.ndarray, np.ndarray]:
+def earlier_jumps(model: GearModel) -> tuple[Floats, Floats]:
     """(n, d) jumps that a history gives at one position, and the same a pitch earlier, where its teeth have other
     numbers."""
     pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 2)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import pyvista
 
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.contact_slices import on_tip_edge
 from evolvent.results.fields.flank_field import flank_field, flank_patch, line_distance
 from evolvent.results.fields.paraview import flank_fields, write_fields
 from evolvent.results.fields.polygons import Polygons, joined, sector_surface, sliding, space_vectors
@@ -80,7 +80,7 @@ def test_nodes_stand_where_the_solver_had_them(run: RunData, tmp_path: Path) -> 
     loaded = (flanks["pressure_MPa (mu=0)"] > 0.0) & (flanks["gear"] == 0)  # NaN is not
     assert loaded.sum() > 100
     pair = run.pair
-    angle, base = pair.operating_pressure_angle, pair.pinion.base_radius
+    angle, base = pair.working_pressure_angle, pair.pinion.base_radius
     off_plane = flanks.points[loaded] @ [np.cos(angle), -np.sin(angle), 0.0] - base
     assert np.abs(off_plane).max() < 0.25
     turned = flanks.points[loaded] @ [np.cos(angle), np.sin(angle), 0.0] - base

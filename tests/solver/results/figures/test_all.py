@@ -25,6 +25,7 @@ from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.run.redraw import plot_folder
 from evolvent.scene.plain_text import signed
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from tests.support.run_parts import store
 from tests.support.synthetic_run import synthetic_run
@@ -133,7 +134,7 @@ def test_loaded_pair_shows_the_pressure(run: RunData) -> None:
     assert blue > 0.1
 
 
-def _red(image: np.ndarray) -> int:
+def _red(image: Floats) -> int:
     return int((image[..., 0] > image[..., 2] + 70).sum())
 
 
@@ -159,7 +160,7 @@ def texts_of(run: RunData) -> dict[str, str]:
 
 def test_a_study_is_shown_where_it_is_asked_for(run: RunData) -> None:
     """Yang's estimates, teeth and points are in the pictures of a scene that compares with them, and in no other: there
-    tooth pairs have their numbers of teeth.csv, and points the names of ISO 21771."""
+    tooth pairs have their numbers of teeth.csv, and points the names of ISO 21771:2007."""
     compared = texts_of(run)
     assert "Yang Eq. 4" in compared["10_hertz"] and "1788" in compared["10_hertz"]
     assert "tooth 2" in compared["06_pressure_along_lines"] and "tooth 3 (enters" in compared["04_stress_of_teeth"]

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
-from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import styled
 from evolvent.results.figures.drive import MOST_SLIDING, line_load, transmission_error
 from evolvent.results.run_data import RunData

@@ -12,12 +12,13 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from evidence.pages.tutorial import small
-from evolvent.results.contact_slices import on_tip_edge
+from evolvent.gears.pressure.contact_slices import on_tip_edge
 from evolvent.results.drawing.style import ABOVE, OVER, png, styled
 from evolvent.results.engagement import largest_peak
 from evolvent.results.figures.flank import envelope, pressure_map, pressure_top
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
+from evolvent_meshes.arrays import Floats
 from tests.support.synthetic_run import steep_run, synthetic_run
 
 
@@ -44,7 +45,7 @@ def test_envelope_is_hertz_over_the_path(run: RunData) -> None:
     np.testing.assert_allclose(mean * np.sqrt(radius) / np.mean(mean * np.sqrt(radius)), 1.0, atol=0.03)
 
 
-def maps_of(run: RunData) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def maps_of(run: RunData) -> list[tuple[Floats, Floats, Floats]]:
     """(z, ξ, drawn pressures) of the maps of 02; the envelope first."""
     with styled():
         meshes = [ax.collections[0] for ax in pressure_map(run).axes[:4]]

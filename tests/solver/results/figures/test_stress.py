@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.error_bar_data import EstimatedErrors, FigureErrors
-from evolvent.results.contact_slices import Slices
 from evolvent.results.drawing.style import AT_ZONE_END, styled
 from evolvent.results.engagement import sign_changes
 from evolvent.results.figures.hertz import hertz_comparison
@@ -20,6 +20,7 @@ from evolvent.results.figures.trend import friction_trend
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
+from evolvent_meshes.arrays import Floats
 from tests.support.synthetic_run import steep_run, synthetic_run
 
 FRICTION = "contact.friction=[0.0, 0.1]"
@@ -33,7 +34,7 @@ def steep() -> RunData:
     return replace(steep_run(FRICTION), errors=EstimatedErrors((errors, errors), "made up", ""))
 
 
-def drawn(axes_of: Figure, place: int) -> np.ndarray:
+def drawn(axes_of: Figure, place: int) -> Floats:
     """All heights of lines and markers in one of a figure's axes."""
     return np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes_of.axes[place].lines])
 

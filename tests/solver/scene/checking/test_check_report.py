@@ -31,7 +31,7 @@ def test_flank_charts_are_reported(tmp_path: Path) -> None:
     path.write_text("diameter_mm,depth_um\n120,2.0\n150,7.5\n170,1.0\n", encoding="utf-8")
     text = overview(spur_scene(f"wheel.flank_csv={path}"))
     assert re.search(r"chart of the flank +none worn_after_a_million\.csv$", text, re.MULTILINE)
-    assert re.search(r"missing at most, beside C_a and C_b +µm +– +7\.5$", text, re.MULTILINE)
+    assert re.search(r"missing at most, beside C_αa and C_β +µm +– +7\.5$", text, re.MULTILINE)
     assert "chart" not in overview(spur_scene())
 
 
@@ -88,8 +88,8 @@ FIGURES = {
         ("diameter at start of active profile", "38.540 140.607"),
         ("base helix angle", "27.5402"),
         ("working pitch diameter", "41.065 144.935"),
-        ("dedendum of the rack", "1.60 1.60"),
-        ("addendum of the rack", "1.30 1.35"),
+        ("dedendum of the basic rack", "1.60 1.60"),
+        ("addendum of the basic rack", "1.30 1.35"),
         ("normal force on the flanks", "14685.3"),
         ("contact line length, shortest", "31.18"),
         ("contact line length, mean", "33.81"),
@@ -99,12 +99,12 @@ FIGURES = {
         ("p0 at the start of engagement, mean length", "3008.1"),
         ("Eq. 4 of Yang 2022 with K = 1", "1619.4"),
         ("with K = 1.25·1.293·1.1·1.2257", "2390.6"),
-        ("pinion rotation of one engagement", "63.866"),  # printed 63.9
+        ("total angle of transmission of the pinion", "63.866"),  # printed 63.9
     ],
     "he2022": [
         ("reference diameter", "150.000 150.000"),
         ("base radius", "70.4769 70.4769"),
-        ("operating pressure angle", "20.0000"),
+        ("working transverse pressure angle", "20.0000"),
         ("transverse base pitch", "8.8564"),
         ("transverse contact ratio", "1.7547"),
         ("normal tooth thickness at the tip", "2.3263 2.3263"),  # printed 2.326
@@ -116,14 +116,14 @@ FIGURES = {
         ("reference diameter", "75.900 105.800"),
         ("base radius", "36.0926 50.3109"),
         ("transverse pressure angle", "18.0000"),
-        ("operating pressure angle", "19.2136"),
+        ("working transverse pressure angle", "19.2136"),
         ("transverse base pitch", "6.8720"),
         ("transverse contact ratio", "2.1413"),
         ("normal tooth thickness at the tip", "1.0808 1.2904"),  # printed 1.081/1.290
         ("diameter at start of active profile", "73.098 102.452"),
-        ("addendum of the rack", "1.25 1.32"),
-        ("dedendum of the rack", "1.57 1.50"),
-        ("tip shortening that keeps the clearance", "0.0093"),
+        ("addendum of the basic rack", "1.25 1.32"),
+        ("dedendum of the basic rack", "1.57 1.50"),
+        ("tip alteration coefficient", "-0.0093"),
     ],
 }
 
@@ -135,6 +135,13 @@ def test_report_has_the_figures_of_the_papers(name: str) -> None:
     for label, values in FIGURES[name]:
         line = next((line for line in text.splitlines() if line.strip().startswith(label)), "")
         assert line.endswith(" " + values), f"{label}: wanted {values}, found {line!r}"
+
+
+def test_tips_at_a_larger_centre_distance() -> None:
+    """He's pair 0.3 mm apart: its tips are not made longer for that, so k is 0 and the addendum that of the scene."""
+    text = re.sub(" +", " ", text_of("he2022", "pair.centre_distance_mm=150.3"))
+    assert " tip alteration coefficient k 0.0000\n" in text
+    assert " addendum of the basic rack h_aP* m_n 1.00 1.00\n" in text
 
 
 def test_torque_on_the_wheel_gives_the_same_load() -> None:

@@ -8,6 +8,7 @@ import pytest
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.wear.gears.flank_grid import FlankGrid
 from evolvent.wear.gears.passage import mesh_passage
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.gear_cases import spur_scene
@@ -45,7 +46,7 @@ def grid(pair: GearPair, gear: Member) -> FlankGrid:
     return FlankGrid(arcs, np.zeros(1), np.arange(1000)[None], areas)
 
 
-def line_contact(pair: GearPair, gear: Member, u: np.ndarray, load: float) -> tuple[np.ndarray, np.ndarray]:
+def line_contact(pair: GearPair, gear: Member, u: Floats, load: float) -> tuple[Floats, Floats]:
     """ξ at arcs u of a gear, and h = (K/H)(F/L)|1 − v_2/v_1| per passage there, v the speeds of the contact."""
     ρ = np.sqrt(2.0 * pair.gears[gear].base_radius * u)
     ξ = (ρ - pair.pitch_point_roll_lengths[gear]) * (1.0 - 2.0 * gear)

@@ -11,9 +11,9 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.spacing import PLASTIC
 from evolvent.contact.hertz import line_peak_pressure
 from evolvent.gears.meshing.sector_meshes import gear_mesh
-from evolvent.results.contact_slices import Slices
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import zone_end_peaks
 from evolvent.results.engagement import engagement, largest_peak
-from evolvent.results.line_peaks import zone_end_peaks
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.run_warnings import warnings_of

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.results.contact_slices import Slices
-from evolvent.results.tip_zones import AT_LIMIT
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.tip_zones import AT_LIMIT
+from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.pair import GearPair
 
 
@@ -108,12 +108,12 @@ def _peaks_at(x: float, pair: GearPair, cut: Slices, lines: list[Ints]) -> list[
     return peaks
 
 
-def has_peak(cut: Slices) -> np.ndarray:
+def has_peak(cut: Slices) -> Bools:
     """Whether a slice carries load and has a fitted peak, (n,) bool."""
     return np.asarray(np.isfinite(cut.peak) & (cut.hertz > 0.0))
 
 
-def between(ξ: Floats, inner: tuple[float, float]) -> np.ndarray:
+def between(ξ: Floats, inner: tuple[float, float]) -> Bools:
     """Whether slices at the roll distances ξ (n,) [mm] lie between the tip-edge zones with the limits `inner`: (n,)
     bool. A slice at a limit bears on the edge."""
     return np.asarray((ξ > inner[0] + AT_LIMIT) & (ξ < inner[1] - AT_LIMIT))

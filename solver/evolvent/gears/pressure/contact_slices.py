@@ -9,7 +9,7 @@ import numpy as np
 
 from evolvent.fem.material import Material, contact_modulus
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
 FEWEST_POINTS = 5
 """Points under pressure that the fit of a half-ellipse needs."""
@@ -21,7 +21,7 @@ HEIGHT_TOLERANCE = 1e-6
 class Slices:
     """The contact at a position in n slices: one a tooth pair and a layer of the mesh along z that bears load."""
 
-    tooth: np.ndarray
+    tooth: Ints
     """(n,) int, index of the tooth pair."""
     z: Floats
     """(n,) height of the slice's middle [mm]."""
@@ -39,7 +39,7 @@ class Slices:
     """(n,) half-width of the fitted half-ellipse across the contact line [mm]; NaN on a tip edge."""
     hertz: Floats
     """(n,) Hertz' p0 for the slice's line load and the exact curvatures [MPa]."""
-    edge: np.ndarray
+    edge: Bools
     """(n,) bool, whether the slice bears on a tip edge."""
 
     @staticmethod
@@ -76,7 +76,7 @@ def slices(result: PositionResult, heights: Floats, materials: tuple[Material, M
     return Slices(keys[:, 0], *(np.array(column) for column in columns))
 
 
-def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> np.ndarray:
+def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> Bools:
     """Whether heights z (n,) [mm] lie in (closed) layers in which a tooth pair bears on a tip edge: (n,) bool."""
     layers = np.flatnonzero((cut.tooth == tooth) & cut.edge)
     away = np.abs(z[:, None] - cut.z[layers]) - 0.5 * cut.width[layers]
@@ -90,7 +90,7 @@ def layer_edges(heights: Floats) -> Floats:
     return np.array([-0.5, 0.5]) if len(rows) == 1 else rows[::2]
 
 
-def _slice(result: PositionResult, here: np.ndarray, ends: Floats, modulus: float) -> tuple[float | bool, ...]:
+def _slice(result: PositionResult, here: Bools, ends: Floats, modulus: float) -> tuple[float | bool, ...]:
     pair, c = result.stand.pair, result.contact
     p, w = c.pressure[here], c.weights[here]
     width = float(ends[1] - ends[0])

@@ -1,0 +1,1 @@
+"""Peak pressures from the contact's quadrature points: slices, fitted half-ellipses, tip-edge zones."""

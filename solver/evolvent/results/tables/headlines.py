@@ -1,0 +1,32 @@
+"""The figures of a run in a line per friction coefficient, as its last words on the terminal."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from evolvent.results.archive.error_bar_data import plus_minus
+
+FIGURES = (
+    ("max_pressure_MPa", "largest pressure", "MPa", 0),
+    ("transmission_error_peak_to_peak_um", "transmission error", "µm peak to peak", 2),
+    ("mesh_stiffness_N_per_mm_um", "mesh stiffness", "N/(mm·µm)", 1),
+    ("loss_percent", "loss", "%", 2),
+)
+"""Key in summary.json, name, unit, decimals."""
+
+
+def headlines(summary: Path) -> list[str]:
+    """A line per friction coefficient from summary.json, each value with its error bar where there is one."""
+    rows = json.loads(summary.read_text(encoding="utf-8"))["frictions"]
+    return [f"μ = {row['friction']:g}: {', '.join(_texts(row))}" for row in rows]
+
+
+def _texts(row: Mapping[str, Any]) -> list[str]:
+    bars = row["estimated_error"] or {}
+    known = [figure for figure in FIGURES if row[figure[0]] is not None]
+    return [
+        f"{name} {plus_minus(row[key], bars.get(key) or 0.0, digits)} {unit}" for key, name, unit, digits in known
+    ]

@@ -1,0 +1,24 @@
+"""The figures of a run in a line per friction coefficient."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from evolvent.results.tables.headlines import headlines
+
+
+def test_figures_stand_with_their_error_bars_and_unknown_ones_are_left_out(tmp_path: Path) -> None:
+    """Two coefficients: one with error bars, which are rounded up, one without; what is null is not printed."""
+    figures = {"max_pressure_MPa": 1318.4, "transmission_error_peak_to_peak_um": 3.352, "loss_percent": 0.834}
+    bars = {"max_pressure_MPa": 88.2, "transmission_error_peak_to_peak_um": 0.104, "loss_percent": 0.0}
+    rows = [
+        {"friction": 0.1, **figures, "mesh_stiffness_N_per_mm_um": 12.61, "estimated_error": bars},
+        {"friction": 0.0, **figures, "mesh_stiffness_N_per_mm_um": None, "estimated_error": None},
+    ]
+    (tmp_path / "summary.json").write_text(json.dumps({"frictions": rows}), encoding="utf-8")
+    assert headlines(tmp_path / "summary.json") == [
+        "μ = 0.1: largest pressure 1318 ± 89 MPa, transmission error 3.35 ± 0.11 µm peak to peak, "
+        "mesh stiffness 12.6 N/(mm·µm), loss 0.83 %",
+        "μ = 0: largest pressure 1318 MPa, transmission error 3.35 µm peak to peak, loss 0.83 %",
+    ]

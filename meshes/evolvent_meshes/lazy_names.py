@@ -6,6 +6,9 @@ A package lists them once, in its `__init__.py`, as imports that only a type che
         from package.room.module import Name as Name
     else:
         __all__, __getattr__, __dir__ = lazy_names(__name__)
+
+The library lazy-loader does not serve here: its stubs name only what lies below the package, and the public names of
+`evolvent.gears` come from its sister rooms and from `evolvent_meshes`, too.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.input_checks import is_index, number, refuse
+from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
 
 LOG = logging.getLogger("evolvent")
 
@@ -105,6 +105,7 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
         >>> pitch.transmission_error.shape
         (4,)
     """
+    instance("problem", problem, GearProblem, "write condense(GearProblem(pair, torque=...))")
     check_load(problem)
     dolfinx_compat.silence_logs()
     return prepare_model(problem, comm).model
@@ -116,6 +117,7 @@ def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0)
 
     Raises InputError, NotConverged, SearchError, BalanceError.
     """
+    check_condensed(gears)
     number("angle", angle, "a finite number [rad]", "give the pinion's rotation in rad")
     check_frictions([friction])
     swept = next(sweep_pitch(gears, Pitch((float(angle),)), [friction], initial_state([friction])))
@@ -139,6 +141,7 @@ def solve_pitches(
     All coefficients share search and compliance. Where energy does not balance over the pitch, it is solved again on
     deflected flanks. positions: steps of the pitch. Raises InputError, NotConverged, SearchError, BalanceError.
     """
+    check_condensed(gears)
     check_frictions(frictions)
     check_positions(positions)
     pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
@@ -160,8 +163,15 @@ def solve_pitches(
     )
 
 
+def check_condensed(gears: GearModel) -> None:
+    """Raises InputError unless these are condensed gears."""
+    remedy = "write condense(problem)" if isinstance(gears, GearProblem) else "give what condense(problem) returns"
+    instance("gears", gears, GearModel, remedy)
+
+
 def check_frictions(frictions: Sequence[float]) -> None:
     """Raises InputError unless they are different numbers from 0 to 1."""
+    numbers("frictions", frictions)
     for friction in frictions:
         number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
     if len(frictions) == 0 or len(set(frictions)) < len(frictions):

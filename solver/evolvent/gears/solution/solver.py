@@ -113,16 +113,32 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
 
 def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0) -> PositionResult:
     """A position without friction history: the flanks have slid as they do in a twentieth of a pitch, from the state
-    without friction. angle: pinion rotation [rad]. Every rank solves it.
+    without friction. Every rank solves it.
+
+    angle: pinion rotation [rad], from 0 to 2π/z_1 and a little beyond: positions repeat with
+    2π/z_1, tooth pair i + 1 where pair i was; other angles are refused, for some of their teeth are not searched.
 
     Raises InputError, NotConverged, SearchError, BalanceError.
     """
     check_condensed(gears)
-    number("angle", angle, "a finite number [rad]", "give the pinion's rotation in rad")
+    first, last = searched_angles(gears)
+    wanted = f"a rotation [rad] within one engagement, {first:.4g} to {last:.4g}"
+    remedy = f"is it in degrees? Positions repeat with 2π/z_1, {2.0 * np.pi / gears.pair.pinion.z:.4g} rad"
+    number("angle", angle, wanted, remedy, lambda φ: first <= φ <= last)
     check_frictions([friction])
     swept = next(sweep_pitch(gears, Pitch((float(angle),)), [friction], initial_state([friction])))
     certify(swept.results)
     return swept.results[0]
+
+
+def searched_angles(gears: GearModel) -> tuple[float, float]:
+    """Smallest and largest pinion rotation [rad] at which all tooth pairs that can touch on rigid flanks are searched,
+    and their neighbours, which deflection may bring into contact."""
+    pair = gears.pair
+    start, end = pair.path_of_contact
+    reach, pitch = pair.face_width / 2.0 * np.tan(pair.pinion.base_helix_angle), pair.pinion.transverse_base_pitch
+    distances = end + reach - gears.teeth[-1] * pitch, start - reach - gears.teeth[0] * pitch
+    return distances[0] / pair.pinion.base_radius, distances[1] / pair.pinion.base_radius
 
 
 def solve_pitch(

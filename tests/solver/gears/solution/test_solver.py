@@ -121,6 +121,24 @@ def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel)
     assert alone.transmission_error == pytest.approx(pitch.transmission_error[2], rel=1e-9)
 
 
+def test_angles_of_single_positions_are_those_whose_teeth_are_searched(gears: GearModel) -> None:
+    """Exact: a position repeats after a pitch, so at both ends of the allowed angles, which are further apart than a
+    pitch, the transmission error is that of a pitch later or earlier; beyond them all teeth that touch, and their
+    neighbours, are not searched. 5.0 is taken for degrees."""
+    first, last = solver.searched_angles(gears)
+    pitch = 2.0 * np.pi / gears.pair.pinion.z
+    assert first < 0.0 and last > pitch
+    for angle, there in ((first + 1e-9, first + 1e-9 + pitch), (last - 1e-9, last - 1e-9 - pitch)):
+        errors = [solve_single_position(gears, each).transmission_error for each in (angle, there)]
+        assert errors[0] == pytest.approx(errors[1], rel=1e-6)
+    for angle, beyond in ((first, first - 1e-6), (last, last + 1e-6)):
+        touching = gears.pair.teeth_in_contact(beyond)
+        assert {touching[0] - 1, touching[-1] + 1} - set(gears.teeth), angle
+    for wrong in (5.0, first - 1e-6, last + 1e-6):
+        with pytest.raises(InputError, match=r"wanted a rotation \[rad\] within one engagement, .* is it in degrees\?"):
+            solve_single_position(gears, wrong, 0.1)
+
+
 def test_pitch_out_of_balance_is_solved_on_deflected_flanks(gears: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
     """Problem: the certificate refuses the first pitch. Exact: the pitch of the same gears on deflected flanks; and
     where that is refused too, the error."""

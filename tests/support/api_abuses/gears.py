@@ -124,7 +124,7 @@ CALLS = [
     ),
     Refused("one number for coefficients", lambda _: solve_pitches(condensed(), 0.1), ("write frictions=\\(0.1,\\)",)),
     Refused("friction as text", lambda _: solve_pitch(condensed(), "0.1"), ("from 0 to 1, found '0.1'",)),
-    Refused("angle as text", lambda _: solve_single_position(condensed(), "0.1"), ("angle: wanted a rotation", "degrees")),
+    Refused("angle as text", lambda _: solve_single_position(condensed(), "0.1"), ("angle: wanted a rotation",)),
 ]
 
 WEAR = [

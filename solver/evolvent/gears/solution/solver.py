@@ -12,8 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.contact.problem.user_warnings import warn_user
+from evolvent.contact.step.contact_width import CoarseContactWarning
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, cells_across
 from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -22,7 +25,7 @@ from evolvent.gears.solution.certificates import PitchImbalance, certify, certif
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
 
 LOG = logging.getLogger("evolvent")
@@ -41,6 +44,8 @@ class PitchSolution:
     width_factor: float
     """Factor from forces and torques in `results` to those of the gears: the face width [mm] where the problem is
     plane, else 1."""
+    cells_across: float
+    """Elements across the fitted contact width 2b, median of all positions, as in summary.json."""
     deflected: bool
     """Whether contact was searched again on deflected flanks, because energy did not balance without."""
 
@@ -80,6 +85,11 @@ class PitchSolution:
     def peak(self) -> LinePeak:
         """The largest pressure of the whole engagement, `max_pressure_MPa` of summary.json, and where it occurs."""
         return self.pressure.peak
+
+    @property
+    def tip_edge(self) -> Bools:
+        """Whether a tooth bears on a tip edge (k,) bool, where the pressure is singular; as in positions.csv."""
+        return np.array([bool(result.contact.edge.any()) for result in self.results])
 
     @property
     def loss_ratio(self) -> float:
@@ -155,7 +165,8 @@ def solve_pitches(
     coefficient.
 
     All coefficients share search and compliance. Where energy does not balance over the pitch, it is solved again on
-    deflected flanks. positions: steps of the pitch. Raises InputError, NotConverged, SearchError, BalanceError.
+    deflected flanks. positions: steps of the pitch. Warns by CoarseContactWarning of a contact that is fewer than two
+    elements wide. Raises InputError, NotConverged, SearchError, BalanceError.
     """
     check_condensed(gears)
     check_frictions(frictions)
@@ -173,10 +184,31 @@ def solve_pitches(
         return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
     width = gears.pair.face_width if gears.bodies[0].d == 2 else 1.0
     by_position = [position.results for position in swept]
+    pressures = pitch_pressures(gears, by_position)
+    cells = [_cells_across(gears, pressure) for pressure in pressures]
+    if comm.rank == 0:
+        _warn_if_coarse(min(cells))
     return tuple(
-        PitchSolution(friction, results, pressure, width, gears.deflected)
-        for friction, results, pressure in zip(frictions, zip(*by_position), pitch_pressures(gears, by_position))
+        PitchSolution(friction, results, pressure, width, count, gears.deflected)
+        for friction, results, pressure, count in zip(frictions, zip(*by_position), pressures, cells)
     )
+
+
+def _cells_across(gears: GearModel, pressure: PitchPressure) -> float:
+    """See PitchSolution."""
+    pinion, half_widths = gears.bodies[0], np.concatenate([cut.half_width for cut in pressure.cuts])
+    return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
+
+
+def _warn_if_coarse(cells: float) -> None:
+    """Warns at the user's line of a contact of fewer than `FEWEST_CELLS` elements, as `evolvent run` does."""
+    if not cells >= FEWEST_CELLS:
+        warn_user(
+            f"gear pair: wanted a contact at least {FEWEST_CELLS:g} elements wide, found {cells:.2f} (median): peak "
+            'pressures may be off by 15 % and more and are for looking only; take MeshSettings("standard") or '
+            "MeshSettings(elements_per_contact_width=3)",
+            CoarseContactWarning,
+        )
 
 
 def check_condensed(gears: GearModel) -> None:

@@ -52,7 +52,11 @@ def shown(value: object) -> str:
 def kind_of(value: object) -> str:
     """The name of a value's type, with an article."""
     name = type(value).__name__
-    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+    return f"{_article(name)} {name}"
+
+
+def _article(name: str) -> str:
+    return "an" if name[0] in "AEIOUaeiou" else "a"
 
 
 def is_number(value: object) -> bool:
@@ -82,9 +86,20 @@ def refuse_huge(what: str, value: Any) -> None:
         refuse(what, f"numbers up to {LARGEST:g}", value, "check the unit: mm, N, MPa")
 
 
+def numbers(what: str, value: object) -> None:
+    """Raises InputError unless the value is a sequence, as which a single number is often given."""
+    if not _is_flat(value):
+        refuse(what, "a sequence of numbers", value, f"write {what}=({value},)" if is_number(value) else "give a tuple")
+
+
+def _is_flat(value: object) -> bool:
+    """Whether the value is a tuple, list or array of one dimension."""
+    return isinstance(value, list | tuple | np.ndarray) and np.ndim(np.asarray(value, dtype=object)) == 1
+
+
 def vector(what: str, value: Any, lengths: tuple[int, ...], wanted: str, remedy: str) -> tuple[float, ...]:
     """The value as a tuple of finite numbers, of one of these lengths. Raises InputError."""
-    if not isinstance(value, list | tuple | np.ndarray) or np.ndim(np.asarray(value, dtype=object)) != 1:
+    if not _is_flat(value):
         refuse(what, wanted, value, remedy)
     if len(value) not in lengths or not all(is_number(x) for x in value):
         refuse(what, wanted, value, remedy)
@@ -122,6 +137,24 @@ def members(what: str, value: Any, kinds: tuple[type[T], ...], example: str) -> 
         if not isinstance(each, kinds):
             refuse(what, f"a tuple of {names}", Words(f"{shown(each)} in it"), f"write {example}")
     return objects
+
+
+def instance(what: str, value: object, kinds: type | tuple[type, ...], remedy: str) -> None:
+    """Raises InputError unless the value is of one of these types."""
+    if not isinstance(value, kinds):
+        names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+        refuse(what, " or ".join(f"{_article(name)} {name}" for name in names), value, remedy)
+
+
+def both_gears(what: str, value: object, kind: type, optional: bool = False) -> None:
+    """Raises InputError unless the value is a tuple of two objects of this type, of pinion and wheel.
+
+    optional: each may be None instead.
+    """
+    kinds = (kind, type(None)) if optional else (kind,)
+    names = f"{kind.__name__} or None" if optional else kind.__name__
+    if not (isinstance(value, tuple | list) and len(value) == 2 and all(isinstance(each, kinds) for each in value)):
+        refuse(what, f"two of {names}", value, f"write {what}=(pinion, wheel)")
 
 
 def one_of(what: str, value: object, allowed: tuple[object, ...]) -> None:

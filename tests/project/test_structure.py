@@ -52,19 +52,21 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
     "gears.pressure": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep"),
-    "gears.solution": ("meshes", "fem.backend", "gears.problem", "gears", "gears.sweep", "gears.pressure"),
+    "gears.solution": (
+        "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
+        "gears.pressure",
+    ),
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
     "scene.checking": (
-        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing", "scene",
-        "scene.schema",
+        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing",
+        "gears.pressure", "scene", "scene.schema",
     ),
     "results.archive": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
     ),
     "results": (
-        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "scene.checking",
-        "results.archive",
+        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (

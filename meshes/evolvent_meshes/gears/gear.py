@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from evolvent_meshes.gears.errors import require_numbers
 from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
-from evolvent_meshes.gears.gear_limits import check_gear
+from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 
 RACK_TIP_RADIUS = 0.38
 """ρ_fP* of the basic rack of ISO 53, profile A."""
@@ -63,6 +64,16 @@ class GearParameters(GearGeometry):
         >>> print(f"tip {gear.tip_diameter:.1f} mm, root {gear.root_diameter:.1f} mm")
         tip 64.8 mm, root 55.8 mm
         """
+        check_teeth(z)
+        require_numbers(
+            normal_module=normal_module, normal_pressure_angle_deg=normal_pressure_angle_deg,
+            addendum_coefficient=addendum_coefficient, dedendum_coefficient=dedendum_coefficient,
+            tip_shortening_coefficient=tip_shortening_coefficient, helix_angle_deg=helix_angle_deg,
+            profile_shift=profile_shift,
+        )  # fmt: skip
+        if rack_tip_radius_coefficient is not None:
+            require_numbers(rack_tip_radius_coefficient=rack_tip_radius_coefficient)
+        check_angles(normal_pressure_angle_deg, helix_angle_deg)
         d = z * normal_module / math.cos(math.radians(helix_angle_deg))
         addendum = addendum_coefficient + profile_shift - tip_shortening_coefficient
         angle = math.radians(normal_pressure_angle_deg)
@@ -83,5 +94,5 @@ class GearParameters(GearGeometry):
             rack_tip_radius=rounded,
             hand=hand,
             bore_diameter=bore_diameter,
-            modifications=modifications or Modifications(),
+            modifications=Modifications() if modifications is None else modifications,
         )

@@ -3,22 +3,55 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from evolvent_meshes.gears.errors import require
-from evolvent_meshes.gears.gear_geometry import GearGeometry
+from evolvent_meshes.gears.errors import require, require_instance, require_numbers
+from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.input_checks import is_index, shown
 
 SMALLEST_BORE = 0.01
 """Smallest bore diameter over the root diameter: the gear is held at the bore, and cells at a point would collapse."""
+FEWEST_TEETH = 5
+"""Smallest number of teeth."""
 SMALLEST_RIM = 1.0
 """Smallest thickness of the rim between bore and root, in normal modules."""
 
 
 def check_gear(gear: GearGeometry) -> None:
     """Raises GeometryError if the gear cannot be cut by its rack."""
+    check_teeth(gear.z)
+    check_types(gear)
     check_numbers(gear)
     check_diameters(gear)
     check_rack(gear)
     check_modifications(gear)
+
+
+def check_teeth(z: Any) -> None:
+    """Raises GeometryError unless a number of teeth is whole and large enough."""
+    allowed, remedy = f"a whole number from {FEWEST_TEETH} on", "Count the teeth; internal gears are not supported."
+    require(is_index(z) and z >= FEWEST_TEETH, "z", shown(z), allowed, remedy)
+
+
+def check_angles(pressure: float, helix: float) -> None:
+    """Raises GeometryError unless pressure and helix angle [°] are those of gears."""
+    remedy = "Angles are in degrees; the hand of the helix is a key of its own."
+    require(5.0 <= pressure <= 45.0, "normal_pressure_angle_deg", pressure, "5 to 45 degrees", remedy)
+    require(0.0 <= helix <= 60.0, "helix_angle_deg", helix, "0 to 60 degrees", remedy)
+
+
+def check_types(gear: GearGeometry) -> None:
+    """Numbers and modifications are such, and no texts. Raises GeometryError."""
+    given = gear.modifications
+    require_instance(given, Modifications, "modifications", "Write Modifications(tip_relief_um=...).")
+    require_numbers(
+        normal_module=gear.normal_module, normal_pressure_angle_deg=gear.normal_pressure_angle_deg,
+        helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
+        tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
+        bore_diameter=gear.bore_diameter, tip_relief_um=given.tip_relief_um, lead_crowning_um=given.lead_crowning_um,
+    )  # fmt: skip
+    if given.tip_relief_start_diameter is not None:
+        require_numbers(tip_relief_start_diameter=given.tip_relief_start_diameter)
 
 
 def check_numbers(gear: GearGeometry) -> None:
@@ -26,12 +59,8 @@ def check_numbers(gear: GearGeometry) -> None:
     for key in ("normal_module", "face_width", "tip_diameter", "root_diameter", "bore_diameter"):
         value = getattr(gear, key)
         require(math.isfinite(value) and value > 0.0, key, value, "a finite length above 0 mm", "Give it in mm.")
-    require(isinstance(gear.z, int) and gear.z >= 5, "z", gear.z, "a whole number from 5 on", "Count the teeth.")
     require(gear.hand in (-1, 1), "hand", gear.hand, "+1 (right) or -1 (left)", "Give a spur gear either.")
-    angle, helix = gear.normal_pressure_angle_deg, gear.helix_angle_deg
-    remedy = "Angles are in degrees; the hand of the helix is a key of its own."
-    require(5.0 <= angle <= 45.0, "normal_pressure_angle_deg", angle, "5 to 45 degrees", remedy)
-    require(0.0 <= helix <= 60.0, "helix_angle_deg", helix, "0 to 60 degrees", remedy)
+    check_angles(gear.normal_pressure_angle_deg, gear.helix_angle_deg)
     shift, radius = gear.profile_shift, gear.rack_tip_radius
     require(-3.0 <= shift <= 3.0, "profile_shift", shift, "-3 to 3", "Give the coefficient x, not x times the module.")
     require(0.0 <= radius < math.inf, "rack_tip_radius", radius, "a finite radius from 0 mm on", "Give it in mm.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from evolvent_meshes.gears.errors import require
+from evolvent_meshes.gears.errors import require, require_instance, require_numbers
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair_geometry import PairGeometry
 
@@ -14,10 +14,18 @@ ROUNDING = 1e-3
 
 def check_pair(pair: PairGeometry) -> None:
     """Raises GeometryError if the two gears cannot run together at this centre distance."""
+    check_types(pair)
     check_partners(pair)
     check_distance(pair)
     check_roots(pair)
     check_contact(pair)
+
+
+def check_types(pair: PairGeometry) -> None:
+    """Two gears and numbers. Raises GeometryError."""
+    for key, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        require_instance(gear, GearParameters, key, "Write GearParameters.from_rack(z=...) or GearParameters(z=...).")
+    require_numbers(centre_distance=pair.centre_distance, misalignment_um=pair.misalignment_um)
 
 
 def check_partners(pair: PairGeometry) -> None:

@@ -13,8 +13,8 @@ fine: half-width of the contact zone [mm].
 fine_depth: depth of the contact zone [mm]; None: fine / 2.
 growth: largest ratio of the lengths of neighbouring cells outside the contact zone.
 
-Each raises MeshError for a shape or order that it has not, graded ones unless size > 0, fine lies inside the block and
-growth >= 1.
+Each raises MeshError for a shape or order that it has not and for lengths that are not above 0, graded ones unless fine
+lies inside the block and growth >= 1.
 """
 
 from __future__ import annotations
@@ -37,17 +37,13 @@ from evolvent_meshes.mesh.structured_grid import (
     transfinite,
     weld,
 )
+from evolvent_meshes.shapes.lengths import check_counts, check_lengths, check_tuples
 
 
 def rectangle(
-    width: float,
-    height: float,
-    nx: int,
-    ny: int,
-    order: int = 2,
-    shape: str = "quadrilateral",
+    width: float, height: float, nx: int, ny: int, order: int = 2, shape: str = "quadrilateral",
     origin: tuple[float, float] = (0.0, 0.0),
-) -> MeshData:
+) -> MeshData:  # fmt: skip
     """Uniform rectangle of nx × ny cells.
 
     width, height: [mm].
@@ -58,6 +54,8 @@ def rectangle(
     >>> mesh.cells.shape, mesh.points.shape, list(mesh.facets)
     ((8, 9), (45, 3), ['left', 'right', 'bottom', 'top'])
     """
+    check_lengths("rectangle", width=width, height=height)
+    check_counts("rectangle", nx=nx, ny=ny)
     x = origin[0] + np.linspace(0, width, nx + 1)
     y = origin[1] + np.linspace(0, height, ny + 1)
     return _tensor_block((x, y), order, shape, {"left": 0, "right": 0, "bottom": 1, "top": 1})
@@ -77,6 +75,10 @@ def box(
     origin: lowest corner [mm].
     Facet groups: left and right (ends of x), front and back (ends of y), bottom and top (ends of z).
     """
+    check_tuples("box", 3, size=size, counts=counts, origin=origin)
+    for length, count in zip(size, counts):
+        check_lengths("box", size=length)
+        check_counts("box", counts=count)
     lines = tuple(o + np.linspace(0, s, n + 1) for o, s, n in zip(origin, size, counts, strict=True))
     axes = {"left": 0, "right": 0, "front": 1, "back": 1, "bottom": 2, "top": 2}
     return _tensor_block(lines, order, shape, axes)
@@ -97,6 +99,8 @@ def graded_rectangle(
     width, height: [mm].
     Facet groups: left, right, bottom, top.
     """
+    lengths = {"width": width, "height": height, "size": size}
+    check_lengths("graded_rectangle", **lengths, fine=fine, growth=growth, fine_depth=fine_depth)
     x = mirrored_line(graded_ends(width / 2, size, fine, growth))
     y = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     return _tensor_block((x, y), order, shape, {"left": 0, "right": 0, "bottom": 1, "top": 1})
@@ -117,6 +121,8 @@ def graded_box(
     side, height: [mm].
     Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), right (x = side), back (y = side), bottom, top.
     """
+    lengths = {"side": side, "height": height, "size": size}
+    check_lengths("graded_box", **lengths, fine=fine, growth=growth, fine_depth=fine_depth)
     line = graded_ends(side, size, fine, growth)
     z = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     axes = {"symmetry_x": 0, "right": 0, "symmetry_y": 1, "back": 1, "bottom": 2, "top": 2}
@@ -142,6 +148,8 @@ def sphere_quarter(
     Facet groups: arc (the sphere), top, symmetry_x (x = 0), symmetry_y (y = 0), right, back.
     Raises MeshError unless the sphere rises less than 0.7 height over the block.
     """
+    lengths = {"radius": radius, "side": side, "height": height, "size": size}
+    check_lengths("sphere_quarter", **lengths, fine=fine, growth=growth, fine_depth=fine_depth)
     line = graded_ends(side, size, fine, growth)
     z = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
     axes = {"symmetry_x": 0, "right": 0, "symmetry_y": 1, "back": 1, "arc": 2, "top": 2}
@@ -191,6 +199,8 @@ def cylinder_2d(
     Facet groups: arc (|x| <= contact), of a half disc top (the flat cut at y = radius).
     The contact zone is fine/2 deep.
     """
+    lengths = {"radius": radius, "size": size, "contact": size if contact is None else contact}
+    check_lengths("cylinder_2d", **lengths, fine=fine, growth=growth)
     bottom = subdivided(mirrored_line(graded_ends(np.pi / 4, size / radius, fine / radius, growth)), order)
     depth = subdivided(graded_ends((1 - _CORE) * radius, size, fine / 2, growth), order)
     points, cells = _disc(radius, bottom, depth, order, half)

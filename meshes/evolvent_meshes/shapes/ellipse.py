@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.shapes.blocks import lifted
+from evolvent_meshes.shapes.lengths import check_lengths, check_tuples
 from evolvent_meshes.shapes.rings import ring_block
 
 
@@ -31,7 +32,10 @@ def ellipse_block(
     Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top.
     Raises MeshError unless 0 < b <= a and b < fine < side.
     """
+    check_tuples("ellipse_block", 2, half_axes=half_axes)
     a, b = half_axes
+    check_lengths("ellipse_block", half_axes=a, side=side, size=size, fine=fine, growth=growth, fine_depth=fine_depth)
+    check_lengths("ellipse_block", half_axes=b)
     if not 0 < b <= a:
         raise MeshError(f"ellipse block: wanted half-axes 0 < b <= a, found a = {a}, b = {b} mm; exchange them")
     mesh = ring_block(side, side, b, size, fine, order, growth, fine_depth)
@@ -55,6 +59,9 @@ def ellipse_punch(
     Facet groups: arc (the paraboloid), top, symmetry_x, symmetry_y, side.
     Raises MeshError as `ellipse_block`, and unless the paraboloid rises less than 0.7 side.
     """
+    check_tuples("ellipse_punch", 2, half_axes=half_axes, curvatures=curvatures)
+    for curvature in curvatures:
+        check_lengths("ellipse_punch", curvatures=curvature)
     block = ellipse_block((half_axes[1], half_axes[1]), side, size, fine, order, growth, fine_depth)
     points = block.points[:, [1, 0, 2]] * (half_axes[0] / half_axes[1], 1.0, -1.0)  # turned upside down about x = y
     x, y, _ = points.T

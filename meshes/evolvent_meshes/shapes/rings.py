@@ -33,6 +33,7 @@ from evolvent_meshes.mesh.structured_grid import (
     weld,
 )
 from evolvent_meshes.shapes.blocks import over_sphere
+from evolvent_meshes.shapes.lengths import check_lengths
 
 CORE = 0.5  # half-width of the square core over the radius of the ring
 BULGE = 0.7  # 1: the core is a square, 0: a disc; in between the angles of the cells are near 90°
@@ -53,6 +54,8 @@ def ring_block(
     Facet groups: symmetry_x (x = 0), symmetry_y (y = 0), side, bottom, top.
     Raises MeshError unless 0 < ring < fine < side.
     """
+    lengths = {"side": side, "height": height, "ring": ring, "size": size}
+    check_lengths("ring_block", **lengths, fine=fine, growth=growth, fine_depth=fine_depth)
     depth = -graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)[::-1]
     points, cells = _swept(side, ring, size, fine, order, growth, depth)
     return _finished(points, cells, order, {"bottom": points[:, 2] - points[:, 2].min(), "top": points[:, 2]}, side)
@@ -75,6 +78,8 @@ def ring_sphere(
     Facet groups: arc (the sphere), top (z = height), symmetry_x, symmetry_y, side.
     Raises MeshError unless 0 < ring < fine < side and the sphere rises less than 0.7 height.
     """
+    lengths = {"radius": radius, "side": side, "height": height, "ring": ring, "size": size}
+    check_lengths("ring_sphere", **lengths, fine=fine, growth=growth, fine_depth=fine_depth)
     line = graded_ends(height, size, fine / 2 if fine_depth is None else fine_depth, growth)
     points, cells = _swept(side, ring, size, fine, order, growth, line)
     ends = {"arc": points[:, 2], "top": points[:, 2] - height}

@@ -10,6 +10,7 @@ from evolvent_meshes.lazy_names import lazy_names
 if TYPE_CHECKING:
     from evolvent.contact.newton.snes import NotConverged as NotConverged
     from evolvent.contact.search.pairing import SearchError as SearchError
+    from evolvent.contact.step.contact_width import CoarseContactWarning as CoarseContactWarning
     from evolvent.fem.material import STEEL as STEEL
     from evolvent.fem.material import Material as Material
     from evolvent.gears.contact.contact_points import ContactPoints as ContactPoints
@@ -31,8 +32,10 @@ if TYPE_CHECKING:
     from evolvent.gears.sweep.position_result import PositionResult as PositionResult
     from evolvent_meshes.gears.errors import GeometryError as GeometryError
     from evolvent_meshes.gears.gear import GearParameters as GearParameters
+    from evolvent_meshes.gears.gear_geometry import GearGeometry as GearGeometry
     from evolvent_meshes.gears.gear_geometry import Modifications as Modifications
     from evolvent_meshes.gears.member import Member as Member
     from evolvent_meshes.gears.pair import GearPair as GearPair
+    from evolvent_meshes.gears.pair_geometry import PairGeometry as PairGeometry
 else:
     __all__, __getattr__, __dir__ = lazy_names(__name__)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.gears.pressure import contact_cells
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.results.run_data import RunData
-from evolvent.scene.checking.scene_warnings import FEWEST_CELLS
 
-HEIGHT_TOLERANCE = 1e-6
-"""Nodes within this height [mm] are of one row."""
 NARROW = 0.1
 """Quantile of all slices that `cells_across_narrow_contact` is."""
 
@@ -30,12 +29,9 @@ class MeshFacts:
 def cells_across(run: RunData, share: float = 0.5) -> float:
     """Fitted contact width over the mean length of a profile element: this quantile of all slices, by default the
     median."""
-    widths = np.concatenate([2.0 * solved.cut.half_width for each in run.positions for solved in each])
-    known, flank = widths[np.isfinite(widths)], run.flank
-    row = flank.z <= flank.z.min() + HEIGHT_TOLERANCE
-    arc = flank.roll_length[row] ** 2 / (2.0 * run.pair.pinion.base_radius)
-    elements = (int(row.sum()) - 1) / run.scene.mesh.order
-    return float(np.quantile(known, share) * elements / np.ptp(arc)) if len(known) else float("nan")
+    half_widths = np.concatenate([solved.cut.half_width for each in run.positions for solved in each])
+    flank, radius, order = run.flank, run.pair.pinion.base_radius, run.scene.mesh.order
+    return contact_cells.cells_across(half_widths, flank.z, flank.roll_length, radius, order, share)
 
 
 def few_cells_across(run: RunData) -> bool:

@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import InputError, ResultError
+from evolvent_meshes.input_checks import number
 
 VOLUME_TOLERANCE = 1e-6
 """Largest relative difference between the worn volumes at the nodes and at the contact points."""
@@ -60,8 +61,8 @@ class Archard:
 
     def __post_init__(self) -> None:
         for name, value in (("first", self.first), ("second", self.second)):
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError(f"wear of the {name} surface: wanted K/H of zero or more in mm²/N, found {value}")
+            what, wanted = f"wear of the {name} surface", "K/H of zero or more in mm²/N"
+            number(what, value, wanted, "give it over the hardness, such as 1e-10", lambda k: k >= 0.0)
 
     @property
     def coefficients(self) -> tuple[float, float]:

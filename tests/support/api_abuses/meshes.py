@@ -8,6 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent import Body, MeshError, read_msh, solve
+from evolvent_meshes.shapes.blocks import box, cylinder_2d, graded_box, graded_rectangle, rectangle, sphere_quarter
+from evolvent_meshes.shapes.ellipse import ellipse_block, ellipse_punch
+from evolvent_meshes.shapes.rings import ring_block, ring_sphere
 from tests.support.api_abuses.blocks import (
     CUBE,
     CURVED,
@@ -142,5 +145,27 @@ FILES = [
     Refused("serendipity", gmsh_file(order=2, recombine=2, incomplete=1), ("SecondOrderIncomplete = 0",), MeshError),
 ]
 
+SHAPES = [
+    Refused(f"shape, {name}", lambda _, make=make: make(), words, MeshError)
+    for name, make, words in (
+        ("width as text", lambda: graded_rectangle("20", 10, 0.1, 1.0), ("graded_rectangle, width: .* found '20'",)),
+        ("negative size", lambda: graded_rectangle(20, 10, -0.1, 1.0), ("graded_rectangle, size: .* found -0.1",)),
+        ("no height", lambda: graded_rectangle(20, 0.0, 0.1, 1.0), ("graded_rectangle, height: .* found 0.0",)),
+        ("no growth", lambda: graded_rectangle(20, 10, 0.1, 1.0, growth=0.9), ("growth: .* from 1 on, found 0.9",)),
+        ("depth as text", lambda: graded_rectangle(20, 10, 0.1, 1.0, fine_depth="1"), ("fine_depth: .* found '1'",)),
+        ("count as a float", lambda: rectangle(20, 10, 2.0, 2), ("rectangle, nx: wanted a whole number",)),
+        ("number for a size", lambda: box(1.0, (1, 1, 1)), ("box, size: wanted a tuple of 3 numbers, found 1.0",)),
+        ("no cells of a box", lambda: box((1.0, 1.0, 1.0), (1, 0, 1)), ("box, counts: .* found 0",)),
+        ("side as text", lambda: graded_box("5", 5, 0.1, 1.0), ("graded_box, side: .* found '5'",)),
+        ("radius NaN", lambda: sphere_quarter(NAN, 4, 4, 0.2, 0.7), ("sphere_quarter, radius: .* found nan",)),
+        ("cylinder of text", lambda: cylinder_2d("10", 0.1, 1.0), ("cylinder_2d, radius: .* found '10'",)),
+        ("fine None", lambda: cylinder_2d(10, 0.1, None), ("cylinder_2d, fine: .* from 0 on, found None",)),
+        ("ring as text", lambda: ring_block(4, 4, "1", 0.2, 2), ("ring_block, ring: .* found '1'",)),
+        ("ring of no sphere", lambda: ring_sphere(0, 4, 4, 1, 0.2, 2), ("ring_sphere, radius: .* found 0",)),
+        ("one half-axis", lambda: ellipse_block(1.0, 4, 0.2, 2), ("half_axes: wanted a tuple of 2 numbers",)),
+        ("curvature as text", lambda: ellipse_punch((1, 1), ("1", 1), 4, 0.2, 2), ("curvatures: .* found '1'",)),
+    )
+]
 
-ROWS = [*MESHES, *FILES]
+
+ROWS = [*MESHES, *FILES, *SHAPES]

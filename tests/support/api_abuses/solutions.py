@@ -56,6 +56,7 @@ RESULTS = [
 
 PHYSICS = [
     Refused("too far apart", lambda _: solve(apart(5.0)), ("within 0.1 mm", "found none", "reach"), SearchError),
+    Refused("overlapping by too much", lambda _: solve(apart(-0.5)), ("if they overlap by more", "apart"), SearchError),
     Refused(
         "surfaces that look away",
         lambda _: solve(problem(contacts=(contact((0, "top")),))),
@@ -70,19 +71,19 @@ PHYSICS = [
     Refused(
         "pulled apart",
         lambda _: solve(problem(), Step(-1.0)),
-        ("found no node in contact", "hold the motion"),
+        ("found no node in contact", "check the sign of the load", "hold the motion"),
         NotConverged,
     ),
     Refused(
         "nothing that holds it sideways",
         lambda _: solve(problem((upper(supports=()), lower()))),
-        ("found one that meets no resistance", "support the body"),
+        ("found one that meets no resistance", "body 0 \\('upper'\\) is free to move in x: add Fixed or Rigid"),
         NotConverged,
     ),
     Refused(
         "nothing held at all",
         lambda _: solve(problem((upper(supports=()), lower(supports=())))),
-        ("found one that meets no resistance", "support the body"),
+        ("found one that meets no resistance", "body [01] \\('(upper|lower)'\\) is free to move"),
         NotConverged,
     ),
     Refused(

@@ -25,6 +25,10 @@ Reals = NDArray[Any]
 """Of single or double precision."""
 
 
+class FreeMotion(NotConverged):
+    """A rigid motion of a body that nothing resists."""
+
+
 @dataclass(frozen=True)
 class ReducedTangent:
     """The parts of a tangent that its inverse needs, all of the same precision.
@@ -75,7 +79,7 @@ class ReducedTangent:
         lu, pivots, _ = getrf(B, overwrite_a=True)
         # a factor in single precision need not be good: the iterations it preconditions show that
         if B.dtype == float and s + r and np.isfinite(size) and gecon(lu, size)[0] < np.finfo(float).eps:
-            raise NotConverged(
+            raise FreeMotion(
                 "contact: wanted supports, or friction that sticks, against every free rigid motion, found one that "
                 "meets no resistance; support the body, prescribe the motion, or lower the load"
             )

@@ -53,7 +53,7 @@ class Tangent:
         if not kept.any() and H.shape[1]:
             raise NotConverged(
                 "contact: wanted one that holds every free rigid motion, found no node in contact; bring the bodies "
-                "together, or hold the motion"
+                "together, check the sign of the load, or hold the motion"
             )
         return Tangent(M, A, H, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
 

@@ -147,7 +147,7 @@ def _search(contact: Contact, surfaces: SurfacePair, reach: float) -> Pairing:
         raise SearchError(
             f"contact between {contact.first[1]!r} of body {contact.first[0]} and {contact.second[1]!r} of body "
             f"{contact.second[0]}: wanted surfaces within {reach:.3g} mm of each other, found none; place the "
-            "bodies closer together, or give the contact a larger reach"
+            "bodies closer together, or, if they overlap by more than that, apart, or give the contact a larger reach"
         )
     return pairing
 

@@ -17,12 +17,14 @@ from evolvent.contact.newton.equilibrium import (
     normal_part,
     stuck,
 )
+from evolvent.contact.newton.reduced_tangent import FreeMotion
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
 from evolvent.contact.problem.pressure_carrier import pressure_sides
 from evolvent.contact.step.contact_result import ContactResult
+from evolvent.contact.step.free_motion import free_motion
 from evolvent.contact.step.paired_surfaces import (
     PairedSurfaces,
     SurfacePair,
@@ -161,7 +163,11 @@ class StepSystem:
         """
         system = self.system(operators)
         μ, slip = self.friction, self.slip(previous)
-        state = self._frictional(system, μ, slip) if μ.any() else frictionless(normal_part(system))
+        try:
+            state = self._frictional(system, μ, slip) if μ.any() else frictionless(normal_part(system))
+        except FreeMotion as failure:
+            which = free_motion(self.problem.bodies, self.motions, normal_part(system).motion)
+            raise FreeMotion(f"{failure}; {which}" if which else str(failure)) from failure
         return self._solution(system, state, slip), self._deformed_surfaces(state)
 
     def slip(self, previous: DeformedSurfaces | None) -> Floats:

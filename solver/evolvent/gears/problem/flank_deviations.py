@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -22,6 +23,7 @@ from scipy.interpolate import RegularGridInterpolator
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.csv_tables import Column, TableError, has_column, read_columns
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.input_checks import Words, array, instance, refuse
 
 DIAMETER, HEIGHT = Column("diameter", (("mm", 1.0),)), Column("z", (("mm", 1.0),))
 DEPTH = Column("depth")
@@ -44,10 +46,24 @@ class FlankChart:
     depth: Floats
     """(k, l) normal to the flank; negative where there is more material [mm]."""
 
+    def __post_init__(self) -> None:
+        """Raises InputError unless the arrays are those of a grid, of two diameters at least."""
+        k, m = np.size(self.diameters), np.size(self.heights)
+        if k < 2 or m < 1:
+            refuse("flank chart", "two diameters and one height at least", Words(f"{k} and {m}"), "add some")
+        for name, shape in (("diameters", (k,)), ("heights", (m,)), ("depth", (k, m))):
+            remedy = "depth has a row a diameter and a column a height, in mm"
+            object.__setattr__(self, name, array(f"flank chart, {name}", getattr(self, name), (shape,), remedy))
+        for name in ("diameters", "heights"):
+            if not (np.diff(getattr(self, name)) > 0.0).all():
+                refuse(f"flank chart, {name}", "ascending ones", getattr(self, name), "sort them, and depth alike")
+
     @staticmethod
-    def read(path: Path) -> FlankChart:
+    def read(file: str | os.PathLike[str]) -> FlankChart:
         """From a CSV file, which is read again only after it has changed. Raises TableError where it cannot be read or
         its points are no grid."""
+        instance("flank chart", file, (str, os.PathLike), "give the path of a CSV file")
+        path = Path(file)
         try:
             state = path.stat()
         except (OSError, ValueError) as error:  # ValueError: the path has a NUL

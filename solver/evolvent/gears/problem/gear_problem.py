@@ -14,7 +14,7 @@ from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.input_checks import number, one_of
+from evolvent_meshes.input_checks import both_gears, instance, number, one_of
 
 Level = Literal["quick", "standard", "fine"]
 LEVELS: tuple[Level, ...] = ("quick", "standard", "fine")
@@ -106,6 +106,12 @@ class GearProblem:
     """What is computed in full."""
 
     def __post_init__(self) -> None:
+        instance("pair", self.pair, GearPair, "write GearPair(pinion, wheel, centre_distance=...)")
+        both_gears("materials", self.materials, Material)
+        level = self.mesh if isinstance(self.mesh, str) else "standard"
+        instance("mesh", self.mesh, MeshSettings, f'write MeshSettings("{level}")')
+        both_gears("flanks", self.flanks, FlankChart, optional=True)
+        instance("options", self.options, GearOptions, "write GearOptions(in_space=True), for example")
         remedy = "give it in N·mm and without a sign: the pinion drives"
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))

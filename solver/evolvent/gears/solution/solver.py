@@ -12,8 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.contact.problem.user_warnings import warn_user
+from evolvent.contact.step.contact_width import CoarseContactWarning
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, cells_across
 from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -22,8 +25,8 @@ from evolvent.gears.solution.certificates import PitchImbalance, certify, certif
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent_meshes.arrays import Floats
-from evolvent_meshes.input_checks import is_index, number, refuse
+from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.input_checks import instance, is_index, number, numbers, refuse
 
 LOG = logging.getLogger("evolvent")
 
@@ -41,6 +44,8 @@ class PitchSolution:
     width_factor: float
     """Factor from forces and torques in `results` to those of the gears: the face width [mm] where the problem is
     plane, else 1."""
+    cells_across: float
+    """Elements across the fitted contact width 2b, median of all positions, as in summary.json."""
     deflected: bool
     """Whether contact was searched again on deflected flanks, because energy did not balance without."""
 
@@ -82,6 +87,11 @@ class PitchSolution:
         return self.pressure.peak
 
     @property
+    def tip_edge(self) -> Bools:
+        """Whether a tooth bears on a tip edge (k,) bool, where the pressure is singular; as in positions.csv."""
+        return np.array([bool(result.contact.edge.any()) for result in self.results])
+
+    @property
     def loss_ratio(self) -> float:
         """Friction work over input work of the pitch."""
         lost = sum(result.friction_loss for result in self.results)
@@ -105,6 +115,7 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
         >>> pitch.transmission_error.shape
         (4,)
     """
+    instance("problem", problem, GearProblem, "write condense(GearProblem(pair, torque=...))")
     check_load(problem)
     dolfinx_compat.silence_logs()
     return prepare_model(problem, comm).model
@@ -112,15 +123,32 @@ def condense(problem: GearProblem, comm: MPI.Comm = MPI.COMM_WORLD) -> GearModel
 
 def solve_single_position(gears: GearModel, angle: float, friction: float = 0.0) -> PositionResult:
     """A position without friction history: the flanks have slid as they do in a twentieth of a pitch, from the state
-    without friction. angle: pinion rotation [rad]. Every rank solves it.
+    without friction. Every rank solves it.
+
+    angle: pinion rotation [rad], from 0 to 2π/z_1 and a little beyond: positions repeat with
+    2π/z_1, tooth pair i + 1 where pair i was; other angles are refused, for some of their teeth are not searched.
 
     Raises InputError, NotConverged, SearchError, BalanceError.
     """
-    number("angle", angle, "a finite number [rad]", "give the pinion's rotation in rad")
+    check_condensed(gears)
+    first, last = searched_angles(gears)
+    wanted = f"a rotation [rad] within one engagement, {first:.4g} to {last:.4g}"
+    remedy = f"is it in degrees? Positions repeat with 2π/z_1, {2.0 * np.pi / gears.pair.pinion.z:.4g} rad"
+    number("angle", angle, wanted, remedy, lambda φ: first <= φ <= last)
     check_frictions([friction])
     swept = next(sweep_pitch(gears, Pitch((float(angle),)), [friction], initial_state([friction])))
     certify(swept.results)
     return swept.results[0]
+
+
+def searched_angles(gears: GearModel) -> tuple[float, float]:
+    """Smallest and largest pinion rotation [rad] at which all tooth pairs that can touch on rigid flanks are searched,
+    and their neighbours, which deflection may bring into contact."""
+    pair = gears.pair
+    start, end = pair.path_of_contact
+    reach, pitch = pair.face_width / 2.0 * np.tan(pair.pinion.base_helix_angle), pair.pinion.transverse_base_pitch
+    distances = end + reach - gears.teeth[-1] * pitch, start - reach - gears.teeth[0] * pitch
+    return distances[0] / pair.pinion.base_radius, distances[1] / pair.pinion.base_radius
 
 
 def solve_pitch(
@@ -137,8 +165,10 @@ def solve_pitches(
     coefficient.
 
     All coefficients share search and compliance. Where energy does not balance over the pitch, it is solved again on
-    deflected flanks. positions: steps of the pitch. Raises InputError, NotConverged, SearchError, BalanceError.
+    deflected flanks. positions: steps of the pitch. Warns by CoarseContactWarning of a contact that is fewer than two
+    elements wide. Raises InputError, NotConverged, SearchError, BalanceError.
     """
+    check_condensed(gears)
     check_frictions(frictions)
     check_positions(positions)
     pitch = uniform_pitch(gears.pair.pinion.z, int(positions), gears.pitches)
@@ -154,14 +184,42 @@ def solve_pitches(
         return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
     width = gears.pair.face_width if gears.bodies[0].d == 2 else 1.0
     by_position = [position.results for position in swept]
+    pressures = pitch_pressures(gears, by_position)
+    cells = [_cells_across(gears, pressure) for pressure in pressures]
+    if comm.rank == 0:
+        _warn_if_coarse(min(cells))
     return tuple(
-        PitchSolution(friction, results, pressure, width, gears.deflected)
-        for friction, results, pressure in zip(frictions, zip(*by_position), pitch_pressures(gears, by_position))
+        PitchSolution(friction, results, pressure, width, count, gears.deflected)
+        for friction, results, pressure, count in zip(frictions, zip(*by_position), pressures, cells)
     )
+
+
+def _cells_across(gears: GearModel, pressure: PitchPressure) -> float:
+    """See PitchSolution."""
+    pinion, half_widths = gears.bodies[0], np.concatenate([cut.half_width for cut in pressure.cuts])
+    return cells_across(half_widths, pinion.z, pinion.roll_length, pinion.gear.base_radius, pinion.mesh.order)
+
+
+def _warn_if_coarse(cells: float) -> None:
+    """Warns at the user's line of a contact of fewer than `FEWEST_CELLS` elements, as `evolvent run` does."""
+    if not cells >= FEWEST_CELLS:
+        warn_user(
+            f"gear pair: wanted a contact at least {FEWEST_CELLS:g} elements wide, found {cells:.2f} (median): peak "
+            'pressures may be off by 15 % and more and are for looking only; take MeshSettings("standard") or '
+            "MeshSettings(elements_per_contact_width=3)",
+            CoarseContactWarning,
+        )
+
+
+def check_condensed(gears: GearModel) -> None:
+    """Raises InputError unless these are condensed gears."""
+    remedy = "write condense(problem)" if isinstance(gears, GearProblem) else "give what condense(problem) returns"
+    instance("gears", gears, GearModel, remedy)
 
 
 def check_frictions(frictions: Sequence[float]) -> None:
     """Raises InputError unless they are different numbers from 0 to 1."""
+    numbers("frictions", frictions)
     for friction in frictions:
         number("friction", friction, "a number from 0 to 1", "dry steel has up to 0.3", lambda μ: 0.0 <= μ <= 1.0)
     if len(frictions) == 0 or len(set(frictions)) < len(frictions):

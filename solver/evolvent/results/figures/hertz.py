@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from evolvent.contact.yang_estimate import LoadFactors
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.results.archive.error_bar_data import plus_minus
@@ -17,7 +18,6 @@ from evolvent.results.engagement import largest_peak
 from evolvent.results.mesh_facts import cells_across, few_cells_across
 from evolvent.results.run_data import RunData
 from evolvent.scene.checking.check_report import paper_estimate
-from evolvent.scene.checking.scene_warnings import FEWEST_CELLS
 from evolvent.scene.plain_text import signed
 from evolvent_meshes.arrays import Floats
 

@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.results.engagement import engagements, largest_peak
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.relief_kinks import peak_over_kink
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
-from evolvent.scene.checking.scene_warnings import FEWEST_CELLS, FINER, few_cells
+from evolvent.scene.checking.scene_warnings import FINER, few_cells
 from evolvent.scene.plain_text import brief, signed
 
 WORST_CELL = 0.05

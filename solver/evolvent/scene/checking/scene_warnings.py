@@ -11,12 +11,10 @@ from evolvent.gears.meshing.element_sizes import (
     sector_resolutions,
 )
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 
-FEWEST_CELLS = 2.0
-"""Fewest elements across the contact width 2b_H without a warning: with fewer, errors of peak pressures reach 15 % and
-more, with 3 they are 3 % (docs/benchmark.md)."""
 FINER = 'take mesh.level = "standard" or mesh.elements_per_contact_width = 3'
 
 

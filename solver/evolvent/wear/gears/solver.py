@@ -19,6 +19,7 @@ from evolvent.wear.gears.gear_wear import GearWear
 from evolvent.wear.gears.meshed_pair import GearMeshMotion
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.input_checks import instance, number, numbers, refuse
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 FIRST_BLOCK = 1e-2
@@ -37,6 +38,10 @@ def wearing_pair(
     law: wear coefficients of pinion and wheel. refresh: depth [mm] at which the meshes follow the wear, by default 5e-3
     modules. Raises InputError, and what `condense` raises.
     """
+    instance("problem", problem, GearProblem, "give the problem itself, its gears are condensed here")
+    instance("law", law, Archard, "write Archard(1e-10, 1e-10), of pinion and wheel")
+    if refresh is not None:
+        number("refresh", refresh, "a depth > 0 [mm]", "leave it out for 5e-3 modules", lambda depth: depth > 0.0)
     check_frictions([friction])
     check_positions(positions)
     if problem.options.deflected_flanks or problem.options.whole_engagement:
@@ -53,20 +58,26 @@ def wearing_pair(
     return GearWear(condense(problem, comm), pitch, friction, law, comm, GearMeshMotion(depth, condensed))
 
 
-def wear_study(
-    pair: GearWear, reports: Sequence[float], settings: BlockSettings | None = None
-) -> Iterator[StudyState]:
+def wear_study(pair: GearWear, reports: Sequence[float], settings: BlockSettings | None = None) -> Iterator[StudyState]:
     """The unworn state and that after each block of cycles, each certified; the last report ends the study. Collective.
 
     reports: revolutions of the pinion at which a block ends, ascending. settings: of the blocks, by default implicit
     ones, the first of a hundredth of all cycles. Raises InputError, WearStopped, VolumeLost, NotConverged,
     BalanceError.
     """
-    cycles = np.asarray(reports, dtype=np.float64)
-    ascending = cycles.ndim == 1 and len(cycles) > 0 and bool((np.diff([0.0, *cycles]) > 0.0).all())
-    if not (ascending and np.isfinite(cycles).all()):
-        raise InputError(f"wear reports: wanted ascending numbers of cycles above 0, found {list(reports)}; sort them")
-    for stage in study_states(pair, cycles.tolist(), settings or BlockSettings(FIRST_BLOCK * float(cycles[-1]))):
+    instance("pair", pair, GearWear, "give what wearing_pair(problem, law) returns")
+    numbers("reports", reports)
+    cycles = [number("reports", each, "numbers of cycles") for each in reports]
+    if not (cycles and (np.diff([0.0, *cycles]) > 0.0).all()):
+        refuse("reports", "ascending numbers of cycles above 0", list(reports), "sort them")
+    if settings is not None:
+        instance("settings", settings, BlockSettings, "write BlockSettings(first=...)")
+    return _certified(pair, cycles, settings or BlockSettings(FIRST_BLOCK * cycles[-1]))
+
+
+def _certified(pair: GearWear, reports: Sequence[float], settings: BlockSettings) -> Iterator[StudyState]:
+    """The states of a study, each certified. Raises WearStopped, VolumeLost, NotConverged, BalanceError."""
+    for stage in study_states(pair, reports, settings):
         positions = stage.state.evaluation.positions
         certify(positions)
         certify_pitch([result] for result in positions)

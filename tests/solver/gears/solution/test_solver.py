@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.gears import (
+    CoarseContactWarning,
     GearOptions,
     GearProblem,
     MeshSettings,
@@ -26,6 +28,7 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.solution import solver
 from evolvent.gears.solution.certificates import PitchImbalance, certify_pitch
 from evolvent.results.archive.archive import Archive
+from evolvent.results.mesh_facts import cells_across
 from evolvent.results.tables.figure_rows import friction_rows, position_rows
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
@@ -99,7 +102,8 @@ def test_pitch_figures_are_those_of_the_whole_gears(gears: GearModel) -> None:
 )
 def test_pressures_of_the_api_are_those_of_a_run(scene: Scene) -> None:
     """Problem: a spur and a helical pair at their friction coefficients, solved as a run does and by the API. Exact:
-    the pressures that positions.csv and summary.json print, of each position and of the whole engagement."""
+    the pressures that positions.csv and summary.json print, of each position and of the whole engagement; where tip
+    edges bear; the elements across the contact."""
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, gear_mesh)
     assert run is not None
     pitches = solve_pitches(
@@ -107,11 +111,30 @@ def test_pressures_of_the_api_are_those_of_a_run(scene: Scene) -> None:
     )
     printed = np.reshape([row.max_pressure_MPa for row in position_rows(run)], (-1, len(pitches)))
     np.testing.assert_allclose([pitch.max_pressure for pitch in pitches], printed.T, rtol=1e-9)
+    edges = np.reshape([row.tip_edge for row in position_rows(run)], (-1, len(pitches)))
+    np.testing.assert_array_equal([pitch.tip_edge for pitch in pitches], edges.T)
     for pitch, row in zip(pitches, friction_rows(run)):
         assert pitch.peak.pressure == pytest.approx(row.max_pressure_MPa, rel=1e-9)
         assert pitch.peak.at_zone_end == row.max_pressure_at_zone_end
+        own = replace(run, positions=tuple((each[run.frictions.index(row.friction)],) for each in run.positions))
+        assert pitch.cells_across == pytest.approx(cells_across(own), rel=1e-9)
         radius = run.pair.pinion.base_radius
         assert pitch.peak.roll_distance / radius == pytest.approx(np.radians(row.max_pressure_angle_deg), abs=0.05)
+
+
+def test_contact_of_few_elements_is_warned_of_once(gears: GearModel) -> None:
+    """Problem: He's pair at level quick, with 1.7 elements across the Hertz width of a single pair, at two
+    coefficients. Exact: one CoarseContactWarning, at the line of the call; none from two elements on."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        pitches = solve_pitches(gears, FRICTIONS, 2, MPI.COMM_SELF)
+    (found,) = (each for each in caught if issubclass(each.category, CoarseContactWarning))
+    assert found.filename == __file__ and max(pitch.cells_across for pitch in pitches) < 2.0
+    assert f"found {min(pitch.cells_across for pitch in pitches):.2f} (median)" in str(found.message)
+    finer = condense(changed(mesh=MeshSettings("quick", elements_per_contact_width=3.0, order=1)), MPI.COMM_SELF)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CoarseContactWarning)
+        assert solve_pitch(finer, 0.0, 2, MPI.COMM_SELF).cells_across > 2.0
 
 
 def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel) -> None:
@@ -119,6 +142,24 @@ def test_single_position_without_friction_is_that_of_the_pitch(gears: GearModel)
     pitch = solve_pitch(gears, 0.0, POSITIONS, MPI.COMM_SELF)
     alone = solve_single_position(gears, float(pitch.angles[2]))
     assert alone.transmission_error == pytest.approx(pitch.transmission_error[2], rel=1e-9)
+
+
+def test_angles_of_single_positions_are_those_whose_teeth_are_searched(gears: GearModel) -> None:
+    """Exact: a position repeats after a pitch, so at both ends of the allowed angles, which are further apart than a
+    pitch, the transmission error is that of a pitch later or earlier; beyond them all teeth that touch, and their
+    neighbours, are not searched. 5.0 is taken for degrees."""
+    first, last = solver.searched_angles(gears)
+    pitch = 2.0 * np.pi / gears.pair.pinion.z
+    assert first < 0.0 and last > pitch
+    for angle, there in ((first + 1e-9, first + 1e-9 + pitch), (last - 1e-9, last - 1e-9 - pitch)):
+        errors = [solve_single_position(gears, each).transmission_error for each in (angle, there)]
+        assert errors[0] == pytest.approx(errors[1], rel=1e-6)
+    for angle, beyond in ((first, first - 1e-6), (last, last + 1e-6)):
+        touching = gears.pair.teeth_in_contact(beyond)
+        assert {touching[0] - 1, touching[-1] + 1} - set(gears.teeth), angle
+    for wrong in (5.0, first - 1e-6, last + 1e-6):
+        with pytest.raises(InputError, match=r"wanted a rotation \[rad\] within one engagement, .* is it in degrees\?"):
+            solve_single_position(gears, wrong, 0.1)
 
 
 def test_pitch_out_of_balance_is_solved_on_deflected_flanks(gears: GearModel, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -180,5 +221,5 @@ def test_wrong_arguments_are_refused(gears: GearModel) -> None:
         wearing_pair(deflected, Archard(1e-10, 1e-10), comm=MPI.COMM_SELF)
     wearing = wearing_pair(he_problem(), Archard(1e-10, 1e-10), positions=2, comm=MPI.COMM_SELF)
     for reports in ((), (0.0,), (2.0, 1.0), (np.inf,)):
-        with pytest.raises(InputError, match="wear reports"):
+        with pytest.raises(InputError, match="reports: wanted"):
             next(wear_study(wearing, reports))

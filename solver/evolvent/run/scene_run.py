@@ -27,6 +27,9 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, switched_off, wanted_output
 
+NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
+"""What is said of a resumed run that was finished."""
+
 
 def run_scene(
     scene: Scene,
@@ -87,6 +90,9 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> No
     if wanted_output(scene).deformation:
         run.progress.stage(DEFORMATION)
         deformation = deformation_of(scene, run.archive(scene), run.comm)
+    if not record.timings.total and companion is None and deformation is None:
+        run.log.info("%s", NOTHING_LEFT)
+        run.progress.note(NOTHING_LEFT)
     run.progress.stage(OUTPUT)
     memory = run.memory_MB()
     run.on_first(lambda: write_output(run, scene, record, ExtraResults(companion, deformation), memory))

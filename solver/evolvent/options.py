@@ -13,6 +13,8 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
+EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh"}
+"""What --out takes, as in the help -> an example."""
 
 
 def usage_message(error: Any) -> str:
@@ -34,7 +36,9 @@ def _usage_problem(error: Any) -> InputProblem:
     if (parameter := getattr(error, "param", None)) is not None:
         help_text = (parameter.help or "a value").split(";")[0].rstrip(".")
         allowed = help_text[0].lower() + help_text[1:]
-        return InputProblem(_name(parameter), text or NOTHING, allowed, f"give one; {remedy}")
+        name = _name(parameter)
+        give = f"write {name} {EXAMPLES[parameter.metavar]}" if name == "--out" else "give one"
+        return InputProblem(name, text or NOTHING, allowed, f"{give}; {remedy}")
     if match := re.search(r"No such command [\"'](.*?)[\"']", text):
         names = list(context.command.commands) if context is not None else []
         return InputProblem("command", shown(match[1]), ", ".join(names), _meant(match[1], names) or remedy)

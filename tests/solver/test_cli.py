@@ -73,6 +73,13 @@ def test_bad_scene_is_status_2_and_writes_nothing(
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_each_of_several_errors_names_the_program(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two errors: two lines, both with the program's name."""
+    assert main(["check", str(scene), "--set", "load.torque_Nm=0", "--set", "mesh.order=3"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and all(line.startswith(f"evolvent: {scene}: ") for line in lines)
+
+
 @pytest.mark.parametrize("command", ["check", "mesh"])
 def test_other_commands_validate_too(command: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """check and mesh: status 2 and the same message."""

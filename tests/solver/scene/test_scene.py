@@ -64,6 +64,25 @@ def test_independent_errors_are_reported_together() -> None:
     assert all(line.startswith("mine.toml: ") for line in str(caught.value).splitlines())
 
 
+def test_misspelled_section_is_not_missing_too() -> None:
+    """[laod] for [load], and a key that is near to a required one: one problem, the spelling."""
+    section, name = YANG.replace("[load]", "[laod]"), YANG.replace("torque_Nm", "torque_Nmm")
+    for text, key in (section, "laod"), (name, "load.torque_Nmm"):
+        with pytest.raises(SceneError) as caught:
+            scene_from_text(text)
+        assert [problem.key for problem in caught.value.problems] == [key]
+
+
+def test_lower_of_two_torque_limits_is_reported_at_once() -> None:
+    """A torque beyond what contact and teeth allow: the limit in the message is allowed, twice of it is not."""
+    with pytest.raises(SceneError, match=r"allowed: up to \d+ N·m") as caught:
+        scene_from_text(YANG, ["load.torque_Nm=200000"])
+    limit = float(caught.value.problems[0].allowed.split()[2])
+    assert scene_from_text(YANG, [f"load.torque_Nm={limit}"]).load.torque_Nm == limit
+    with pytest.raises(SceneError, match=f"up to {limit:g} N·m"):
+        scene_from_text(YANG, [f"load.torque_Nm={1.1 * limit}"])
+
+
 def test_scene_error_is_pickled_whole() -> None:
     """SceneError is pickled whole: under mpirun rank 0 reads the scene and sends what it found."""
     with pytest.raises(SceneError) as caught:

@@ -75,6 +75,6 @@ IMPOSSIBLE_GEARS: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so",
         "lower them",
     ),
-    "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (Hertz", "lower the torque"),
+    "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (teeth bend", "lower the"),
 }
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

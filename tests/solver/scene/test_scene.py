@@ -15,7 +15,7 @@ from evolvent.scene.schema.errors import keys_of
 from evolvent.scene.skips import skipped
 from tests.support.checkout import ROOT
 from tests.support.malformed.scenes import MALFORMED
-from tests.support.scene_texts import DEMOS, HE, YANG, without
+from tests.support.scene_texts import DEMOS, FIRST, HE, YANG, without
 
 
 @pytest.mark.parametrize("case", MALFORMED)
@@ -81,6 +81,15 @@ def test_lower_of_two_torque_limits_is_reported_at_once() -> None:
     assert scene_from_text(YANG, [f"load.torque_Nm={limit}"]).load.torque_Nm == limit
     with pytest.raises(SceneError, match=f"up to {limit:g} N·m"):
         scene_from_text(YANG, [f"load.torque_Nm={1.1 * limit}"])
+
+
+def test_tip_that_limits_a_relief_says_where_it_comes_from() -> None:
+    """A relief from beyond the tip, whose diameter is derived: the message has it; a given one it leaves alone."""
+    start, derived = "pinion.tip_relief_start_diameter_mm=70", "the tip diameter 67.12 follows from centre distance"
+    for more, told in ([], True), (["pinion.tip_diameter_mm=67"], False):
+        with pytest.raises(SceneError, match="to below 67") as caught:
+            scene_from_text(FIRST, [start, *more])
+        assert (derived in caught.value.problems[0].allowed) == told
 
 
 def test_scene_error_is_pickled_whole() -> None:

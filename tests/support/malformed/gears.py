@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.support.scene_texts import HE, YANG, without
+from tests.support.scene_texts import FIRST, HE, YANG, without
 
 SHALLOW = HE.replace("dedendum_coefficient = 1.25", "dedendum_coefficient = 0.95")
 
@@ -45,6 +45,9 @@ IMPOSSIBLE_GEARS: dict[str, tuple[str, list[str], str, str, str]] = {
         "pair.centre_distance_mm",
         "92",
         "raise the centre",
+    ),
+    "centre distance too small for the relief": (
+        FIRST, ["pair.centre_distance_mm=120"], "pair.centre_distance_mm", "120", "raise the centre distance",
     ),
     "bases overlap": (YANG, ["pair.centre_distance_mm=80"], "pair.centre_distance_mm", "80", "raise the centre"),
     "interference at the root": (YANG, ["wheel.tip_diameter_mm=150"], "wheel.tip_diameter_mm", "150", "lower the tip"),

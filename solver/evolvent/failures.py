@@ -32,6 +32,10 @@ class Exit(IntEnum):
     NOT_CONVERGED = 3
 
 
+STATUSES = "Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else."
+"""The last line of a help."""
+
+
 @contextlib.contextmanager
 def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
     """Context that turns exceptions and signals into one message on stderr and an exit status.

@@ -10,6 +10,7 @@ from typing import Annotated, Any, cast
 import typer
 
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
+from evolvent.scene.schema.output import SKIP_NAMES
 
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
@@ -96,9 +97,24 @@ Overrides = Annotated[
 ]
 NoSkip = Annotated[
     list[str] | None,
-    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
+    typer.Option(
+        "--no-skip",
+        metavar="NAME",
+        help=f"Compute the long way what is skipped; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
+    ),
 ]
 LevelOption = Annotated[
-    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
+    str | None,
+    typer.Option(
+        "--level",
+        metavar="quick|standard|fine",
+        help="Short for --set mesh.level=...; by default the scene's, which is standard where it names none.",
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Go on where the machine seems to have too little memory.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Continue a run that was stopped; with the same scene and --set.")
+]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
+]

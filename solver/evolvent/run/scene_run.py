@@ -42,9 +42,9 @@ def run_scene(
     """Computes a scene and writes everything to `out`. Collective; the results do not depend on the number of ranks.
 
     resume: continue after the positions, or the blocks of wear, in `out`; where there are none, begin with a warning.
-    overwrite: once the gears are condensed, remove the files of an earlier run that nobody has changed since. With
-    neither, `out` must not hold results. quiet: no progress is displayed. source: the scene's file, which is never
-    overwritten.
+    overwrite: once the gears are condensed, with wear once the unworn pair is solved, remove the files of an earlier
+    run that nobody has changed since. With neither, `out` must not hold results. quiet: no progress is displayed.
+    source: the scene's file, which is never overwritten.
 
     A pitch whose energy does not balance is solved again on deflected flanks. Unconverged positions are never written.
     Raises FolderError before any file is touched; NotConverged, SearchError, BalanceError, MeshError, ArchiveError,

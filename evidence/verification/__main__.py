@@ -1,11 +1,12 @@
-"""`python -m evidence.verification [NAME ...] [--out docs]`: solves the verification problems.
+"""`python -m evidence.verification [NAME ...] [--out DIR]`: solves the verification problems.
 
-Without names: all of them, into OUT/verification.md with their figures. With names (hertz_line, torque, ...): only
-these problems, whose claims are printed and whose figures are written.
+Without names: all of them, into DIR/verification.md with their figures. With names (hertz_line, torque, ...): only
+these problems, whose claims are printed and whose figures are written. DIR is docs, the committed pages, by default.
 """
 
 from __future__ import annotations
 
+import difflib
 from pathlib import Path
 from typing import Annotated
 
@@ -16,12 +17,30 @@ from evidence.verification.page import PICTURES, draw, write_page
 from evidence.verification.problems import PROBLEMS
 from evolvent.fem.backend import dolfinx_compat
 
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="NAME", help=f"Problems to solve, by default all: {', '.join(PROBLEMS)}.", show_default=False
+    ),
+]
+Out = Annotated[
+    Path,
+    typer.Option(
+        metavar="DIR",
+        help="Where verification.md goes, which is written without names only, and the figures. The default is the "
+        "folder of the committed pages: take another one, such as out/verification, to leave them alone.",
+    ),
+]
 
-def main(names: Annotated[list[str] | None, typer.Argument()] = None, out: Path = Path("docs")) -> None:
-    """Exits with 1 where a claim is not as expected, with 2 for the name of no problem."""
+
+def main(names: Names = None, out: Out = Path("docs")) -> None:
+    """Solve the verification problems and hold them against what is known.
+
+    Exit status: 0 all claims as expected, 1 one is not, 2 the name of no problem.
+    """
     dolfinx_compat.silence_logs()
-    if unknown := set(names or ()) - set(PROBLEMS):
-        typer.echo(f"wanted names of problems ({', '.join(PROBLEMS)}), found {', '.join(sorted(unknown))}", err=True)
+    if unknown := [name for name in names or () if name not in PROBLEMS]:
+        typer.echo(unknown_names(unknown), err=True)
         raise typer.Exit(2)
     problems = [PROBLEMS[name]() for name in names or PROBLEMS]
     where = str(_shown(problems, out) if names else write_page(problems, out))
@@ -31,6 +50,13 @@ def main(names: Annotated[list[str] | None, typer.Argument()] = None, out: Path 
     if wrong:
         typer.echo("\n".join(wrong), err=True)
         raise typer.Exit(1)
+
+
+def unknown_names(unknown: list[str]) -> str:
+    """The message on names of no problem."""
+    near = [match for name in unknown for match in difflib.get_close_matches(name, PROBLEMS, n=1)]
+    meant = f"; did you mean {' '.join(near)}?" if near else ""
+    return f"wanted names of problems ({', '.join(PROBLEMS)}), found {', '.join(unknown)}{meant}"
 
 
 def _shown(problems: list[Verification], out: Path) -> Path:

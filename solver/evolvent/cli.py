@@ -17,13 +17,15 @@ import typer
 from mpi4py import MPI
 
 from evolvent import __version__
-from evolvent.failures import Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
+from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
     Force,
     LevelOption,
     NoSkip,
     Overrides,
+    Overwrite,
+    Resume,
     SceneFile,
     UsageError,
     given_number,
@@ -45,18 +47,17 @@ SHARED = "run"
 """The command that all ranks take part in."""
 PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 """Environment variable that evolvent.fem.backend.petsc reads."""
-
 app = typer.Typer(
     name="evolvent",
     help="Frictional contact of involute gear pairs by finite elements, from a scene file to pictures.",
-    epilog="""\b
+    epilog=f"""\b
 Examples:
   evolvent check demos/yang2022.toml
   evolvent run demos/yang2022.toml --out out/yang2022 --level quick
   mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022
   evolvent plot out/yang2022
 
-Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else.""",
+{STATUSES}""",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # examples keep their lines
@@ -81,11 +82,13 @@ def evolvent(version: Version = False) -> None: ...
 
 
 @app.command(
-    epilog="""\b
+    epilog=f"""\b
 Examples:
   evolvent run demos/yang2022.toml --out out/yang2022 --level quick
   evolvent run demos/yang2022.toml --out out/t300 --set load.torque_Nm=300 --set contact.friction=[0,0.1]
-  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume"""
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume
+
+{STATUSES}"""
 )
 def run(
     scene: SceneFile,
@@ -96,8 +99,8 @@ def run(
     settings: Overrides = None,
     no_skip: NoSkip = None,
     force: Force = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue a run that was stopped.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Remove an earlier run from DIR first.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")] = False,
     petsc: Annotated[
         str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')

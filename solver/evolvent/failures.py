@@ -32,6 +32,10 @@ class Exit(IntEnum):
     NOT_CONVERGED = 3
 
 
+STATUSES = "Exit status: 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else."
+"""The last line of a help."""
+
+
 @contextlib.contextmanager
 def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
     """Context that turns exceptions and signals into one message on stderr and an exit status.
@@ -45,7 +49,7 @@ def reported(parallel: bool = False, advice: str = "") -> Iterator[None]:
     except (typer.Exit, typer.Abort, typer.BadParameter):
         raise
     except SceneError as error:  # raised on all ranks: they end by themselves
-        raise leave(str(error), Exit.BAD_INPUT) from error
+        raise leave(str(error), Exit.BAD_INPUT, problems=True) from error
     except KeyboardInterrupt as error:  # `stoppable` has printed the message
         if parallel:
             _end_all()
@@ -63,10 +67,11 @@ def _traceback(error: Exception) -> str:
     return "\n".join(["".join(traceback.format_tb(error.__traceback__)).rstrip(), *getattr(error, "__notes__", ())])
 
 
-def leave(message: str, status: Exit) -> typer.Exit:
-    """Prints the message on stderr; returns what to raise for the exit status."""
+def leave(message: str, status: Exit, problems: bool = False) -> typer.Exit:
+    """Prints the message on stderr; returns what to raise for the exit status. problems: each line is one by itself."""
     message = message.encode(errors="backslashreplace").decode()  # names of files may hold bytes that are not UTF-8
-    typer.echo(f"evolvent: {message}" if "\n" not in message else message, err=True)
+    named = problems or "\n" not in message
+    typer.echo("\n".join(f"evolvent: {line}" for line in message.split("\n")) if named else message, err=True)
     return typer.Exit(int(status))
 
 

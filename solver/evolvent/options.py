@@ -10,9 +10,12 @@ from typing import Annotated, Any, cast
 import typer
 
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
+from evolvent.scene.schema.output import SKIP_NAMES
 
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
+EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh"}
+"""What --out takes, as in the help -> an example."""
 
 
 def usage_message(error: Any) -> str:
@@ -34,7 +37,9 @@ def _usage_problem(error: Any) -> InputProblem:
     if (parameter := getattr(error, "param", None)) is not None:
         help_text = (parameter.help or "a value").split(";")[0].rstrip(".")
         allowed = help_text[0].lower() + help_text[1:]
-        return InputProblem(_name(parameter), text or NOTHING, allowed, f"give one; {remedy}")
+        name = _name(parameter)
+        give = f"write {name} {EXAMPLES[parameter.metavar]}" if name == "--out" else "give one"
+        return InputProblem(name, text or NOTHING, allowed, f"{give}; {remedy}")
     if match := re.search(r"No such command [\"'](.*?)[\"']", text):
         names = list(context.command.commands) if context is not None else []
         return InputProblem("command", shown(match[1]), ", ".join(names), _meant(match[1], names) or remedy)
@@ -92,9 +97,24 @@ Overrides = Annotated[
 ]
 NoSkip = Annotated[
     list[str] | None,
-    typer.Option("--no-skip", metavar="NAME", help="Compute the long way what is skipped; may be repeated."),
+    typer.Option(
+        "--no-skip",
+        metavar="NAME",
+        help=f"Compute the long way what is skipped; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
+    ),
 ]
 LevelOption = Annotated[
-    str | None, typer.Option("--level", metavar="quick|standard|fine", help="Short for --set mesh.level=...")
+    str | None,
+    typer.Option(
+        "--level",
+        metavar="quick|standard|fine",
+        help="Short for --set mesh.level=...; by default the scene's, which is standard where it names none.",
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Go on where the machine seems to have too little memory.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Continue a run that was stopped; with the same scene and --set.")
+]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
+]

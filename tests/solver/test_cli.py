@@ -13,6 +13,7 @@ import pytest
 
 import evolvent
 from evolvent.cli import main
+from evolvent.scene.schema.output import SKIP_NAMES
 from evolvent_meshes.mesh.gmsh_io import read_msh
 from evolvent_meshes.mesh.quality import scaled_jacobians
 from tests.support.checkout import PYTHONPATH, ROOT
@@ -73,6 +74,13 @@ def test_bad_scene_is_status_2_and_writes_nothing(
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_each_of_several_errors_names_the_program(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two errors: two lines, both with the program's name."""
+    assert main(["check", str(scene), "--set", "load.torque_Nm=0", "--set", "mesh.order=3"]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and all(line.startswith(f"evolvent: {scene}: ") for line in lines)
+
+
 @pytest.mark.parametrize("command", ["check", "mesh"])
 def test_other_commands_validate_too(command: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """check and mesh: status 2 and the same message."""
@@ -109,6 +117,14 @@ def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ([], *([name] for name in COMMANDS)):
         assert main([*command, "--help"]) == 0
         assert f"\n    evolvent {command[0] if command else 'check'}" in capsys.readouterr().out
+
+
+def test_help_of_run_names_defaults_and_statuses(capsys: pytest.CaptureFixture[str]) -> None:
+    """Default level, every name of a skip, what --resume needs, when --overwrite removes, the exit statuses."""
+    assert main(["run", "--help"]) == 0
+    text = " ".join(capsys.readouterr().out.split()).replace("- ", "-")  # lines may end at a hyphen
+    parts = "which is standard", "the same scene and --set", "once the gears are condensed", "Exit status: 0 done,"
+    assert all(part in text for part in (*parts, *SKIP_NAMES))
 
 
 def test_check_prints_gear_data_and_cost(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:

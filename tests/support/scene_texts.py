@@ -11,6 +11,8 @@ YANG = (DEMOS / "yang2022.toml").read_text(encoding="utf-8")
 """A helical pair."""
 HE = (DEMOS / "he2022.toml").read_text(encoding="utf-8")
 """A spur pair."""
+FIRST = (DEMOS / "first_pair.toml").read_text(encoding="utf-8")
+"""A helical pair with tip relief, without a given centre distance."""
 WEAR = ["wear.cycles=1e6", "wear.pinion_mm2_per_N=1e-10"]
 """Overrides with which the flanks of a scene wear."""
 

@@ -49,6 +49,12 @@ class Progress:
         self._bars.add_task(what, total=total, completed=done)
         self._say(what if total is None else f"{what}: {done} of {total}")
 
+    def note(self, sentence: str) -> None:
+        """Displays a sentence beside the stages."""
+        self._say(sentence)
+        if self._plain is None and not self._bars.disable:
+            self._bars.console.print(Text(sentence))
+
     def advance(self, more: bool = False) -> None:
         """One more item is done. more: another one follows, even beyond `total`; the stage is then not complete."""
         task = self._task

@@ -27,6 +27,9 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, switched_off, wanted_output
 
+NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
+"""What is said of a resumed run that was finished."""
+
 
 def run_scene(
     scene: Scene,
@@ -39,9 +42,9 @@ def run_scene(
     """Computes a scene and writes everything to `out`. Collective; the results do not depend on the number of ranks.
 
     resume: continue after the positions, or the blocks of wear, in `out`; where there are none, begin with a warning.
-    overwrite: once the gears are condensed, remove the files of an earlier run that nobody has changed since. With
-    neither, `out` must not hold results. quiet: no progress is displayed. source: the scene's file, which is never
-    overwritten.
+    overwrite: once the gears are condensed, with wear once the unworn pair is solved, remove the files of an earlier
+    run that nobody has changed since. With neither, `out` must not hold results. quiet: no progress is displayed.
+    source: the scene's file, which is never overwritten.
 
     A pitch whose energy does not balance is solved again on deflected flanks. Unconverged positions are never written.
     Raises FolderError before any file is touched; NotConverged, SearchError, BalanceError, MeshError, ArchiveError,
@@ -87,6 +90,9 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> No
     if wanted_output(scene).deformation:
         run.progress.stage(DEFORMATION)
         deformation = deformation_of(scene, run.archive(scene), run.comm)
+    if not record.timings.total and companion is None and deformation is None:
+        run.log.info("%s", NOTHING_LEFT)
+        run.progress.note(NOTHING_LEFT)
     run.progress.stage(OUTPUT)
     memory = run.memory_MB()
     run.on_first(lambda: write_output(run, scene, record, ExtraResults(companion, deformation), memory))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from scipy.optimize import brentq
 
@@ -54,16 +55,32 @@ class ImpossibleGears(InputError):
 
 
 def make_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> GearPair:
-    """The gear pair of a scene. Raises ImpossibleGears."""
+    """The gear pair of a scene. Raises ImpossibleGears; of gears that jam, not what that does to their tip relief."""
+    try:
+        return _checked_pair(pair, pinion, wheel)
+    except ImpossibleGears as error:
+        if ".tip_relief_start" in error.problem.key and pair.centre_distance_mm is not None:
+            _checked_pair(pair, *(gear.model_copy(update={"tip_relief_um": 0.0}) for gear in (pinion, wheel)))
+        raise
+
+
+def _checked_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> GearPair:
+    """The gear pair of a scene. Raises ImpossibleGears for the first reason that is found."""
     sections = {"pinion": pinion, "wheel": wheel}
     distance = centre_distance(pair, pinion, wheel)
     hand = HANDS[pinion.hand or "right"]
+    alteration = tip_alteration_of(pair, pinion, wheel, distance)
     gears: dict[str, GearParameters] = {}
     for name, gear, turn in (("pinion", pinion, hand), ("wheel", wheel, -hand)):
         try:
-            gears[name] = make_gear(pair, gear, turn, tip_alteration_of(pair, pinion, wheel, distance))
+            gears[name] = make_gear(pair, gear, turn, alteration)
         except GeometryError as error:
-            raise ImpossibleGears(_in_scene_keys(error, f"{name}.", pair, sections)) from error
+            problem = _in_scene_keys(error, f"{name}.", pair, sections)
+            if error.key == "tip_relief_start_diameter" and gear.tip_diameter_mm is None:
+                tip = tip_diameter(pair, gear, alteration)
+                why = f"(the tip diameter {tip:.2f} follows from centre distance and profile shift)"
+                problem = replace(problem, allowed=f"{problem.allowed} {why}")
+            raise ImpossibleGears(problem) from error
     try:
         return GearPair(gears["pinion"], gears["wheel"], distance, pair.misalignment_um)
     except GeometryError as error:
@@ -77,9 +94,8 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
     """
     module = pair.normal_module_mm
     reference = _reference_diameter(pair, gear)
-    addendum = gear.profile_shift + _or(gear.addendum_coefficient, ADDENDUM) + alteration
     dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - gear.profile_shift
-    tip = _or(gear.tip_diameter_mm, reference + 2 * module * addendum)
+    tip = tip_diameter(pair, gear, alteration)
     root = _or(gear.root_diameter_mm, reference - 2 * module * dedendum)
     return GearParameters(
         z=gear.teeth,
@@ -100,6 +116,12 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
             lead_crowning_um=gear.lead_crowning_um,
         ),
     )
+
+
+def tip_diameter(pair: PairSection, gear: GearSection, alteration: float) -> float:
+    """Tip diameter d_a [mm]. alteration: tip alteration coefficient k ≤ 0."""
+    addendum = gear.profile_shift + _or(gear.addendum_coefficient, ADDENDUM) + alteration
+    return _or(gear.tip_diameter_mm, _reference_diameter(pair, gear) + 2 * pair.normal_module_mm * addendum)
 
 
 def centre_distance(pair: PairSection, pinion: GearSection, wheel: GearSection) -> float:

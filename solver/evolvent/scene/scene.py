@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError, model_validator
 from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
-from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload
+from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload, rounded_down
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
@@ -87,7 +87,7 @@ class Scene(SceneSection):
         if excess := overload(self.hertz_estimate(), self.materials()):
             found = f"{shown(self.load.torque_Nm)} ({excess.why})"
             most = self.load.torque_Nm * excess.allowed_share
-            allowed = f"up to {most:.3g} N·m for these gears, as strains must stay small"
+            allowed = f"up to {rounded_down(most)} N·m for these gears, as strains must stay small"
             remedy = "lower the torque, or check that it is in N·m and material.E_GPa in GPa"
             raise validation_error(InputProblem("load.torque_Nm", found, allowed, remedy))
         return self

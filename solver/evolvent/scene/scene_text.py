@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from evolvent.scene.schema.errors import InputProblem, SceneError, dotted_part, shown
+from evolvent.scene.schema.errors import LONGEST_TEXT, InputProblem, SceneError, dotted_part, shown
 from evolvent_meshes.text_files import UnreadableText, read_text
 
 EXAMPLE = "demos/yang2022.toml is a complete example"
@@ -38,7 +38,7 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
     try:
         values = tomllib.loads(text)
     except UNDECODABLE as error:
-        raise SceneError([_no_toml(error)]) from error
+        raise SceneError([_no_toml(text, error)]) from error
     for section in (values.get("pinion"), values.get("wheel")):
         if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
             section["flank_csv"] = str(folder / section["flank_csv"]) if section["flank_csv"] else ""
@@ -48,14 +48,33 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
     return values
 
 
-def _no_toml(error: Exception) -> InputProblem:
-    """Why a text cannot be parsed as TOML."""
-    remedy = f'mend that line; texts stand in "quotes", every key only once; {EXAMPLE}'
+def _no_toml(text: str, error: Exception) -> InputProblem:
+    """Why a text cannot be parsed as TOML, with the line where that was noticed."""
+    line = _named_line(text, str(error))
+    hint = number_hint(line.partition("=")[2])
+    remedy = f'mend that line{hint and ": "}{hint}; texts stand in "quotes", every key only once; {EXAMPLE}'
     if isinstance(error, tomllib.TOMLDecodeError):
-        return InputProblem("scene file", f"no TOML: {error}", "valid TOML 1.0", remedy)
+        found = f"no TOML: {error}{line and ': '}{line}"
+        return InputProblem("scene file", found, "valid TOML 1.0", remedy)
     if isinstance(error, RecursionError):
         return InputProblem("scene file", "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
     return InputProblem("scene file", "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
+
+
+def _named_line(text: str, message: str) -> str:
+    """The line that a message of tomllib names, shortened and printable; empty where it names none."""
+    number = re.search(r"\(at line (\d+), ", message)
+    lines = text.replace("\r\n", "\n").split("\n")
+    if number is None or int(number[1]) > len(lines):
+        return ""
+    line = lines[int(number[1]) - 1].strip()
+    return "".join(c if c.isprintable() else "?" for c in line[:LONGEST_TEXT]) + "..." * (len(line) > LONGEST_TEXT)
+
+
+def number_hint(text: str) -> str:
+    """How a number is written, where a text begins with one that has a comma or a unit; else empty."""
+    wrong = re.match(r"\s*[-+]?\d[\d_.]*([eE][-+]?\d+)?(,\d|\s*[^\W\d_]|\s*[°%])", text)
+    return "a decimal point, not a comma; no unit after a number" if wrong else ""
 
 
 def _require_shallow(values: dict[str, Any]) -> None:
@@ -98,5 +117,7 @@ def _parsed(name: str, text: str) -> Any:
         return parsed["value"]
     if re.fullmatch(r"[A-Za-z][\w -]*|[^\"'\[]+\.csv", text):  # shells take the quotes away: --set mesh.level=quick
         return text
-    remedy = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
-    raise SceneError([InputProblem(name, shown(text) if text else "nothing after the =", "one TOML value", remedy)])
+    hint = number_hint(text)
+    example = f"""write for example --set '{name}=1.5' or --set '{name}=[0.1, 0.2]', in quotes for the shell"""
+    found, remedy = shown(text) if text else "nothing after the =", f"{hint}{hint and '; '}{example}"
+    raise SceneError([InputProblem(name, found, "one TOML value", remedy)])

@@ -11,8 +11,10 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+import typer
 
 from evidence.claims import Claim, Reference, Verification
+from evidence.verification.__main__ import main
 from evidence.verification.page import write_page
 from evidence.verification.problems import PROBLEMS
 from evolvent.results.drawing.style import sheet
@@ -51,6 +53,17 @@ def test_at_most_half_of_the_claims_are_regressions() -> None:
 def test_problems_have_names_of_their_own() -> None:
     """The name of a problem is that of its module and of its figure."""
     assert [solved(name).name for name in PROBLEMS] == list(PROBLEMS)
+
+
+def test_help_and_wrong_names_name_the_problems(capsys: pytest.CaptureFixture[str]) -> None:
+    """--help lists every problem and says whose folder docs is; a misspelled name is answered with the near one."""
+    app = typer.Typer()
+    app.command()(main)
+    assert app(["--help"], standalone_mode=False) == 0
+    text = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert all(name in text for name in PROBLEMS) and "committed pages" in text
+    assert app(["herz_line"], standalone_mode=False) == 2
+    assert "did you mean hertz_line?" in capsys.readouterr().err
 
 
 def test_page_has_claims_misses_and_figure(tmp_path: Path) -> None:

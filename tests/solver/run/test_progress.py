@@ -10,8 +10,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from rich.console import Console
 
+from evolvent.cli import main
 from evolvent.run.output import whereabouts
 from evolvent.run.progress import Progress
 from tests.support.checkout import ROOT
@@ -73,14 +75,40 @@ def test_progress_without_a_terminal_prints_lines() -> None:
     assert re.fullmatch(r"[ -~\n]*", stream.getvalue())
 
 
+def test_note_is_a_line_beside_the_stages() -> None:
+    """On a terminal or not: once, the stages stay."""
+    for is_terminal in (True, False):
+        stream = io.StringIO()
+        with Progress(console=Console(file=stream, force_terminal=is_terminal, width=100)) as progress:
+            progress.stage("positions", 2)
+            progress.note("nothing [is] left")
+        assert stream.getvalue().count("nothing [is] left") == 1 and "positions" in stream.getvalue()
+
+
 def test_hidden_progress_prints_nothing() -> None:
     """--quiet and ranks other than 0, on a terminal or not."""
     for is_terminal in (True, False):
         stream = io.StringIO()
         with Progress(hidden=True, console=Console(file=stream, force_terminal=is_terminal)) as progress:
             progress.stage("positions", 2)
+            progress.note("nothing is left")
             progress.advance()
         assert stream.getvalue() == ""
+
+
+def test_resumed_finished_run_says_that_nothing_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """--resume of a finished run: a line on stderr and in the log; none where its error bars are still computed."""
+    said = "complete: nothing to compute, tables and pictures are written again"
+    off = "sweep.positions=2", "output.pictures=false", "output.animation=false", "output.fields=false"
+    command = ["run", "demos/he2022.toml", "--out", str(tmp_path), "--level", "quick"]
+    command += [word for setting in off for word in ("--set", setting)]
+    assert main([*command, "--set", "output.error_bars=false"]) == 0
+    for expected in (False, True):  # the first one computes error bars
+        before = (tmp_path / "run.log").read_text(encoding="utf-8")
+        capsys.readouterr()
+        assert main([*command, "--resume"]) == 0
+        log = (tmp_path / "run.log").read_text(encoding="utf-8")
+        assert log.removeprefix(before).count(said) == capsys.readouterr().err.count(said) == expected
 
 
 def test_run_in_a_pipe_prints_its_stages(run_script: Run, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from evolvent.scene.schema.errors import keys_of
 from evolvent.scene.skips import skipped
 from tests.support.checkout import ROOT
 from tests.support.malformed.scenes import MALFORMED
-from tests.support.scene_texts import DEMOS, HE, YANG, without
+from tests.support.scene_texts import DEMOS, FIRST, HE, YANG, without
 
 
 @pytest.mark.parametrize("case", MALFORMED)
@@ -62,6 +62,34 @@ def test_independent_errors_are_reported_together() -> None:
     keys = [problem.key for problem in caught.value.problems]
     assert sorted(keys) == ["load.torque_Nm", "mesh.order", "pinion.teeth"]
     assert all(line.startswith("mine.toml: ") for line in str(caught.value).splitlines())
+
+
+def test_misspelled_section_is_not_missing_too() -> None:
+    """[laod] for [load], and a key that is near to a required one: one problem, the spelling."""
+    section, name = YANG.replace("[load]", "[laod]"), YANG.replace("torque_Nm", "torque_Nmm")
+    for text, key in (section, "laod"), (name, "load.torque_Nmm"):
+        with pytest.raises(SceneError) as caught:
+            scene_from_text(text)
+        assert [problem.key for problem in caught.value.problems] == [key]
+
+
+def test_lower_of_two_torque_limits_is_reported_at_once() -> None:
+    """A torque beyond what contact and teeth allow: the limit in the message is allowed, twice of it is not."""
+    with pytest.raises(SceneError, match=r"allowed: up to \d+ N·m") as caught:
+        scene_from_text(YANG, ["load.torque_Nm=200000"])
+    limit = float(caught.value.problems[0].allowed.split()[2])
+    assert scene_from_text(YANG, [f"load.torque_Nm={limit}"]).load.torque_Nm == limit
+    with pytest.raises(SceneError, match=f"up to {limit:g} N·m"):
+        scene_from_text(YANG, [f"load.torque_Nm={1.1 * limit}"])
+
+
+def test_tip_that_limits_a_relief_says_where_it_comes_from() -> None:
+    """A relief from beyond the tip, whose diameter is derived: the message has it; a given one it leaves alone."""
+    start, derived = "pinion.tip_relief_start_diameter_mm=70", "the tip diameter 67.12 follows from centre distance"
+    for more, told in ([], True), (["pinion.tip_diameter_mm=67"], False):
+        with pytest.raises(SceneError, match="to below 67") as caught:
+            scene_from_text(FIRST, [start, *more])
+        assert (derived in caught.value.problems[0].allowed) == told
 
 
 def test_scene_error_is_pickled_whole() -> None:

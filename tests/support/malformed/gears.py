@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.support.scene_texts import HE, YANG, without
+from tests.support.scene_texts import FIRST, HE, YANG, without
 
 SHALLOW = HE.replace("dedendum_coefficient = 1.25", "dedendum_coefficient = 0.95")
 
@@ -46,6 +46,9 @@ IMPOSSIBLE_GEARS: dict[str, tuple[str, list[str], str, str, str]] = {
         "92",
         "raise the centre",
     ),
+    "centre distance too small for the relief": (
+        FIRST, ["pair.centre_distance_mm=120"], "pair.centre_distance_mm", "120", "raise the centre distance",
+    ),
     "bases overlap": (YANG, ["pair.centre_distance_mm=80"], "pair.centre_distance_mm", "80", "raise the centre"),
     "interference at the root": (YANG, ["wheel.tip_diameter_mm=150"], "wheel.tip_diameter_mm", "150", "lower the tip"),
     "tip in the root": (SHALLOW, [], "wheel.tip_diameter_mm", "156", "deepen the root"),
@@ -75,6 +78,6 @@ IMPOSSIBLE_GEARS: dict[str, tuple[str, list[str], str, str, str]] = {
         YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so",
         "lower them",
     ),
-    "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (Hertz", "lower the torque"),
+    "load beyond small strain": (YANG, ["load.torque_Nm=1e6"], "load.torque_Nm", "1000000 (teeth bend", "lower the"),
 }
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

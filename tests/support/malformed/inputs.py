@@ -117,7 +117,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "option for a command": (["--levle"], "--levle", "an unknown option", "--help"),
     # run
     "run: no scene": (["run"], "SCENE.toml", "nothing", "the scene file"),
-    "run: no folder": (["run", SCENE], "--out", "nothing", "where tables, fields and pictures go"),
+    "run: no folder": (["run", SCENE], "--out", "nothing", "write --out out/mine"),
     "run: folder without a name": (["run", SCENE, "--out"], "--out", "nothing", "a value behind the option"),
     "run: empty folder": (["run", SCENE, "--out", ""], "--out", "an empty text", "where tables, fields and pict"),
     "run: empty folder after =": (["run", SCENE, "--out="], "--out", "an empty text", "where tables, fields and pict"),
@@ -176,7 +176,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "check: torque of rounding": (["check", SCENE, "--set", "load.torque_Nm=1e-300"], "load.torque_Nm", "1e-300", ""),
     "check: broken bytes": (["check", SCENE, "--set", 'title="\udcff"'], "title", "", "give a text"),
     # mesh
-    "mesh: no file": (["mesh", SCENE], "--out", "nothing", "the gmsh file to write"),
+    "mesh: no file": (["mesh", SCENE], "--out", "nothing", "write --out pair.msh"),
     "mesh: empty file": (["mesh", SCENE, "--out", ""], "--out", "an empty text", "the gmsh file to write"),
     "mesh: other format": (["mesh", SCENE, "--out", "{folder}/a.stl"], "--out", "a.stl", "ends in .msh"),
     "mesh: no ending": (["mesh", SCENE, "--out", "{folder}/a"], "--out", "/a", "ends in .msh"),

@@ -23,6 +23,10 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "misspelled section": (YANG, ["pinon.teeth=17"], "pinon", "an unknown section", "did you mean pinion?"),
     "key of another section": (YANG, ["load.friction=0.1"], "load.friction", "0.1", "did you mean contact.friction?"),
     "key without its unit": (YANG, ["load.torque=250"], "load.torque", "250", "did you mean load.torque_Nm?"),
+    "key with another unit": (
+        YANG, ["load.torque_Nmm=250e3"], "load.torque_Nmm", "250000", "mean load.torque_Nm? Then divide by 1000; else",
+    ),
+    "misspelled section in the place of one": (YANG.replace("[load]", "[laod]"), [], "laod", "torque_Nm", "mean load?"),
     "unknown to all": (YANG, ["mesh.xyzzy=1"], "mesh.xyzzy", "1", "delete it"),
     # wrong type
     "text for a number": (YANG, ['load.torque_Nm="250 Nm"'], "load.torque_Nm", '"250 Nm"', "write the number alone"),
@@ -83,6 +87,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "oil": (YANG + "[lubricant]\noil = 'VG 100'\n", [], "lubricant", "an unknown section", "delete it"),
     "oil temperature": (YANG, ["contact.oil_temperature_C=80"], "contact.oil_temperature_C", "80", "delete it"),
     "yield stress": (YANG, ["material.yield_stress_MPa=800"], "material.yield_stress_MPa", "800", "delete it"),
+    "bevel gears": (YANG, ["pair.type=bevel"], "pair.type", '"bevel"', "delete it"),
     "internal gear": (YANG, ["wheel.internal=true"], "wheel.internal", "true", "delete it"),
     "density": (YANG, ["material.density=7850"], "material.density", "7850", "delete it"),
     "roughness": (YANG, ["contact.roughness_um=0.8"], "contact.roughness_um", "0.8", "delete it"),
@@ -99,6 +104,7 @@ UNSUPPORTED: dict[str, str] = {
     "oil": "lubrication is not supported",
     "oil temperature": "lubrication is not supported",
     "yield stress": "plasticity is not supported",
+    "bevel gears": "spur and helical external pairs only",
     "internal gear": "internal gears are not supported",
     "density": "dynamics is not supported",
     "roughness": "roughness is not supported",

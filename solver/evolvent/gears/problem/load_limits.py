@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from evolvent.fem.material import Material
@@ -30,18 +31,26 @@ class Overload:
 
 
 def overload(estimate: HertzEstimate, materials: tuple[Material, Material]) -> Overload | None:
-    """Whether a torque is too large for small strain, None where it is not. materials: of (pinion, wheel).
+    """Whether a torque is too large for small strain, by the lower of both limits; None where it is not.
 
-    The Hertz half-width grows with the root of the torque, the teeth's deflection with the torque.
+    The Hertz half-width grows with the root of the torque, the teeth's deflection with the torque. materials: of
+    (pinion, wheel).
     """
     half_width, radius = float(estimate.half_width(0.0)), float(estimate.pair.relative_curvature_radius(0.0))
-    if half_width > WIDEST_CONTACT * radius:
-        why = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
-        return Overload(why, (WIDEST_CONTACT * radius / half_width) ** 2)
     deflection = estimate.tooth_deflection(*materials) / estimate.pair.pinion.normal_module
-    if deflection > LARGEST_DEFLECTION:
-        return Overload(f"teeth bend by about {deflection:.2g} modules", LARGEST_DEFLECTION / deflection)
-    return None
+    why = f"Hertz half-width {half_width:.3g} mm at a radius of {radius:.3g} mm"
+    limits = (
+        Overload(why, (WIDEST_CONTACT * radius / half_width) ** 2),
+        Overload(f"teeth bend by about {deflection:.2g} modules", LARGEST_DEFLECTION / deflection),
+    )
+    lowest = min(limits, key=lambda limit: limit.allowed_share)
+    return lowest if lowest.allowed_share < 1.0 else None
+
+
+def rounded_down(limit: float) -> str:
+    """A largest value to three digits, none of which exceeds it."""
+    step = 10.0 ** (math.floor(math.log10(limit)) - 2)
+    return f"{math.floor(limit / step) * step:.10g}"
 
 
 def check_load(problem: GearProblem) -> None:
@@ -52,7 +61,7 @@ def check_load(problem: GearProblem) -> None:
         raise _refused(problem, f"a contact with a half-width of {limit}", why, "raise it")
     if found := overload(problem.hertz_estimate, problem.materials):
         most = problem.torque * found.allowed_share
-        raise _refused(problem, f"up to {most:.3g} N·mm, as strains must stay small", found.why, "lower it")
+        raise _refused(problem, f"up to {rounded_down(most)} N·mm, as strains must stay small", found.why, "lower it")
 
 
 def _refused(problem: GearProblem, wanted: str, why: str, remedy: str) -> InputError:

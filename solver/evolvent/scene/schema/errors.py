@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from evolvent.scene.schema.meant_value import expected, meant_value
-from evolvent.scene.schema.nearest_key import nearest_key
+from evolvent.scene.schema.nearest_key import nearest_key, unit_conversion
 from evolvent.scene.schema.not_supported import not_supported
 from evolvent_meshes.errors import InputError
 
@@ -24,6 +24,8 @@ MOST = 20
 """Largest number of problems in one message."""
 LONGEST_NUMBER = 40
 """Largest number of digits of a whole number that are shown."""
+BEYOND = {"greater_than": "too_small", "greater_than_equal": "too_small", "less_than_equal": "too_large"}
+"""Type of pydantic's error on a number beyond a limit -> the word of the declaration that has its remedy."""
 LONGEST_TEXT = 60
 """Largest number of characters of a value or a key that are shown."""
 
@@ -69,11 +71,18 @@ def validation_error(problem: InputProblem) -> PydanticCustomError:
 def problems_of(error: ValidationError, model: type[BaseModel]) -> list[InputProblem]:
     """The problems of a failed validation, with the texts of the schema `model`: all, or the first `MOST`."""
     details = error.errors(include_url=False)
-    problems = [_problem(each, model) for each in details[:MOST]]
+    problems = _without_consequences([_problem(each, model) for each in details[:MOST]])
     if len(details) > MOST:
         more, remedy = len(details) - MOST, "mend these first; is this a scene file at all?"
         problems.append(InputProblem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
     return problems
+
+
+def _without_consequences(problems: list[InputProblem]) -> list[InputProblem]:
+    """The problems without those on what is missing only because its name is misspelled: the spelling is the remedy."""
+    asked = [(problem.key, re.match(r"did you mean (\S+)\?", problem.remedy)) for problem in problems]
+    meant = {match[1] for key, match in asked if match and key.rpartition(".")[0] == match[1].rpartition(".")[0]}
+    return [problem for problem in problems if problem.found != NOTHING or problem.key not in meant]
 
 
 def shown(value: Any) -> str:
@@ -110,7 +119,7 @@ def _problem(details: ErrorDetails, model: type[BaseModel]) -> InputProblem:
     if section is not None:
         return _missing_section(path, section) if missing else _not_a_section(path, details["input"], section)
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-    allowed, remedy = str(extra["allowed"]), str(extra["remedy"])
+    allowed, remedy = str(extra["allowed"]), str(extra[BEYOND.get(details["type"], "remedy")])
     if missing:
         return InputProblem(dotted(path), NOTHING, allowed, remedy)
     value, meant = details["input"], meant_value(details["input"], field)
@@ -152,11 +161,14 @@ def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> I
     found = f"an unknown {kind}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
     allowed = f"{place} that docs/scene.md lists"
-    words = not_supported(name)
+    words = not_supported(name, dotted(parents))
     similar = _similar(name, parents, model, strict=bool(words))
     if words and not similar:
         return InputProblem(dotted(path), found, f"{allowed}; {words}", "delete it")
-    remedy = f"did you mean {similar}? Else delete it" if similar else "delete it, or see docs/scene.md"
+    if not similar:
+        return InputProblem(dotted(path), found, allowed, "delete it, or see docs/scene.md")
+    converted = unit_conversion(name, similar)
+    remedy = f"did you mean {similar}? {f'Then {converted}; else' if converted else 'Else'} delete it"
     return InputProblem(dotted(path), found, allowed, remedy)
 
 

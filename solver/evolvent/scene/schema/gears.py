@@ -69,7 +69,15 @@ ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "
 class GearSection(SceneSection):
     """[pinion] and [wheel]: one gear."""
 
-    teeth: int = key("number of teeth z", "a whole number from 5 to 1000", "external gears only", ge=5, le=1000)
+    teeth: int = key(
+        "number of teeth z",
+        "a whole number from 5 to 1000",
+        "count the teeth; external gears only",
+        too_small="fewer than 5 teeth are not supported, nor internal gears, which some count as negative",
+        too_large="more than 1000 teeth are not supported",
+        ge=5,
+        le=1000,
+    )
     face_width_mm: float = key("face width b", "a number from 0.1 to 1000, in mm", ge=0.1, le=1000)
     profile_shift: float = key(
         "profile shift coefficient x, times m_n", "a number from -2 to 2", default=0.0, ge=-2, le=2

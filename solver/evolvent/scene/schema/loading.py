@@ -46,7 +46,9 @@ class LoadSection(SceneSection):
     torque_Nm: float = key(
         "torque that is held constant",
         "a number above 0 up to 1e7, in N·m",
-        "give the torque without a sign, the pinion drives; it acts on the gear that load.on names",
+        "give the torque in N·m; it acts on the gear that load.on names",
+        too_small="give a torque above 0 without a sign, the pinion drives; it acts on the gear that load.on names",
+        too_large="mind the unit: give the torque in N·m, 1 N·m is 1000 N·mm",
         gt=0,
         le=1e7,
     )

@@ -11,6 +11,12 @@ NEAR, NEARLY_THE_SAME = 0.7, 0.85
 supported."""
 LONGEST = 60
 """Longest key that is compared [characters]."""
+CONVERSIONS = {
+    ("Nmm", "Nm"): "divide by 1000", ("kNm", "Nm"): "multiply by 1000", ("MPa", "GPa"): "divide by 1000",
+    ("Pa", "GPa"): "divide by 1e9", ("um", "mm"): "divide by 1000", ("mm", "um"): "multiply by 1000",
+    ("m", "mm"): "multiply by 1000", ("cm", "mm"): "multiply by 10", ("rad", "deg"): "multiply by 180/π",
+}  # fmt: skip
+"""Unit given, unit wanted -> what to do."""
 GREEK = {"alpha": "α", "beta": "β", "mu": "μ", "nu": "ν", "rho": "ρ"}
 
 
@@ -34,6 +40,14 @@ def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str
     if strict or not wanted:
         return ""
     return next((key for keys in (here, everywhere) for key in keys if wanted <= _meaning(key, keys[key])), "")
+
+
+def unit_conversion(name: str, meant: str) -> str:
+    """What makes a value in the unit that ends an unknown key one in the unit of the key that was meant.
+
+    Empty where the two name the same unit, or one of them none that is known.
+    """
+    return CONVERSIONS.get((name.rsplit("_", 1)[-1], meant.rsplit("_", 1)[-1]), "")
 
 
 def _meaning(key: str, text: str) -> set[str]:

@@ -28,12 +28,20 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"profile_?crowning|barrelling|helix_?(slope|relief|correction)|lead_?(slope|angle)|end_?relief|bias",
      "not supported as a key; a chart as pinion.flank_csv can have it"),
     (r"backlash", "backlash follows from pair.centre_distance_mm and the profile shifts"),
+    (r"(pair|pinion|wheel)\.((gear|pair)_?)?(type|kind)|(gear|pair)_?(type|kind)", "spur and helical external pairs "
+     "only, told apart by pair.helix_angle_deg"),
     (r"web|rim|spoke", "the body is a full ring from bore_diameter_mm to the root"),
 )  # fmt: skip
-"""Regular expression for the name of an unknown key, and what to answer."""
+"""Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
 
 
-def not_supported(name: str) -> str:
-    """The answer to an unknown key, empty where its name matches no pattern."""
-    lower = name.lower()[:60]
-    return next((words for pattern, words in NOT_SUPPORTED if re.search(rf"(^|_)({pattern})", lower)), "")
+def not_supported(name: str, section: str = "") -> str:
+    """The answer to an unknown key of a section, empty where it matches no pattern."""
+    names = name.lower()[:60], f"{section}.{name}".lower()[:60]
+    found = (words for pattern, words in NOT_SUPPORTED if any(_begins(pattern, each) for each in names))
+    return next(found, "")
+
+
+def _begins(pattern: str, name: str) -> bool:
+    """Whether a name, or a part of it behind an underscore, begins with a pattern."""
+    return re.search(rf"(^|_)({pattern})", name) is not None

@@ -7,14 +7,26 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 
-def key(meaning: str, allowed: str, remedy: str = "", *, default: Any = ..., **limits: Any) -> Any:
+def key(
+    meaning: str,
+    allowed: str,
+    remedy: str = "",
+    *,
+    too_small: str = "",
+    too_large: str = "",
+    default: Any = ...,
+    **limits: Any,
+) -> Any:
     """Declares a key of the scene.
 
     meaning: what the key stands for. allowed: which values it takes. remedy: what to do about another value, by default
-    to give an allowed one. default: its value where it is not given; a key without a default is required. limits: as
-    for pydantic.Field.
+    to give an allowed one. too_small, too_large: what to do about a value beyond the limits, by default `remedy`.
+    default: its value where it is not given; a key without a default is required. limits: as for pydantic.Field.
     """
-    words: dict[str, JsonValue] = {"allowed": allowed, "remedy": remedy or f"give {allowed.split(',')[0]}"}
+    remedy = remedy or f"give {allowed.split(',')[0]}"
+    words: dict[str, JsonValue] = {
+        "allowed": allowed, "remedy": remedy, "too_small": too_small or remedy, "too_large": too_large or remedy
+    }  # fmt: skip
     return Field(default, description=meaning, json_schema_extra=words, **limits)
 
 

@@ -20,16 +20,7 @@ from evolvent import __version__
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
-    Force,
-    LevelOption,
-    NoSkip,
-    Overrides,
-    Overwrite,
-    Resume,
-    SceneFile,
-    UsageError,
-    given_number,
-    given_path,
+    Force, LevelOption, NoSkip, Overrides, Overwrite, Resume, SceneFile, UsageError, given_number, given_path,
     usage_message,
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
@@ -118,13 +109,12 @@ def run(
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
         _require_room(loaded, "run", force, MPI.COMM_WORLD)
-        from evolvent.results.tables.headlines import headlines
-        from evolvent.run.output import SUMMARY, whereabouts
+        from evolvent.run.output import last_lines
         from evolvent.run.scene_run import run_scene
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
         if not quiet:
-            typer.echo("\n".join([*headlines(out / SUMMARY), whereabouts(out, loaded)]))
+            typer.echo(last_lines(out, loaded))
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

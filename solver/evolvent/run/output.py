@@ -16,6 +16,7 @@ from evolvent.results.fields.deformation import Deformation
 from evolvent.results.fields.paraview import write_fields
 from evolvent.results.mesh_facts import NARROW, MeshFacts, cells_across
 from evolvent.results.run_data import RunData, run_data
+from evolvent.results.tables.headlines import headlines
 from evolvent.results.tables.summary_rows import RunFacts
 from evolvent.results.tables.tables import summary, write_summary, write_tables
 from evolvent.run.context import RunContext
@@ -68,6 +69,11 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
     for sentence in tables.warnings:
         run.log.warning(sentence)
     run.log.info("done in %.1f s, %.0f MB", run.seconds, memory_MB)
+
+
+def last_lines(out: Path, scene: Scene) -> str:
+    """What a run prints at its end: its figures, and where all of them are."""
+    return "\n".join([*headlines(out / SUMMARY), whereabouts(out, scene)])
 
 
 def whereabouts(out: Path, scene: Scene) -> str:

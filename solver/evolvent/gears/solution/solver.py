@@ -205,7 +205,7 @@ def _warn_if_coarse(cells: float) -> None:
     if not cells >= FEWEST_CELLS:
         warn_user(
             f"gear pair: wanted a contact at least {FEWEST_CELLS:g} elements wide, found {cells:.2f} (median): peak "
-            'pressures may be off by 15 % and more and are for looking only; take MeshSettings("standard") or '
+            'pressures may be off by 15 % and more and are for orientation only; take MeshSettings("standard") or '
             "MeshSettings(elements_per_contact_width=3)",
             CoarseContactWarning,
         )

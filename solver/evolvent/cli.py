@@ -16,11 +16,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from mpi4py import MPI
 
-from evolvent import __version__
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
-    Force, LevelOption, NoSkip, Overrides, Overwrite, Resume, SceneFile, UsageError, given_number, given_path,
+    Force,
+    LevelOption,
+    NoSkip,
+    Overrides,
+    Overwrite,
+    Resume,
+    SceneFile,
+    UsageError,
+    Version,
+    given_number,
+    given_path,
     usage_message,
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
@@ -54,18 +63,6 @@ Examples:
     rich_markup_mode=None,  # examples keep their lines
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-def _print_version(wanted: bool) -> None:
-    """Prints the version and ends the program, if it is wanted."""
-    if wanted:
-        typer.echo(f"evolvent {__version__}")
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version.")
-]
 
 
 @app.callback()

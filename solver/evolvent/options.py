@@ -9,6 +9,7 @@ from typing import Annotated, Any, cast
 
 import typer
 
+from evolvent import __version__
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
@@ -117,4 +118,16 @@ Resume = Annotated[
 ]
 Overwrite = Annotated[
     bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
+]
+
+
+def _print_version(wanted: bool) -> None:
+    """Prints the version and ends the program, if it is wanted."""
+    if wanted:
+        typer.echo(f"evolvent {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version.")
 ]

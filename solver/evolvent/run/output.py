@@ -73,7 +73,8 @@ def write_output(run: RunContext, scene: Scene, record: SweepRecord, extra: Extr
 
 def last_lines(out: Path, scene: Scene) -> str:
     """What a run prints at its end: its figures, and where all of them are."""
-    return "\n".join([*headlines(out / SUMMARY), whereabouts(out, scene)])
+    figures = headlines(out / SUMMARY) if (out / SUMMARY).exists() else []
+    return "\n".join([*figures, whereabouts(out, scene)])
 
 
 def whereabouts(out: Path, scene: Scene) -> str:

@@ -96,7 +96,8 @@ class FlankChart:
         return bool(np.ptp(self.depth, axis=1).max() > 0.0)
 
     def checked(self, path: object, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
-        """The chart from the base circle on. path: what a message names; active: diameters of a gear's active flank [mm], which it has to cover.
+        """The chart from the base circle on. path: what a message names; active: diameters of a gear's active flank
+        [mm], which it has to cover.
 
         Raises TableError where it does not, or is of another size than the gear.
         """

@@ -119,7 +119,7 @@ def test_wrong_chart_is_refused(name: str, tmp_path: Path, capsys: pytest.Captur
 
 
 def test_a_chart_given_to_a_problem_may_begin_below_the_base_circle() -> None:
-    """Below the base circle there is no involute. Problem: a chart from the root on over the face, of arrays, which grows
+    """Below the base circle there is no involute. Problem: a chart of arrays from the root on that grows
     by 1 µm/mm of diameter from there. Exact: its depth at the tip."""
     d = np.linspace(132.0, 156.0, 13)
     chart = FlankChart(d, np.array([-10.0, 10.0]), 1e-3 * np.column_stack([d - 132.0, d - 132.0]))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from evolvent_meshes.input_checks import is_index, is_number, shown
 from evolvent_meshes.mesh.mesh_data import MeshError
 
@@ -27,9 +29,9 @@ def check_counts(function: str, **counts: Any) -> None:
 
 
 def check_tuples(function: str, length: int, **tuples: Any) -> None:
-    """Raises MeshError unless all are tuples of this length."""
+    """Raises MeshError unless all are tuples, lists or arrays of this length."""
     for name, value in tuples.items():
-        fits = isinstance(value, tuple | list) and len(value) == length
+        fits = isinstance(value, tuple | list | np.ndarray) and len(value) == length
         _check(function, name, value, fits, f"a tuple of {length} numbers", "give one a direction")
 
 

@@ -42,6 +42,11 @@ def problem(**changes):
     return GearProblem(**{"pair": pair, "torque": 170e3, "mesh": MeshSettings("quick", order=1), **changes})
 
 
+def chart(start=130.0, depth=0.01):
+    """A flank that lacks the depth [mm] from a diameter [mm] to its tip."""
+    return FlankChart(np.linspace(start, 156.0, 5), np.zeros(1), np.full((5, 1), depth))
+
+
 @cache
 def condensed() -> GearModel:
     """Its condensed gears."""
@@ -105,6 +110,8 @@ PROBLEMS = [
         ("materials", (210e3, 0.3), ("wanted two of Material, found \\(210000.0, 0.3\\)",)),
         ("flanks", "x.csv", ("flanks: wanted two of FlankChart or None, found 'x.csv'",)),
         ("flanks", ("x.csv", None), ("flanks: wanted two of FlankChart or None",)),
+        ("flanks", (chart(depth=10.0), None), ("flanks, pinion: found 1e\\+04 µm", "is the column's unit right")),
+        ("flanks", (None, chart(start=148.0)), ("flanks, wheel: found 148 to 156 mm; allowed: diameters over",)),
         ("options", {"in_space": True}, ("options: wanted a GearOptions", "write GearOptions")),
         ("torque", "170e3", ("torque: wanted a finite number > 0",)),
     )

@@ -95,8 +95,9 @@ class FlankChart:
         """Whether the depth depends on z."""
         return bool(np.ptp(self.depth, axis=1).max() > 0.0)
 
-    def checked(self, path: Path, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
-        """The chart from the base circle on. active: diameters of a gear's active flank [mm], which it has to cover.
+    def checked(self, path: object, gear: GearParameters, active: tuple[float, float]) -> FlankChart:
+        """The chart from the base circle on. path: what a message names; active: diameters of a gear's active flank
+        [mm], which it has to cover.
 
         Raises TableError where it does not, or is of another size than the gear.
         """

@@ -111,10 +111,17 @@ class GearProblem:
         level = self.mesh if isinstance(self.mesh, str) else "standard"
         instance("mesh", self.mesh, MeshSettings, f'write MeshSettings("{level}")')
         both_gears("flanks", self.flanks, FlankChart, optional=True)
+        object.__setattr__(self, "flanks", tuple(self._checked_flank(gear) for gear in Member))
         instance("options", self.options, GearOptions, "write GearOptions(in_space=True), for example")
         remedy = "give it in N·mm and without a sign: the pinion drives"
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
+
+    def _checked_flank(self, gear: Member) -> FlankChart | None:
+        """The chart of a gear from the base circle on. Raises TableError where it does not fit the gear."""
+        chart, geometry = self.flanks[gear], self.pair.gears[gear]
+        active = self.pair.active_start_diameters[gear], geometry.tip_diameter
+        return None if chart is None else chart.checked(f"flanks, {gear.label}", geometry, active)
 
     @cached_property
     def has_equal_sections(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.csv_tables import TableError
 from tests.support.checkout import ROOT
 from tests.support.gear_cases import model_of, spur_scene
+from tests.support.gears_api_curve import he_problem
 
 DIAMETERS = np.linspace(144.0, 156.0, 25)
 PAIR = spur_scene().gear_pair()
@@ -114,3 +116,14 @@ def test_wrong_chart_is_refused(name: str, tmp_path: Path, capsys: pytest.Captur
     status = main(["run", *scene, "--out", str(out)])
     said = capsys.readouterr().err
     assert status == Exit.BAD_INPUT and "pinion.flank_csv" in said and message in said and not out.exists()
+
+
+def test_a_chart_given_to_a_problem_may_begin_below_the_base_circle() -> None:
+    """Below the base circle there is no involute. Problem: a chart of arrays from the root on that grows
+    by 1 µm/mm of diameter from there. Exact: its depth at the tip."""
+    d = np.linspace(132.0, 156.0, 13)
+    chart = FlankChart(d, np.array([-10.0, 10.0]), 1e-3 * np.column_stack([d - 132.0, d - 132.0]))
+    given = replace(he_problem(), flanks=(chart, None)).flanks[0]
+    assert given is not None
+    gear = he_problem().pair.pinion
+    assert given.at(gear, np.array([gear.roll_length(156.0)]), np.zeros(1)) == pytest.approx(24e-3, rel=1e-9)

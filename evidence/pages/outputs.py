@@ -51,7 +51,8 @@ FILES = (
     (".evolvent.lock", "there while a run goes on: one run per folder"),
     ("wear.csv", "a wear study: one line per block of cycles"),
     ("wear.json", "a wear study: the values at each report"),
-    ("worn_*", "a wear study: the pair after so many cycles, a folder with all of the above"),
+    ("worn_*", "a wear study: the pair after so many cycles, a folder with its tables, its scene, both flanks as "
+      "charts and `results/`; pictures once `evolvent plot` draws them, no run.log, no fields"),
 )
 ARRAYS = (
     ("gear", "0 on the pinion, 1 on the wheel"),

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.meshing.modifications import modification_warnings
+from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -73,6 +73,8 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
     for name in switched_off(scene):
         run.log.info("not skipped: %s", name)
     for sentence in modification_warnings(gear_problem(scene)):
+        run.log.warning(sentence)
+    for sentence in tip_edge_warnings(gear_problem(scene)):
         run.log.warning(sentence)
 
 

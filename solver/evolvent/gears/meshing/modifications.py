@@ -97,6 +97,23 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
         )
 
 
+def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
+    """A sentence on gears whose tips nothing relieves: the next tooth meets the deflected ones with its tip's edge."""
+    plain = [
+        member for member, gear, chart in zip(Member, problem.pair.gears, problem.flanks)
+        if chart is None and not gear.modifications.tip_relief_um
+    ]  # fmt: skip
+    if not plain:
+        return
+    estimate, gears = problem.hertz_estimate, "" if len(plain) == len(Member) else f" on the {plain[0].label}"
+    force = estimate.normal_force
+    stiffness = force / (estimate.tooth_deflection(*problem.materials) * estimate.pair.face_width)
+    deflection = 1e3 * bearing(estimate.pair, force, stiffness).deflection
+    yield (
+        f"No tip relief{gears}: tip edges may bear, as teeth deflect by about {deflection:.2g} µm; see tip_relief_um."
+    )
+
+
 def folding_warnings(
     problem: GearProblem, resolutions: tuple[SectorResolution, SectorResolution]
 ) -> Iterator[str]:

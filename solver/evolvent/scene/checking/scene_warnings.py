@@ -10,7 +10,7 @@ from evolvent.gears.meshing.element_sizes import (
     has_stiff_pinion,
     sector_resolutions,
 )
-from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings
+from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -41,6 +41,7 @@ def _expected(scene: Scene) -> Iterator[str]:
             "better choice."
         )
     yield from modification_warnings(problem)
+    yield from tip_edge_warnings(problem)
     yield from folding_warnings(problem, sector_resolutions(problem))
 
 

@@ -102,6 +102,17 @@ def test_usual_modifications_are_not_warned_of() -> None:
     assert "bear on" not in said(*usual)
 
 
+@pytest.mark.parametrize(("settings", "words"), [
+    ((), "No tip relief: tip edges may bear, as teeth deflect by about 8.5 µm; see tip_relief_um."),
+    (("wheel.tip_relief_um=10",), "No tip relief on the pinion: tip edges may bear"),
+    (("pinion.tip_relief_um=10", "wheel.tip_relief_um=10"), ""),
+])  # fmt: skip
+def test_missing_tip_relief_is_warned_of(settings: tuple[str, ...], words: str) -> None:
+    """He's pair, whose transmission error in single contact is 8.50 µm (quick): `check` names what is not relieved."""
+    text = overview(load_scene("demos/he2022.toml", settings))
+    assert words in text and ("No tip relief" in text) == bool(words)
+
+
 def test_check_warns_of_a_relief_that_may_fold_the_mesh() -> None:
     """A relief that `run` refuses because it folds the mesh is named before."""
     text = overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=500"]))
@@ -120,4 +131,6 @@ def test_run_warns_of_modifications_before_it_computes(
     monkeypatch.setattr("evolvent.run.scene_run.sweep_scene", stop)
     command = ["run", "demos/he2022.toml", "--quiet", "--set", "pair.misalignment_um=1000", "--out", f"{tmp_path}/out"]
     assert main(command) == Exit.FAILED
-    assert "warning: pair.misalignment_um = 1000 (µm): the flanks bear on about 10 %" in capsys.readouterr().err
+    said_first = capsys.readouterr().err
+    assert "warning: pair.misalignment_um = 1000 (µm): the flanks bear on about 10 %" in said_first
+    assert "warning: No tip relief: tip edges may bear" in said_first

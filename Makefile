@@ -13,8 +13,7 @@ release := $(shell . /etc/os-release; echo $${VERSION_ID:-unstable})
 ready := .venv/.ready-debian-$(release)
 
 # Whole files go to a worker each, for their tests share what is costly to compute; the longest first (tests/conftest.py).
-# One worker more than there are cores, for some wait for the programs that they start.
-ON_ALL_CORES := -n $(shell expr $$(env -u OMP_NUM_THREADS nproc) + 1) --dist loadfile
+ON_ALL_CORES := -n auto --dist loadfile
 
 # One BLAS thread per process: two ranks with two threads each on two cores are slower than two with one.
 test verification: export OMP_NUM_THREADS ?= 1

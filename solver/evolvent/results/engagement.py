@@ -14,6 +14,7 @@ import numpy as np
 
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import NO_PEAK, LinePeak, line_mean, line_peak, zone_end_peaks
+from evolvent.gears.pressure.pitch_pressure import PitchPressure
 from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent.results.run_data import RunData, SolvedPosition
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -187,9 +188,7 @@ def largest_peak(run: RunData, index: int) -> LinePeak:
         if not np.isfinite(curve.max_pressure).any():
             return NO_PEAK
         return LinePeak(radius * curve.peak.angle, curve.peak.pressure, curve.peak.at_zone_end)
-    lines = [(each[index].cut, tooth.tooth) for each in run.positions for tooth in each[index].teeth]
-    peaks = [line_peak(run.pair, cut, tooth, run.inner_path) for cut, tooth in lines]
-    return max((peak for peak in peaks if np.isfinite(peak.pressure)), key=lambda peak: peak.pressure, default=NO_PEAK)
+    return PitchPressure(run.pair, tuple(each[index].cut for each in run.positions), run.inner_path).peak
 
 
 def sign_changes(x: Floats, y: Floats) -> Floats:

@@ -56,6 +56,12 @@ class GearModel:
     pitches: int = 1
     """Base pitches that a sweep has."""
 
+    @property
+    def width_factor(self) -> float:
+        """Factor from forces, torques and volumes of the model to those of the gears: the face width [mm] of plane
+        gears, else 1."""
+        return self.pair.face_width if self.bodies[0].d == 2 else 1.0
+
     def has_friction_terms(self, friction: float) -> bool:
         """Whether tangential components and friction history are kept at this μ."""
         return friction > 0.0 or self.friction_terms

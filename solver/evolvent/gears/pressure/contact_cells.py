@@ -9,6 +9,8 @@ from evolvent_meshes.arrays import Floats
 FEWEST_CELLS = 2.0
 """Fewest elements across the contact width 2b_H without a warning: with fewer, errors of peak pressures reach 15 % and
 more, with 3 they are 3 % (docs/benchmark.md)."""
+SCATTER = "may be off by 15 % and more and are for orientation only"
+"""What warnings say of peak pressures on fewer elements."""
 HEIGHT_TOLERANCE = 1e-6
 """Nodes within this height [mm] are of one row."""
 

@@ -16,7 +16,7 @@ from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.contact.step.contact_width import CoarseContactWarning
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, cells_across
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER, cells_across
 from evolvent.gears.pressure.line_peaks import LinePeak
 from evolvent.gears.pressure.pitch_pressure import PitchPressure, pitch_pressures
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -182,14 +182,13 @@ def solve_pitches(
             raise
         LOG.info("%s; solved again, on deflected flanks", imbalance)
         return solve_pitches(replace(gears, deflected=True), frictions, positions, comm)
-    width = gears.pair.face_width if gears.bodies[0].d == 2 else 1.0
     by_position = [position.results for position in swept]
     pressures = pitch_pressures(gears, by_position)
     cells = [_cells_across(gears, pressure) for pressure in pressures]
     if comm.rank == 0:
         _warn_if_coarse(min(cells))
     return tuple(
-        PitchSolution(friction, results, pressure, width, count, gears.deflected)
+        PitchSolution(friction, results, pressure, gears.width_factor, count, gears.deflected)
         for friction, results, pressure, count in zip(frictions, zip(*by_position), pressures, cells)
     )
 
@@ -205,8 +204,7 @@ def _warn_if_coarse(cells: float) -> None:
     if not cells >= FEWEST_CELLS:
         warn_user(
             f"gear pair: wanted a contact at least {FEWEST_CELLS:g} elements wide, found {cells:.2f} (median): peak "
-            'pressures may be off by 15 % and more and are for orientation only; take MeshSettings("standard") or '
-            "MeshSettings(elements_per_contact_width=3)",
+            f'pressures {SCATTER}; take MeshSettings("standard") or MeshSettings(elements_per_contact_width=3)',
             CoarseContactWarning,
         )
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
 from evolvent.results.engagement import engagements, largest_peak
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.relief_kinks import peak_over_kink
@@ -73,9 +73,8 @@ def _few_cells(run: RunData) -> str:
     largest = [largest_peak(run, index).pressure for index in range(len(run.frictions))]
     bar = max(100.0 * run.errors.bar("max_pressure_MPa", index) / peak for index, peak in enumerate(largest))
     return (
-        f"below {FEWEST_CELLS:g}, pressures of single positions may be off by 15 % and more and are for orientation "
-        f"only; the largest one is known within its error bar, {brief(bar)} %, but not where it occurs; for better "
-        f"ones {FINER}."
+        f"below {FEWEST_CELLS:g}, pressures of single positions {SCATTER}; the largest one is known within its error "
+        f"bar, {brief(bar)} %, but not where it occurs; for better ones {FINER}."
     )
 
 

@@ -11,7 +11,7 @@ from evolvent.gears.meshing.element_sizes import (
     sector_resolutions,
 )
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
-from evolvent.gears.pressure.contact_cells import FEWEST_CELLS
+from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 
@@ -47,4 +47,4 @@ def _expected(scene: Scene) -> Iterator[str]:
 
 def few_cells() -> str:
     """The consequence of fewer cells than `FEWEST_CELLS`, and the remedy."""
-    return f"below {FEWEST_CELLS:g}, peak pressures may be off by 15 % and more and are for orientation only: {FINER}."
+    return f"below {FEWEST_CELLS:g}, peak pressures {SCATTER}: {FINER}."

@@ -132,9 +132,9 @@ def _resumed(gears: GearWear, checkpoint: StudyCheckpoint) -> WearState[PitchSta
 def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:
     state = block.state
     depths = gears.by_gear(state.depth - gears.begin)
-    width = gears.model.pair.face_width if gears.model.bodies[0].d == 2 else 1.0
     inner = [grid.inner_nodes(gears.model.pair, gear) for gear, grid in zip(Member, gears.grids)]
     deepest = [1e3 * float(np.max(depth[nodes])) for depth, nodes in zip(depths, inner)]
+    width = gears.model.width_factor
     volumes = [width * float(areas @ depth) for areas, depth in zip(gears.by_gear(gears.areas), depths)]
     return BlockRow(
         state.cycles, block.length, block.error, block.refused, state.evaluation.searched, gears.mesh_updates,

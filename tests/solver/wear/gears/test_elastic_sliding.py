@@ -167,7 +167,8 @@ def test_elastic_sliding_of_given_deflections(k: int) -> None:
     z, s = np.linspace(-3.0, 3.0, count), np.linspace(-0.2, 0.2, count)
     stand, number = pitch.stands[k], 0 if k < 40 else -1
     tooth, ξ, none = np.full(count, number), stand.roll_distance(number, z), np.zeros(count)
-    points = ContactPoints(tooth, z, ξ, s, -s, none, none[:, None], none[:, None], none, none, none)  # type: ignore[arg-type]
+    shut = none > 0.0
+    points = ContactPoints(tooth, z, ξ, s, -s, none, none[:, None], none[:, None], none, shut, shut)
     φ, n, t = np.full(count, stand.angle + 2.0 * np.pi * number / pair.pinion.z), *line_of_action(pair, 3)
     ε_rate, wanted = extra(pair, φ)[1], none.copy()
     for gear, share, ρ in zip(Member, (1.0, 1.0 / pair.ratio), pair.curvature_radii(ξ)):

@@ -8,7 +8,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,8 +76,9 @@ def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
         after = int(rng.integers(len(stages)))
         anew = (out / "summary.json").exists() or _complete(out) > after
         span = stages[after if anew or _complete(out) < after else 0]
+        earlier = _stamp(out) if anew else None
         with started(out, "--overwrite" if anew else "--resume") as process:
-            _await(process, out, after, anew)
+            await_positions(process, out, after, earlier)
             try:
                 process.communicate(timeout=float(rng.uniform()) * span)
             except subprocess.TimeoutExpired:
@@ -99,7 +100,7 @@ def _stages(out: Path) -> list[float]:
     times = [time.perf_counter()]
     with started(out) as process:
         while process.poll() is None:
-            _await(process, out, len(times))
+            await_positions(process, out, len(times))
             times.append(time.perf_counter())
     return np.diff(times).tolist()
 
@@ -113,12 +114,29 @@ def _foreign_files(out: Path) -> dict[Path, bytes]:
     return foreign
 
 
-def _await(process: subprocess.Popen[str], out: Path, positions: int, anew: bool = False) -> None:
-    """Until so many positions are complete, or the run has ended. anew: those of an earlier run do not count."""
-    while process.poll() is None and anew and (out / "summary.json").exists():
+class Running(Protocol):
+    """What is asked of a run's process."""
+
+    def poll(self) -> int | None:
+        """Its exit status, None while it runs."""
+        ...
+
+
+def await_positions(process: Running, out: Path, positions: int, earlier: int | None = None) -> None:
+    """Until so many positions are complete, or the run has ended. earlier: the stamp of the state that an earlier run
+    left, whose positions do not count."""
+    while process.poll() is None and earlier is not None and _stamp(out) == earlier:
         time.sleep(GLANCE)
     while process.poll() is None and _complete(out) < positions:
         time.sleep(GLANCE)
+
+
+def _stamp(out: Path) -> int | None:
+    """When the state of a run was written [ns]; None where there is none."""
+    try:
+        return (out / "results" / "state.npz").stat().st_mtime_ns
+    except FileNotFoundError:
+        return None
 
 
 def _complete(out: Path) -> int:

@@ -99,7 +99,7 @@ def _gears(draw: Draw, seed: int) -> Scene:
     values["wear"] = {
         "cycles": cycles, "pinion_mm2_per_N": pinion, "wheel_mm2_per_N": wheel, "report_at_cycles": [],
         "blocks": draw.one_of("implicit", "implicit", "explicit"), "tolerance": draw.decades(0.01, 0.5),
-        "first_block_cycles": cycles * _first(draw),
+        "first_block_cycles": max(1.0, cycles * _first(draw)),
     }  # fmt: skip
     return scene_from_values(values)
 

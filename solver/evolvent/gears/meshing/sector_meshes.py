@@ -13,6 +13,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import nominal_angles
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
+from evolvent_meshes.mesh.quality import least_determinants
 from evolvent_meshes.mesh.reference_cells import corner_count
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
@@ -38,7 +39,8 @@ def gear_mesh(
 ) -> MeshData:
     """The sector of the pinion or the wheel. adapted: changes its resolution.
 
-    Raises MeshError, and TooMuchRelief where the flank's modification folds the cells.
+    Raises MeshError, also where first-order cells fold in a thin tooth, and TooMuchRelief where the flank's
+    modification folds the cells.
     """
     shape = PLANE_SHAPE[problem.mesh.shape] if problem.is_plane else problem.mesh.shape
     resolution = adapted(sector_resolutions(problem)[member])
@@ -48,7 +50,19 @@ def gear_mesh(
         if reason := too_much_relief(problem, member, resolution):
             raise reason from error
         raise
-    return mesh if problem.mesh.order == 2 else linear(mesh)
+    return mesh if problem.mesh.order == 2 else _first_order(mesh, member)
+
+
+def _first_order(mesh: MeshData, member: Member) -> MeshData:
+    """The first-order mesh; raises MeshError where straight edges fold cells that curved ones do not."""
+    straight = linear(mesh)
+    folded = np.count_nonzero(least_determinants(straight) <= 0.0)
+    if folded:
+        raise MeshError(
+            f"{member.label}: wanted first-order cells without folds, found {folded} of {len(straight.cells)} folded, "
+            "for the tooth is thin; take mesh.order = 2, or more mesh.elements_per_contact_width"
+        )
+    return straight
 
 
 def linear(mesh: MeshData) -> MeshData:

@@ -60,8 +60,8 @@ class WearSection(SceneSection):
     )  # fmt: skip
     first_block_cycles: Cycles | None = key(
         "length of the first block of cycles; a hundredth of wear.cycles by default",
-        f"a number from {SHORTEST_BLOCK:g} wear.cycles up to wear.cycles", "delete the key for the default",
-        default=None,
+        f"a number from {SHORTEST_BLOCK:g} wear.cycles, 1 at least, up to wear.cycles",
+        "delete the key for the default", default=None,
     )  # fmt: skip
     refresh_um: float | None = key(
         "depth of wear at which the meshes follow the worn flanks and both gears are condensed again; 5e-3 m_n by "

@@ -32,7 +32,7 @@ elements_per_contact_width = 0.58
 torque_Nm = 4.4
 on = "wheel"
 """
-"""The wheel's tooth is 0.15 modules thick at its tip; the contact is lightly loaded and coarsely meshed."""
+"""The wheel's tooth is 0.07 modules thick at its tip; the contact is lightly loaded and coarsely meshed."""
 
 
 def test_first_order_cells_that_fold_in_a_thin_tooth_are_refused() -> None:

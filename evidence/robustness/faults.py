@@ -76,7 +76,7 @@ def struck_again_and_again(out: Path, kills: int, seed: int) -> Struck:
         after = int(rng.integers(len(stages)))
         anew = (out / "summary.json").exists() or _complete(out) > after
         span = stages[after if anew or _complete(out) < after else 0]
-        earlier = _stamp(out) if anew else None
+        earlier = _stamp(out) if anew and after else None  # the start is hit from its very beginning
         with started(out, "--overwrite" if anew else "--resume") as process:
             await_positions(process, out, after, earlier)
             try:

@@ -30,6 +30,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
     "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
+    "contact.two_level": ("meshes", "meshes.mesh", "fem", "fem.condensation", "contact.nitsche"),
     "contact.problem": ("meshes", "fem", "fem.condensation", "contact.nitsche"),
     "contact.step": (
         "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
@@ -40,9 +41,13 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
     "gears.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "gears.problem"),
     "gears.ring": ("meshes", "fem.condensation"),
+    "gears.two_level": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.two_level", "gears.meshing",
+        "gears.ring",
+    ),
     "gears": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "fem.condensation", "contact.nitsche",
-        "gears.problem", "gears.meshing", "gears.ring",
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.condensation",
+        "contact.nitsche", "gears.problem", "gears.meshing", "gears.ring", "gears.two_level",
     ),
     "gears.contact": (
         "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
@@ -85,7 +90,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
-        "gears.contact", "gears.sweep", "gears.solution", "wear",
+        "gears.two_level", "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from evidence.benchmarks.accuracy.subdivision import halved
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.sector_meshes import gear_mesh
@@ -26,6 +25,7 @@ from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
 
 FIGURES = tuple(field.name for field in fields(FigureErrors))

@@ -104,7 +104,7 @@ def shape_gradients(shape: str, order: int, where: Floats) -> Floats:
 
 def _tensor_gradients(shape: str, order: int, where: Floats) -> Floats:
     positions = node_positions(shape, order) if order == 2 else node_positions(shape, order) // 2
-    values, slopes = _line_functions(order, where)
+    values, slopes = line_functions(order, where)
     dimension = CELL_DIMENSION[shape]
     gradients = np.ones((len(where), len(positions), dimension))
     for direction in range(dimension):
@@ -114,7 +114,7 @@ def _tensor_gradients(shape: str, order: int, where: Floats) -> Floats:
     return gradients
 
 
-def _line_functions(order: int, x: Floats) -> tuple[Floats, Floats]:
+def line_functions(order: int, x: Floats) -> tuple[Floats, Floats]:
     """Values and derivatives (..., order + 1) of the Lagrange polynomials on [0, 1], nodes in increasing order."""
     if order == 1:
         return np.stack([1 - x, x], axis=-1), np.stack([-np.ones_like(x), np.ones_like(x)], axis=-1)

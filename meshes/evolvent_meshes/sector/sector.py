@@ -10,19 +10,17 @@ from __future__ import annotations
 import numpy as np
 
 from evolvent_meshes.arrays import Floats, Ints
-from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.profile import polar
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.quality import check_quality
 from evolvent_meshes.mesh.reference_cells import node_positions
 from evolvent_meshes.mesh.structured_grid import split_to_simplices
+from evolvent_meshes.sector.flank_points import modification_angle
 from evolvent_meshes.sector.section import Section, SectorResolution, section_mesh
 
 MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
 """Cell shape -> smallest scaled Jacobian allowed; long thin layers make long thin simplices, not inverted ones."""
-
-_FIXED_POINT_STEPS = 6
 
 
 def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str = "hexahedron") -> MeshData:
@@ -113,26 +111,8 @@ def _placed(gear: GearParameters, section: Section, heights: Floats) -> Floats:
     if not gear.modifications.is_empty:
         moved = section.flank_weight > 0
         flank_radius = np.maximum(radius[moved], section.flank_start_radius)
-        turned[:, moved] += section.flank_weight[moved] * _turn(gear, flank_radius, heights[:, None])
+        turned[:, moved] += section.flank_weight[moved] * modification_angle(gear, flank_radius, heights[:, None])
     points = np.empty((len(heights), len(radius), 3))
     points[..., :2] = polar(np.broadcast_to(radius, turned.shape), turned)
     points[..., 2] = heights[:, None]
     return points.reshape(-1, 3)
-
-
-def _turn(gear: GearParameters, radius: Floats, z: Floats) -> Floats:
-    """Angle [rad] about the axis from the helicoid to the modified flank, at radii and heights [mm] (broadcast).
-
-    The modified point of (ρ, z0) lies at roll length ρ − c cos β_b and height z0 + c hand sin β_b. A fixed-point
-    iteration for (ρ, z0), which contracts with the slope of the modification, brings it to the given radius and height.
-    """
-    flank = Flank(gear)
-    wanted, height = np.broadcast_arrays(flank.roll_length(radius), z)
-    rho, level = wanted, height
-    for _ in range(_FIXED_POINT_STEPS):
-        offset = flank.modification(rho, level)
-        rho = wanted + offset * np.cos(gear.base_helix_angle)
-        level = height - offset * gear.hand * np.sin(gear.base_helix_angle)
-    modified, plain = flank.point(rho, level), flank.helicoid_point(wanted, height)
-    across = plain[..., 0] * modified[..., 1] - plain[..., 1] * modified[..., 0]
-    return np.asarray(np.arctan2(across, (plain[..., :2] * modified[..., :2]).sum(axis=-1)))

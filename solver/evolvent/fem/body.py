@@ -288,7 +288,8 @@ def _floating_motions(points: Floats, held: Bools) -> RigidMotions:
     shapes = rigid_modes(points - points.mean(axis=0))
     n, d, r = shapes.shape
     scale = 1.0 / np.linalg.norm(shapes.reshape(n * d, r), axis=0)
-    basis = np.eye(r) if not held.any() else la.null_space(shapes[held] * scale, rcond=1e-10)
+    stopped = np.linalg.qr(shapes[held] * scale, mode="r")  # few rows with the same null space
+    basis = np.eye(r) if not held.any() else la.null_space(stopped, rcond=1e-10)
     shapes = (shapes.reshape(n * d, r) * scale) @ basis * np.sqrt(n)
     if shapes.shape[1]:
         pins = la.qr(shapes.T, pivoting=True, mode="r")[1][: shapes.shape[1]]

@@ -17,6 +17,7 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.two_level_gear import levelled_mesh, two_level_gear
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -104,12 +105,15 @@ def prepare_model(
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
-    meshes = together(comm, lambda: {member: (mesh or gear_mesh)(problem, member) for member in own})
+    mesher = mesh or (levelled_mesh if problem.is_two_level else gear_mesh)
+    meshes = together(comm, lambda: {member: mesher(problem, member) for member in own})
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
 
     def condensed(member: Member) -> GearBody:
         gear, material = problem.pair.gears[member], problem.materials[member]
+        if problem.is_two_level:
+            return two_level_gear(problem, member, meshes[member], cores.used)
         return condensed_gear(
             gear, meshes[member], material, problem.contact_teeth, member, member is Member.PINION,
             whole=problem.options.whole_gears, threads=cores.used,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import trapezoid
@@ -74,23 +74,16 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     the arc of the involute. A layer of length L shears the contact line by s = L tan β_b ρ/r_b along the profile; s/h
     is held at what the level allows, on average over the path of contact.
     """
-    estimate, gear, level = problem.hertz_estimate, problem.pair.gears[member], problem.mesh.level
-    count = elements_per_contact_width(problem)
-    width = _ContactWidth(estimate, member)
-    start = _flank_start(gear, width)
-    roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
-    density = roll / gear.base_radius * count / width.at_roll_length(roll)
-    along, shear = trapezoid(density, roll), np.mean(density) * math.tan(gear.base_helix_angle) * gear.face_width
-    depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
-    depths *= min(1.0, DEEPEST * gear.normal_module / float(depths.sum()))
+    gear, level, needs = problem.pair.gears[member], problem.mesh.level, flank_needs(problem, member)
+    depths = needs.depths * min(1.0, DEEPEST * gear.normal_module / float(needs.depths.sum()))
     more = _neck_elements(float(depths.sum()) / gear.normal_module) - LEAST_NECK
     core, rim = CORE_AND_RIM[problem.is_plane]
     resolution = SectorResolution(
-        profile_elements=3 * max(LEAST_ROWS, math.ceil(along / 3)),
-        face_elements=max(LEAST_LAYERS[level], math.ceil(shear / SHEAR_PER_ELEMENT[level][member])),
+        profile_elements=3 * max(LEAST_ROWS, math.ceil(needs.rows / 3)),
+        face_elements=max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR_PER_ELEMENT[level][member])),
         layer_depths=(depths[0], depths[1], depths[2]),
-        flank_start_diameter=start,
-        size_at=width,
+        flank_start_diameter=needs.start,
+        size_at=needs.width,
         neck_elements=LEAST_NECK + more,
         fillet_elements=SectorResolution.fillet_elements + more,
         back_elements=SectorResolution.back_elements + more,
@@ -98,6 +91,35 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
         rim_elements=rim,
     )
     return _fine_everywhere(resolution) if problem.options.fine_body else resolution
+
+
+def flank_needs(problem: GearProblem, member: Member) -> FlankNeeds:
+    """What the contact of the pinion or the wheel needs of its flank's mesh."""
+    estimate, gear = problem.hertz_estimate, problem.pair.gears[member]
+    count = elements_per_contact_width(problem)
+    width = ContactWidth(estimate, member)
+    start = _flank_start(gear, width)
+    roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
+    density = roll / gear.base_radius * count / width.at_roll_length(roll)
+    shear = float(np.mean(density)) * math.tan(gear.base_helix_angle) * gear.face_width
+    depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
+    return FlankNeeds(float(trapezoid(density, roll)), shear, depths, start, width)
+
+
+@dataclass(frozen=True)
+class FlankNeeds:
+    """What a contact needs of its flank's mesh."""
+
+    rows: float
+    """Elements along the profile."""
+    shear: float
+    """By how many elements the contact line is sheared over the whole face, on average along the profile."""
+    depths: Floats
+    """Thickness (3,) of the thin layers below the flank [mm]."""
+    start: float
+    """Diameter where the fine flank starts [mm]."""
+    width: ContactWidth
+    """Hertz width along the profile."""
 
 
 def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
@@ -118,7 +140,7 @@ def _neck_elements(depth: float) -> int:
     return max(LEAST_NECK, math.ceil(math.log2(1.0 + NECK / (FIRST_CELL_ASPECT * depth))))
 
 
-class _ContactWidth:
+class ContactWidth:
     """Hertz width 2b_H [mm] along one gear's profile; beyond the path of contact that of its nearest end."""
 
     def __init__(self, estimate: HertzEstimate, member: Member) -> None:
@@ -135,7 +157,7 @@ class _ContactWidth:
         return 2 * self.estimate.half_width(xi)
 
 
-def _flank_start(gear: GearParameters, width: _ContactWidth) -> float:
+def _flank_start(gear: GearParameters, width: ContactWidth) -> float:
     """Diameter where the fine flank starts [mm]: below the active profile, not below the involute."""
     pair = width.estimate.pair
     active = gear.roll_length(pair.active_start_diameters[width.member])

@@ -14,7 +14,7 @@ from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.input_checks import both_gears, instance, number, one_of
+from evolvent_meshes.input_checks import Words, both_gears, instance, number, one_of, refuse
 
 Level = Literal["quick", "standard", "fine"]
 LEVELS: tuple[Level, ...] = ("quick", "standard", "fine")
@@ -30,7 +30,7 @@ class MeshSettings:
 
     Examples:
         >>> MeshSettings("quick")
-        MeshSettings(level='quick', elements_per_contact_width=None, shape='hexahedron', order=2)
+        MeshSettings(level='quick', elements_per_contact_width=None, shape='hexahedron', order=2, two_level=False)
     """
 
     level: Level = "standard"
@@ -41,11 +41,16 @@ class MeshSettings:
     """Cells of sectors in space; plane sections have quadrilaterals or triangles."""
     order: Literal[1, 2] = 2
     """Order of the cells and of the displacement."""
+    two_level: bool = False
+    """The loaded flanks are meshed in levels of their own on a coarse body, in space and with hexahedra of order 2."""
 
     def __post_init__(self) -> None:
         one_of("mesh level", self.level, LEVELS)
         one_of("mesh shape", self.shape, SHAPES)
         one_of("mesh order", self.order, (1, 2))
+        if self.two_level and (self.shape, self.order) != ("hexahedron", 2):
+            remedy = "leave them out, or two_level"
+            refuse("two_level", "hexahedra of order 2", Words(f"{self.shape}, order {self.order}"), remedy)
         if self.elements_per_contact_width is not None:
             wanted, remedy = "a number above 0", "leave it out for that of the level"
             number("elements_per_contact_width", self.elements_per_contact_width, wanted, remedy, lambda n: n > 0.0)
@@ -113,9 +118,16 @@ class GearProblem:
         both_gears("flanks", self.flanks, FlankChart, optional=True)
         object.__setattr__(self, "flanks", tuple(self._checked_flank(gear) for gear in Member))
         instance("options", self.options, GearOptions, "write GearOptions(in_space=True), for example")
+        self._check_levels()
         remedy = "give it in N·mm and without a sign: the pinion drives"
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
+
+    def _check_levels(self) -> None:
+        """Raises InputError where flanks with levels of their own cannot be had."""
+        if self.mesh.two_level and (self.options.whole_gears or self.options.fine_body):
+            remedy = "leave out one of the two: they are the long way round that two_level saves"
+            refuse("two_level", "without whole_gears and fine_body", self.options, remedy)
 
     def _checked_flank(self, gear: Member) -> FlankChart | None:
         """The chart of a gear from the base circle on. Raises TableError where it does not fit the gear."""
@@ -138,6 +150,11 @@ class GearProblem:
     def is_plane(self) -> bool:
         """Whether it is solved in plane strain."""
         return self.has_equal_sections and not self.options.in_space
+
+    @property
+    def is_two_level(self) -> bool:
+        """Whether the flanks have levels of their own."""
+        return self.mesh.two_level and not self.is_plane
 
     @property
     def pinion_torque(self) -> float:

@@ -13,10 +13,12 @@ import numpy as np
 
 from evolvent.fem.surface import Surface
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.wear.gears.flank_grid import FlankGrid
 from evolvent.wear.mesh_motion import WornSurface, certify_mesh_volume, worn_mesh
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.input_checks import Words, refuse
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
@@ -57,7 +59,11 @@ class MeshedPair:
 
     @staticmethod
     def of(model: GearModel) -> MeshedPair:
-        """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid."""
+        """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid, and where
+        flanks have levels of their own."""
+        if any(isinstance(body.chain, TwoLevelRing) for body in model.bodies):
+            remedy = "leave out MeshSettings(two_level=True)"
+            refuse("wear", "gears whose flanks are those of their meshes", Words("flanks with levels"), remedy)
         grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         unworn = tuple((body.mesh, body.flank) for body in model.bodies)
         return MeshedPair(model, grids, unworn, np.zeros(sum(grid.node.size for grid in grids)))

@@ -12,7 +12,6 @@ import pytest
 from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
-from evidence.benchmarks.accuracy.subdivision import halved
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.meshing.sector_meshes import gear_mesh
@@ -38,6 +37,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.splitting import halved
 from evolvent_meshes.sector.section import SectorResolution
 from tests.support.gear_cases import spur_scene
 from tests.support.running.processes import BROKEN_RUN, Run

@@ -1,0 +1,73 @@
+"""The nodes of a swept flank as a lattice: rows along the profile, levels along the face."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent_meshes.arrays import Floats, Ints
+
+SAME = 1e-6
+"""Radii or heights closer than this are one row or level [mm]."""
+
+
+@dataclass(frozen=True)
+class FlankLattice:
+    """A flank of R × L second-order cells.
+
+    points: (2R + 1, 2L + 1, 3) by rows from the root to the tip, and levels of z [mm].
+    nodes: (2R + 1, 2L + 1) their numbers.
+    """
+
+    points: Floats
+    nodes: Ints
+
+    @staticmethod
+    def of(points: Floats) -> FlankLattice:
+        """The lattice of a flank's nodes (n, 3) [mm]. Raises ValueError where they are none."""
+        (radius, row), (height, level) = _steps(np.hypot(points[:, 0], points[:, 1])), _steps(points[:, 2])
+        nodes = np.full((len(radius), len(height)), -1)
+        nodes[row, level] = np.arange(len(points))
+        if nodes.size != len(points) or nodes.min() < 0:
+            raise ValueError(
+                f"flank: wanted a lattice of nodes, found {len(points)} on {len(radius)} radii and "
+                f"{len(height)} heights"
+            )
+        return FlankLattice(points[nodes], nodes)
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Rows R and layers L of cells."""
+        rows, levels = self.nodes.shape
+        return rows // 2, levels // 2
+
+    @property
+    def radius(self) -> Floats:
+        """(2R + 1,) of the rows [mm]."""
+        return np.hypot(self.points[:, 0, 0], self.points[:, 0, 1])
+
+    @property
+    def height(self) -> Floats:
+        """(2L + 1,) of the levels [mm]."""
+        return self.points[0, :, 2]
+
+    def place(self, points: Floats) -> Ints:
+        """Row and level (n, 2) of some of its points (n, 3)."""
+        radius = np.hypot(points[:, 0], points[:, 1])
+        rows = np.searchsorted(self.radius, radius - SAME)
+        return np.column_stack([rows, np.searchsorted(self.height, points[:, 2] - SAME)])
+
+    def edges(self) -> Floats:
+        """Longest edge along the profile and along the face (2,) [mm]."""
+        corners = self.points[::2, ::2]
+        return np.array([np.linalg.norm(np.diff(corners, axis=axis), axis=-1).max() for axis in (0, 1)])
+
+
+def _steps(values: Floats) -> tuple[Floats, Ints]:
+    """The different values, ascending, and which each is."""
+    order = np.argsort(values)
+    new = np.concatenate([[False], np.diff(values[order]) > SAME])
+    which = np.empty(len(values), dtype=np.int64)
+    which[order] = np.cumsum(new)
+    return values[order][~np.concatenate([[False], np.diff(values[order]) <= SAME])], which

@@ -1,0 +1,82 @@
+"""A flank refined in levels: the finest surface, and what each level changes in the compliance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import scipy.sparse as sp
+
+from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
+from evolvent.contact.two_level.split_counts import split_counts
+from evolvent.fem.material import Material
+from evolvent.gears.meshing.flank_levels import FlankLevel
+from evolvent.gears.two_level.towers import Towers, reach_of
+from evolvent.gears.two_level.two_level_ring import RefinedLevel
+from evolvent_meshes.arrays import Ints
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.sector.flank_points import on_flank
+
+HELD = ("bore", "cut_low", "cut_high")
+"""Facet groups of a sector at which patches are held: far from a flank, their displacement is the coarse body's."""
+
+
+@dataclass(frozen=True)
+class FlankRefinement:
+    """The loaded flank of a sector in levels.
+
+    gear: without modifications, which do not change the compliance.
+    mesh: the coarse sector, its layers of one height.
+    material: of the gear.
+    levels: from the coarsest to the finest.
+    """
+
+    gear: GearParameters
+    mesh: MeshData
+    material: Material
+    levels: Sequence[FlankLevel]
+
+    def bodies(self) -> Iterator[CoarseBody]:
+        """One a level: what is split to make it. Below the first level, only cells within reach of the flank are."""
+        mesh = self.mesh
+        for level in self.levels:
+            body = coarse_body(self.gear, mesh, self.material, level)
+            yield body
+            near = body.near(np.arange(len(body.facets)), reach_of(body))
+            mesh = body.split_patch(near).mesh
+
+
+def coarse_body(gear: GearParameters, mesh: MeshData, material: Material, level: FlankLevel) -> CoarseBody:
+    """A mesh of a sector, or of what is near its flank, to be split."""
+    along = np.full((len(mesh.cells), 3), level.rows)
+    along[:, 2] = level.layers  # swept cells have their third axis along the face
+    counts = split_counts(mesh, "flank", along, level.below)
+    return CoarseBody(mesh, material, "flank", counts, partial(on_flank, gear))
+
+
+def refined_levels(refinement: FlankRefinement, flux_safety: float | None) -> tuple[FineSurface, list[RefinedLevel]]:
+    """The finest flank, and all levels. flux_safety: see `patch_response`; on the finest level only.
+
+    Raises NotPositiveDefinite, OutOfMemory.
+    """
+    levels: list[RefinedLevel] = []
+    fine: FineSurface | None = None
+    for number, body in enumerate(refinement.bodies()):
+        transfer = body.fine.transfer
+        if fine is not None:
+            transfer = transfer @ _reordered(fine.numbers(body.surface.points))
+        fine = body.fine
+        safety = flux_safety if number == len(refinement.levels) - 1 else None
+        towers = Towers(body, refinement.gear.base_radius, refinement.gear.twist, HELD, safety)
+        levels.append(RefinedLevel(transfer.tocsr(), towers.correction()))
+    assert fine is not None
+    return fine, levels
+
+
+def _reordered(numbers: Ints) -> sp.csr_matrix:
+    """Takes values of nodes in one order to another, in which node i has the number numbers[i]."""
+    n = len(numbers)
+    return sp.csr_matrix((np.ones(n), (np.arange(n), numbers)), (n, n))

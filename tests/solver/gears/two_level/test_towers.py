@@ -1,0 +1,57 @@
+"""Corrections of a flank: which cells have patches, and what congruence and interpolation change.
+
+Yang's pinion, 2 mm wide, 15 × 8 coarse cells on the flank that are split in depth; Nitsche's functionals on the fine
+cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evolvent.contact.two_level.correction import Correction
+from evolvent.fem.material import STEEL
+from evolvent.gears.meshing.flank_levels import FlankLevel
+from evolvent.gears.two_level import towers
+from evolvent.gears.two_level.flank_refinement import HELD, coarse_body
+from evolvent.gears.two_level.towers import Axis, Towers
+from evolvent_meshes.sector.section import SectorResolution
+from evolvent_meshes.sector.sector import sector_mesh
+from tests.support.meshes.sector_cases import gear_and_start
+
+
+def test_cells_near_the_ends_have_their_own_patches() -> None:
+    """Twenty cells, two within reach of each other: three at each end; of the 14 between, the middle one stands for all
+    layers, and five, closer near both ends, for all rows. Where one patch of all costs less, it is one. Exact."""
+    layers, rows, few = Axis(20, 2, 1), Axis(20, 2, 5), Axis(9, 2, 5)
+    assert layers.own == [range(3), range(17, 20)] and layers.sampled == [10]
+    assert rows.own == layers.own and rows.sampled == [3, 5, 9, 14, 16]
+    assert few.own == [range(9)] and len(few.between) == 0 and few.sampled == []
+    assert Axis(9, 2, 1).own == [range(3), range(6, 9)] and Axis(9, 2, 1).sampled == [4]
+    assert Axis(7, 2, 1).own == [range(7)]
+
+
+def correction(reach: float) -> Correction:
+    """Patches that reach so many edges of the coarse cells."""
+    gear, start = gear_and_start("yang pinion")
+    gear = replace(gear, face_width=2.0)
+    resolution = SectorResolution(
+        profile_elements=15, face_elements=8, end_size_ratio=1.0, flank_start_diameter=start,
+        layer_depths=(0.2, 0.25, 0.285),
+    )  # fmt: skip
+    body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
+    return Towers(body, gear.base_radius, gear.twist, HELD, 2.0).correction()
+
+
+@pytest.mark.slow
+def test_shared_and_interpolated_responses_are_those_of_one_large_patch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against one patch that is all of the tooth: the largest difference is below 2 % of the largest correction.
+    Patches near the edges, shared along the face and interpolated along the profile all take part."""
+    found = correction(towers.REACH)
+    monkeypatch.setattr(towers, "REACH", 50.0)
+    exact = correction(towers.REACH)
+    assert len(found.responses) > 3 > len(exact.responses)
+    D, C = (each.among(np.arange(each.size)) for each in (found, exact))
+    assert np.abs(D - C).max() < 0.02 * np.abs(C).max()

@@ -40,10 +40,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
     "gears.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "gears.problem"),
-    "gears.ring": ("meshes", "fem.condensation"),
+    "gears.ring": ("meshes", "fem.condensation", "contact.nitsche", "contact.newton"),
     "gears.two_level": (
-        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.two_level", "gears.meshing",
-        "gears.ring",
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.newton", "contact.two_level",
+        "gears.meshing", "gears.ring",
     ),
     "gears": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.condensation",

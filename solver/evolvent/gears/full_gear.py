@@ -63,10 +63,10 @@ class WholeGear:
         """Flank nodes n of one tooth."""
         return len(self.matrix) // (self.dimension * len(self.teeth))
 
-    def block(self, parts: Sequence[MappedNodes]) -> Floats:
-        """See `ring_compliance.Compliance.block`."""
+    def jumps(self, parts: Sequence[MappedNodes]) -> Floats:
+        """See `ring_compliance.Compliance.jumps`."""
         dofs = [self._dofs(np.full(len(part.nodes), part.tooth), part.nodes) for part in parts]
-        rows = [[part.map(other.map(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
+        rows = [[part.jumps(other.jumps(self.matrix[np.ix_(j, i)]).T) for other, j in zip(parts, dofs)]
                 for part, i in zip(parts, dofs)]  # fmt: skip
         return np.block(rows)
 

@@ -14,6 +14,7 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.two_level.flank_refinement import FlankRefinement, refined_levels
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.gears.gear import GearParameters
@@ -43,7 +44,8 @@ def two_level_gear(
     fine, refined = refined_levels(FlankRefinement(plain, mesh, material, levels), safety)
     flank = fine.surface if gear.modifications.is_empty else _modified(fine.surface, gear)
     traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
-    ring = TwoLevelRing(coarse.chain, refined, 2.0 * np.pi / gear.z)
+    assert isinstance(coarse.chain, ChainedCompliance)
+    ring = TwoLevelRing(coarse.chain, coarse.flank, refined, 2.0 * np.pi / gear.z)
     spent = time.perf_counter() - begin - coarse.assemble_seconds
     return replace(coarse, gear=gear, flank=flank, traction=traction, chain=ring, condense_seconds=spent)
 

@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.newton import snes
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
@@ -28,7 +29,7 @@ from evolvent_meshes.arrays import Bools, Floats
 TOLERANCE = 1e-10  # residual force over the force in the system
 ITERATIONS = 60
 QUADRATIC = 30.0  # lower bound of a relative residual over the square of the one before (200 to 1000 were observed)
-ROUGHEST, FINEST = 1e-2, 1e-7  # limits of the accuracy to which a Newton step is solved
+ROUGHEST, FINEST = 1e-3, 1e-7  # limits of the accuracy to which a Newton step is solved
 LAST_STEP = 1e-2  # of the tolerance: residual that the linear solve of the last step may leave
 GUESS_ITERATIONS = 10  # after which a start from a given guess is abandoned
 
@@ -38,7 +39,7 @@ class CondensedSystem:
     """The bodies of a contact problem in the local jumps of its contacts, k components a node.
 
     operator: contact at q points, jumps at n nodes.
-    compliance: A (n·k, n·k) [mm/N].
+    compliance: A (n·k, n·k).
     motion: H (n·k, r), jumps by unit amplitudes of the r free rigid motions.
     jump: J_0 (n·k,), jumps by external loads and prescribed motions [mm].
     load: F (r,), loads on the free rigid motions [N, N·mm].
@@ -46,7 +47,7 @@ class CondensedSystem:
     """
 
     operator: ContactOperator
-    compliance: Floats
+    compliance: JumpCompliance
     motion: Floats
     jump: Floats
     load: Floats
@@ -64,7 +65,7 @@ class CondensedSystem:
 
     def jumps(self, force: Floats, motion: Floats) -> Floats:
         """J (n, k) [mm] from nodal forces (n, k) [N] and amplitudes of the motions (r,)."""
-        return (self.jump + self.motion @ motion - self.compliance @ force.ravel()).reshape(-1, self.k)
+        return (self.jump + self.motion @ motion - self.compliance.times(force.ravel())).reshape(-1, self.k)
 
     @property
     def scale(self) -> float:
@@ -109,7 +110,7 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     k = system.k
     if k == 1:
         return system
-    A = np.ascontiguousarray(system.compliance[::k, ::k])  # BLAS needs contiguous columns
+    A = system.compliance.normal()
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
@@ -250,7 +251,8 @@ def _accuracy(residual: float, scale: float) -> float:
     """Fraction of the residual to which a Newton step's equations are solved: well below the residual that the
     nonlinearity of the contact law leaves anyway, and no further below the tolerance than results show."""
     relative = residual / scale if scale > 0.0 else 1.0
-    return max(min(QUADRATIC * relative, ROUGHEST), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)
+    roughest = ROUGHEST / max(relative, 1.0)  # of the load too: a start from the right points is not to be lost
+    return max(min(QUADRATIC * relative, roughest), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)
 
 
 def _assumed_contact(system: CondensedSystem, touching: Bools, slip: Floats | None = None) -> Floats:

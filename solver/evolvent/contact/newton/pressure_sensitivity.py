@@ -31,7 +31,9 @@ class PressureSensitivity:
         self._slope = operator.stabiliser[:, 0] * touching
         law = LawValues(pressure, touching[:, None, None].astype(float))
         tangent = Tangent.of(operator, law, system.compliance, system.motion)
-        self._inverse = ReducedTangent.of(tangent.M, tangent.A, tangent.H, tangent.kept)
+        A = system.compliance.matrix
+        assert A is not None, "sensitivity of pressures: wanted a compliance that is a matrix"
+        self._compliance, self._inverse = A, ReducedTangent.of(tangent.M, A, tangent.H, tangent.kept)
         lost = np.where(gone, pressure[:, 0], 0.0)
         self.released = self._slope * (operator.shape @ self._jump(operator.weights * lost)) - lost
 
@@ -46,4 +48,4 @@ class PressureSensitivity:
         n, r = self._system.motion.shape
         nodal = self._system.operator.shape.T @ less
         y = self._inverse.solve(np.concatenate([-nodal, np.zeros((r, *nodal.shape[1:]))]))
-        return np.asarray(self._system.motion @ y[n:] - self._system.compliance @ y[:n])
+        return np.asarray(self._system.motion @ y[n:] - self._compliance @ y[:n])

@@ -11,18 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs, lu_solve
 
 from evolvent.contact.newton.snes import NotConverged
-from evolvent_meshes.arrays import Ints
-
-Reals = NDArray[Any]
-"""Of single or double precision."""
+from evolvent_meshes.arrays import Ints, Reals
 
 
 class FreeMotion(NotConverged):

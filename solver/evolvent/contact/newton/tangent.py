@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator
@@ -31,20 +32,20 @@ class Tangent:
     """T at one state.
 
     M: ∂F/∂J (m, m) [N/mm].
-    A: compliance (m, m) [mm/N].
+    A: compliance (m, m).
     H: jumps by the free rigid motions (m, r).
     kept: columns of M that the approximate tangent keeps.
     whole: whether these are all that are not zero.
     """
 
     M: sp.csr_matrix
-    A: Floats
+    A: JumpCompliance
     H: Floats
     kept: Ints
     whole: bool
 
     @staticmethod
-    def of(operator: ContactOperator, law: LawValues, A: Floats, H: Floats) -> Tangent:
+    def of(operator: ContactOperator, law: LawValues, A: JumpCompliance, H: Floats) -> Tangent:
         """At the state with the law's values at the quadrature points. Raises NotConverged where nothing touches."""
         M = operator.tangent(law)
         k = law.traction.shape[1]
@@ -60,12 +61,13 @@ class Tangent:
     def times(self, y: Floats) -> Floats:
         """T y."""
         force, motion = np.split(y, [self.M.shape[0]])
-        jump = self.H @ motion - self.A @ force
+        jump = self.H @ motion - self.A.times(force)
         return np.concatenate([force - self.M @ jump, self.H.T @ force])
 
     def solve(self, right: Floats) -> Floats:
-        """T⁻¹ right, (m + r,), with all columns. Raises NotConverged where T is singular."""
-        inverse = ReducedTangent.of(self.M, self.A, self.H, np.flatnonzero(_columns(self.M)))
+        """T⁻¹ right, (m + r,), with all columns, where A is a matrix. Raises NotConverged where T is singular."""
+        assert self.A.matrix is not None
+        inverse = ReducedTangent.of(self.M, self.A.matrix, self.H, np.flatnonzero(_columns(self.M)))
         first: Floats = inverse.solve(right)
         second: Floats = inverse.solve(right - self.times(first))  # f = b − M z loses digits: one refinement
         return first + second

@@ -14,6 +14,8 @@ from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.coulomb import LawValues
 
+ACCURACY = 1e-6
+
 
 def tangent_stiffness(system: CondensedSystem, state: Equilibrium) -> float:
     """dF/dδ [N/mm; N/mm² in 2D] of a gear pair's frictionless system (k = 1) about an equilibrium.
@@ -26,4 +28,4 @@ def tangent_stiffness(system: CondensedSystem, state: Equilibrium) -> float:
     law = LawValues(state.traction[:, :1], touching[:, :, None].astype(float))
     tangent = Tangent.of(system.operator, law, system.compliance, system.motion / system.lever)
     unit = np.append(np.zeros(len(system.jump)), 1.0)
-    return 1.0 / float(tangent.solve(unit)[-1])
+    return 1.0 / float(system.steps.solve(tangent, unit, ACCURACY)[-1])

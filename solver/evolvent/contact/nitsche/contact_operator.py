@@ -24,6 +24,7 @@ import scipy.sparse.linalg as spla
 from scipy.spatial import cKDTree
 
 from evolvent.contact.nitsche.coulomb import LawValues
+from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent.contact.search.pairing import Pairing
 from evolvent.fem.lagrange import quadrature, tabulate
 from evolvent.fem.nodal_frames import tangent_frames
@@ -33,8 +34,6 @@ from evolvent_meshes.arrays import Floats, Ints
 
 ContactLaw = Callable[[Floats], LawValues]
 """From trial tractions (q, k) to the law's values at the points."""
-ROUNDING = 1e-15
-"""Of the projection's largest entry: smaller ones are rounding errors."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class ContactOperator:
     frames: (n, d, d) nodal frames, rows normal, t1[, t2].
     jump1: (n, n1) and
     jump2: (n, n2) weights of the jump J = jump1·e_1 − jump2·u_2.
-    mass: (n, n) ∫N_k N_l [mm²; mm in 2D].
+    mass: (n, n) ∫N_k N_l where the bodies are placed [mm²; mm in 2D].
     shape: (q, n) shape functions at the points.
     hat: (q, n) piecewise linear hat functions at the points.
     points: (q, d) positions [mm].
@@ -57,7 +56,7 @@ class ContactOperator:
     nodes: Ints
     frames: Floats
     jump1: sp.csr_matrix
-    jump2: sp.csr_matrix
+    jump2: MortarProjection
     mass: sp.csr_matrix
     shape: sp.csr_matrix
     hat: sp.csr_matrix
@@ -142,7 +141,7 @@ class ContactOperator:
     def local_map(self, side: int, rotation: Floats) -> sp.csr_matrix:
         """(n·d, n_s·d): from displacements of surface `side` (1 or 2), in its body's frame, to local jumps, with the
         sign of the jump; rotation: (d, d), from the body's frame to the common one."""
-        jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2, -1.0)
+        jump, sign = (self.jump1, 1.0) if side == 1 else (self.jump2.matrix(), -1.0)
         return frames_times(self.frames @ rotation * sign, jump)
 
 
@@ -201,12 +200,12 @@ def contact_operator(
     ψ = hats(first.shape, first.order, pairing.xi1)
     columns1, columns2 = place[first.facets[pairing.facet1]], second.facets[pairing.facet2]
     shape, hat = _rows(columns1, N1, len(nodes)), _rows(columns1, ψ, len(nodes))
-    mass = mass_matrix(first, facets, nodes)
+    mass, mixed = mass_matrix(first, facets, nodes), _rows(columns2, N2, len(second.points))
     return ContactOperator(
         nodes,
         frames[nodes],
         sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), (len(nodes), len(first.points))),
-        _projection(pairing, first, second, nodes, mass, shape, _rows(columns2, N2, len(second.points))),
+        _projection(pairing, first, second, nodes, mass, shape, mixed),
         mass,
         shape,
         hat,
@@ -225,19 +224,16 @@ def _projection(
     M: sp.csr_matrix,
     N1: sp.csr_matrix,
     N2: sp.csr_matrix,
-) -> sp.csr_matrix:
+) -> MortarProjection:
     """Π (n, n2): M Π = ∫N_1 N_2∘π. Where surface 2 does not cover a facet, u_2 is extended from its nearest nodes, so
     that Π is defined there too and preserves constants."""
     w = sp.diags(pairing.weight)
     covered = N1.T @ w @ N1
     nearest = cKDTree(second.points).query(first.points[nodes])[1]
     P = sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nearest)), (len(nodes), len(second.points)))
-    right = (N1.T @ w @ N2 + (M - covered) @ P).tocsc()
-    used = np.flatnonzero(np.diff(right.indptr))
-    dense = spla.splu(M.tocsc()).solve(right[:, used].toarray())
-    dense[np.abs(dense) < ROUNDING * np.abs(dense).max()] = 0.0
-    block = sp.csr_matrix(dense)
-    return sp.csr_matrix((block.data, used[block.indices], block.indptr), (len(nodes), len(second.points)))
+    mixed = (N1.T @ w @ N2 + (M - covered) @ P).tocsr()
+    mixed.eliminate_zeros()
+    return MortarProjection(M, mixed)
 
 
 def mass_matrix(surface: Surface, facets: Ints, nodes: Ints) -> sp.csr_matrix:
@@ -271,7 +267,7 @@ def stacked(operators: list[ContactOperator]) -> ContactOperator:
 
     return ContactOperator(
         np.concatenate([op.nodes for op in operators]), rows("frames"),
-        diagonal("jump1"), diagonal("jump2"), diagonal("mass"),
+        diagonal("jump1"), MortarProjection.stacked([op.jump2 for op in operators]), diagonal("mass"),
         diagonal("shape"), diagonal("hat"),
         rows("points"), rows("weights"), rows("gap"), rows("stabiliser"),
     )  # fmt: skip

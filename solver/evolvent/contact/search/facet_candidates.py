@@ -11,6 +11,9 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 OPPOSED = -0.2
 """n1·n2 at the centres of two facets above which they cannot face each other."""
+TILT = 0.5
+"""Of the reach: by how much points within reach along the normals of a facet may lie beside it, as these differ from
+the one at its centre by less than 30°."""
 
 
 def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_gap: float,
@@ -32,8 +35,16 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
     frame1, frame2 = _frames(surface1)[facets1], _frames(surface2)
     keep = np.einsum("pd,pd->p", frame1[i1, 0], frame2[i2, 0]) < OPPOSED
     i1, i2 = i1[keep], i2[keep]
+    keep = _beside(centre2[i2] - centre1[i1], frame1[i1, 0]) <= radius1[i1] + radius2[i2] + TILT * reach
+    i1, i2 = i1[keep], i2[keep]
     keep = _boxes_meet(surface1, surface2, facets1[i1], i2, frame1[i1], max_gap, max_overlap)
     return facets1[i1[keep]], i2[keep]
+
+
+def _beside(distance: Floats, normal: Floats) -> Floats:
+    """Length (p,) of distances (p, d) across normals (p, d)."""
+    along = np.einsum("pd,pd->p", distance, normal)
+    return np.sqrt(np.maximum(np.einsum("pd,pd->p", distance, distance) - along**2, 0.0))
 
 
 def facet_balls(surface: Surface, facets: Ints) -> tuple[Floats, Floats]:

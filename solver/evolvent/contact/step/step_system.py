@@ -17,6 +17,7 @@ from evolvent.contact.newton.equilibrium import (
     normal_part,
     stuck,
 )
+from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotion
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
@@ -151,7 +152,8 @@ class StepSystem:
             F.append(motions.load[motions.free])
         motion, load = np.hstack(H), np.concatenate(F)
         lever = np.abs(motion).max(axis=0, initial=0.0)
-        return CondensedSystem(operator, self.compliance, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
+        compliance = DenseCompliance(self.compliance, self.d)
+        return CondensedSystem(operator, compliance, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
 
     def solve(
         self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None

@@ -13,13 +13,16 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse as sp
 
+from evolvent.contact.newton.applied_compliance import summed
+from evolvent.contact.newton.block_inverse import NearlyNormal
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
-from evolvent.gears.contact.jump_map import JumpMap
 from evolvent.gears.contact.search_window import arc_distance
 from evolvent.gears.contact.tooth_contact import ToothContact
 from evolvent.gears.kinematics import Stand, spin
+from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.member import Member
@@ -116,7 +119,8 @@ class ContactGeometry:
         parts = []
         for t in self.teeth:
             first = t.operator.shape @ pinion.tip_zone[t.operator.nodes].astype(float)
-            second = np.abs(t.operator.shape) @ (np.abs(t.operator.jump2) @ wheel.tip_zone)
+            tip = np.flatnonzero(wheel.tip_zone)
+            second = np.abs(t.operator.shape) @ np.abs(t.operator.jump2.at(tip)).sum(axis=1)
             parts.append((np.abs(first) > 1e-9) | (second > 0.05))
         return np.concatenate(parts)
 
@@ -174,16 +178,21 @@ class ContactGeometry:
         maps = self.jump_maps(gear, contact_forces.shape[1])
         return np.concatenate([-E.forces(f) for E, f in zip(maps, self._split(contact_forces))])
 
-    def compliance(self, k: int, threads: Threads = nullcontext) -> Floats:
-        """Of the first k components of the local jumps, (n·k, n·k) [mm/N]: the sum over both gears. threads: in which
-        each gear's is put together."""
+    def compliance(
+        self, k: int, threads: Threads = nullcontext, rough: NearlyNormal | None = None
+    ) -> JumpCompliance:
+        """Of the first k components of the local jumps, (n·k, n·k): the sum over both gears.
+
+        threads: in which each gear's is put together. rough: its rough matrix where that is known; only for gears whose
+        compliance is known by products.
+        """
         parts = []
         for gear, body in zip(Member, self.bodies):
             maps = zip(self.teeth, self.jump_maps(gear, k))
-            wanted = [MappedNodes(gear.sign * t.tooth, t.coupled_nodes(gear), E.jumps) for t, E in maps]
+            wanted = [MappedNodes(gear.sign * t.tooth, t.coupled_nodes(gear), E) for t, E in maps]
             with threads():
-                parts.append(body.chain.block(wanted))
-        return np.asarray(sum(parts))
+                parts.append(body.chain.jumps(wanted))
+        return summed(parts, k, rough)
 
     def _placed_points(self, gear: Member, tooth: int) -> Floats:
         R = self.stand.rotation(gear, self.d, tooth)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from evolvent.contact.nitsche.contact_operator import ContactOperator, contact_operator
+from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent.contact.search.pairing import Pairing, SearchError, pair_surfaces
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.fem.surface import Surface
@@ -41,16 +42,12 @@ class ToothContact:
 
     def coupled_nodes(self, gear: Member) -> Ints:
         """Flank nodes of a gear that the jump depends on, sorted."""
-        return self.operator.nodes if gear == Member.PINION else self._wheel_nodes
+        return self.operator.nodes if gear == Member.PINION else self.operator.jump2.columns
 
     @cached_property
-    def _wheel_nodes(self) -> Ints:
-        return np.unique(self.operator.jump2.indices)
-
-    @cached_property
-    def projection(self) -> Floats:
-        """Π from the wheel's coupled nodes, (n, m); dense in most of its entries."""
-        return np.asarray(self.operator.jump2[:, self._wheel_nodes].toarray())
+    def projection(self) -> MortarProjection:
+        """Π from the wheel's coupled nodes, (n, m)."""
+        return self.operator.jump2.of_columns()
 
     def displaced_from(self, gear: Member, points: Floats) -> Floats:
         """Points (n, d) of a gear's flank that belong to the jump's nodes, displaced as they were in the search."""

@@ -24,23 +24,20 @@ The cost of condensing and of the ring is measured in docs/benchmark.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
 import scipy.sparse as sp
 
+from evolvent.contact.newton.applied_compliance import SurfaceCompliance
 from evolvent.fem.condensation.schur_complement import SectorCondensation
+from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_modes import coupling
+from evolvent.gears.ring.ring_window import RingWindow
 from evolvent.gears.ring.sector_interfaces import ClosedRing, JoinedSectors, OpenChain
 from evolvent_meshes.arrays import Floats, Ints
-
-Map = Callable[[Floats], Floats]
-
-
-def _unchanged(displacements: Floats) -> Floats:
-    return displacements
 
 
 @dataclass(frozen=True)
@@ -49,19 +46,24 @@ class MappedNodes:
 
     tooth: number of the tooth.
     nodes: (k,), of its flank.
-    map: from columns of their displacements (d·k, c) to the functionals (m, c); by default the displacements.
+    map: from their displacements to the functionals; None: the displacements.
     """
 
     tooth: int
     nodes: Ints
-    map: Map = _unchanged
+    map: JumpMap | None = None
+
+    def jumps(self, displacements: Floats) -> Floats:
+        """The functionals (m, c) of columns of displacements (d·k, c)."""
+        return displacements if self.map is None else self.map.jumps(displacements)
 
 
 class Compliance(Protocol):
     """Compliance of a gear: displacements of its flanks' nodes under forces on them, d components a node."""
 
-    def block(self, parts: Sequence[MappedNodes]) -> Floats:
-        """E C Eᵀ (mm/N where E = 1) of the parts' maps E, in their order; each tooth at most once."""
+    def jumps(self, parts: Sequence[MappedNodes]) -> Floats | SurfaceCompliance:
+        """E C Eᵀ (mm/N where E = 1) of the parts' maps E, in their order; each tooth at most once. As a matrix, or as
+        products."""
         ...
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
@@ -119,21 +121,30 @@ class ChainedCompliance:
         self._coupling = coupling(sector, self._frames, self._joined, settings.tolerance)
         self._modes = self._coupling.modes
 
-    def block(self, parts: Sequence[MappedNodes]) -> Floats:
-        """See `Compliance.block`. The maps are applied to the few modes of the coupling, and to the whole compliance of
+    def jumps(self, parts: Sequence[MappedNodes]) -> Floats:
+        """See `Compliance.jumps`. The maps are applied to the few modes of the coupling, and to the whole compliance of
         their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
-        modes = [part.map(self._turned(part.tooth, self._modes[_dofs(part.nodes, self.dimension)])) for part in parts]
+        modes = [part.jumps(self._turned(part.tooth, self._modes[_dofs(part.nodes, self.dimension)])) for part in parts]
         ends = np.cumsum([0] + [len(mode) for mode in modes])
         result = np.empty((ends[-1], ends[-1]))
         for i, (part, mode) in enumerate(zip(parts, modes)):
             for j in range(i, len(parts)):
                 block = mode @ self._between(part.tooth, parts[j].tooth) @ modes[j].T
                 if j == i:
-                    block += part.map(part.map(self._turned_sector(part)).T)
+                    block += part.jumps(part.jumps(self._turned_sector(part)).T)
                 result[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
                 result[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
         return result
+
+    def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
+        """Between some nodes (k,) of some teeth, each at most once. Raises IndexError."""
+        self._check([(tooth, node) for tooth, nodes in parts for node in nodes])
+        dofs = [_dofs(nodes, self.dimension) for _, nodes in parts]
+        teeth = [tooth for tooth, _ in parts]
+        coupling = np.block([[self._between(tooth, other) for other in teeth] for tooth in teeth])
+        own = tuple(self._sector.compliance[np.ix_(each, each)] for each in dofs)
+        return RingWindow(own, tuple(self._modes[each] for each in dofs), coupling)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
         """See `Compliance.apply`."""

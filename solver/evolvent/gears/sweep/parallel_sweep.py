@@ -2,7 +2,8 @@
 
 Search, compliance and the frictionless equilibrium are most of a position. They do not depend on the friction of the
 position before, and where their search starts makes no difference. Friction follows position by position, the
-coefficients divided among the ranks, which read the prepared positions from the same memory.
+coefficients divided among the ranks, which read the prepared positions from the same memory. A single coefficient
+cannot be divided: there one rank prepares the next position while another solves friction at this one.
 """
 
 from __future__ import annotations
@@ -13,8 +14,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
+import numpy as np
 from mpi4py import MPI
 
+from evolvent.contact.newton.applied_compliance import AppliedCompliance
+from evolvent.contact.newton.block_inverse import NearlyNormal
+from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.parallel.cores import Cores
@@ -35,9 +40,11 @@ def sweep_on_ranks(
         yield from sweep_pitch(model, pitch, frictions, state, begin)
         return
     broadcasts = tuple(SharedBroadcast(comm, root) for root in range(PREPARING))
+    sweep = _RankedSweep(model, pitch, frictions, comm, Cores(comm), broadcasts)
+    single = len(frictions) == 1 and model.has_friction_terms(frictions[0])
     # not closed where something failed: a rank alone with the failure would wait for the others
     with suppress(GeneratorExit):
-        yield from _RankedSweep(model, pitch, frictions, comm, Cores(comm), broadcasts).swept(state, begin)
+        yield from sweep.ahead(state, begin) if single else sweep.swept(state, begin)
     for broadcast in broadcasts:
         broadcast.close()
 
@@ -82,13 +89,44 @@ class _RankedSweep:
                 yield position
             begin = numbers.stop
 
+    def ahead(self, state: SweepState, begin: int) -> Iterator[SweptPosition]:
+        """The same for one friction coefficient. Rank 0 solves friction; rank 1 prepares, and starts each search where
+        the one before has led."""
+        prepared: SharedPosition | None = None
+        place = state
+        for k in range(begin - 1, len(self.pitch.angles)):
+            coming = range(k + 1, min(k + 2, len(self.pitch.angles)))
+            work = partial(self._one_ahead, k, begin, coming, state, place, prepared)
+            solved, mine = together(self.comm, work, self.cores.lent)
+            solved = self.comm.bcast(solved, 0)
+            prepared = self._broadcast(mine, 1) if coming else None
+            del mine  # a matrix is in the shared memory
+            if prepared is not None:
+                place = replace(place, extra=prepared.contact.stand.extra, patch=prepared.patch)
+            if solved is not None:
+                state = solved.state
+                yield solved
+
+    def _one_ahead(
+        self, k: int, begin: int, coming: range, state: SweepState, place: SweepState, prepared: SharedPosition | None
+    ) -> tuple[SweptPosition | None, SharedPosition | None]:
+        """Position k with friction on rank 0, the coming one without it on rank 1."""
+        if self.comm.rank == 1 and coming:
+            return None, self._without_friction(coming.start, place)
+        if self.comm.rank == 0 and k >= begin:
+            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, prepared)), None
+        return None, None
+
     def _prepared(self, numbers: range, state: SweepState) -> SharedPosition | None:
         """The position that this rank prepares; None where it has none to prepare, or finds no solution."""
         if self.comm.rank >= len(numbers):
             return None
-        angle = self.pitch.angles[numbers[self.comm.rank]]
+        return self._without_friction(numbers[self.comm.rank], state)
+
+    def _without_friction(self, number: int, state: SweepState) -> SharedPosition | None:
         try:
-            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, self.cores.used)
+            angle, threads = self.pitch.angles[number], self.cores.used
+            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, threads)
         except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 
@@ -105,14 +143,23 @@ class _RankedSweep:
         return swept
 
     def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
-        """Rank `root`'s position on all ranks: without the gears, which all have, its compliance in shared memory."""
-        bare, matrix = None, None
+        """Rank `root`'s position on all ranks: without the gears, which all have; what is large of its compliance
+        through shared memory."""
+        bare: SharedPosition | None = None
+        large: NearlyNormal | JumpCompliance | None = None
         if prepared is not None:
-            matrix = prepared.system.compliance
-            system = replace(prepared.system, compliance=matrix[:0])
+            compliance, k = prepared.system.compliance, prepared.system.k
+            large = compliance.rough if isinstance(compliance, AppliedCompliance) else compliance
+            system = replace(prepared.system, compliance=DenseCompliance(np.zeros((0, 0)), k))
             bare = replace(prepared, contact=prepared.contact.without_bodies(), system=system)
         received = self.comm.bcast(bare, root)
         if received is None:
             return None
-        system = replace(received.system, compliance=self.broadcasts[root].send(matrix))
-        return replace(received, contact=received.contact.with_bodies(self.model.bodies), system=system)
+        sent = self.broadcasts[root].send(large)
+        if prepared is not None and isinstance(sent, NearlyNormal):
+            return prepared
+        contact = received.contact.with_bodies(self.model.bodies)
+        if isinstance(sent, NearlyNormal):
+            sent = contact.geometry.compliance(received.system.k, rough=sent)
+        assert sent is not None
+        return replace(received, contact=contact, system=replace(received.system, compliance=sent))

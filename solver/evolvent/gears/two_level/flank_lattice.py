@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from evolvent_meshes.arrays import Floats, Ints
 
@@ -58,10 +59,36 @@ class FlankLattice:
         rows = np.searchsorted(self.radius, radius - SAME)
         return np.column_stack([rows, np.searchsorted(self.height, points[:, 2] - SAME)])
 
+    def at(self, numbers: Ints) -> Floats:
+        """Its nodes with these numbers, (n, 3) [mm]."""
+        points = np.empty((self.nodes.size, 3))
+        points[self.nodes.ravel()] = self.points.reshape(-1, 3)
+        return points[numbers]
+
+    def interpolation(self, points: Floats) -> sp.csr_matrix:
+        """(n, nodes) from values at the nodes to those at points (n, 3) of the flank, linear between four nodes."""
+        radius = np.hypot(points[:, 0], points[:, 1])
+        (row, along), (level, across) = _place(self.radius, radius), _place(self.height, points[:, 2])
+        corners = [(i, j) for i in (0, 1) for j in (0, 1)]
+        weights = [np.abs(1 - i - along) * np.abs(1 - j - across) for i, j in corners]
+        nodes = [self.nodes[row + i, level + j] for i, j in corners]
+        rows = np.tile(np.arange(len(points)), 4)
+        matrix = sp.csr_matrix((np.concatenate(weights), (rows, np.concatenate(nodes))), (len(points), self.nodes.size))
+        matrix.data[np.abs(matrix.data) < SAME] = 0.0
+        matrix.eliminate_zeros()
+        return matrix
+
     def edges(self) -> Floats:
         """Longest edge along the profile and along the face (2,) [mm]."""
         corners = self.points[::2, ::2]
         return np.array([np.linalg.norm(np.diff(corners, axis=axis), axis=-1).max() for axis in (0, 1)])
+
+
+def _place(grid: Floats, values: Floats) -> tuple[Ints, Floats]:
+    """Interval (n,) of a grid that holds each value, or is nearest, and where in it (n,), from 0 to 1."""
+    interval = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, len(grid) - 2)
+    width = grid[interval + 1] - grid[interval]
+    return interval, np.clip((values - grid[interval]) / width, 0.0, 1.0)
 
 
 def _steps(values: Floats) -> tuple[Floats, Ints]:

@@ -13,8 +13,8 @@ from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
+from evolvent.gears.two_level.rough_flanks import RefinedLevel
 from evolvent.gears.two_level.towers import Towers, reach_of
-from evolvent.gears.two_level.two_level_ring import RefinedLevel
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -71,7 +71,7 @@ def refined_levels(refinement: FlankRefinement, flux_safety: float | None) -> tu
         fine = body.fine
         safety = flux_safety if number == len(refinement.levels) - 1 else None
         towers = Towers(body, refinement.gear.base_radius, refinement.gear.twist, HELD, safety)
-        levels.append(RefinedLevel(transfer.tocsr(), towers.correction()))
+        levels.append(RefinedLevel(transfer.tocsr(), towers.correction(), fine.surface.normals))
     assert fine is not None
     return fine, levels
 

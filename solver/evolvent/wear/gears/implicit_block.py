@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,6 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, normal_part
-from evolvent.contact.newton.newton_steps import RELATIVE
 from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together
@@ -26,6 +26,7 @@ from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.sweep.position_search import SharedPosition
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
+RELATIVE = "rtol" if "rtol" in signature(gmres).parameters else "tol"  # SciPy's name of the argument until 1.11
 GMRES_TOLERANCE = 1e-6  # residual of a block's equations over their right-hand side
 MAX_SEPARATIONS = 6  # rounds in which points with a negative pressure leave the contact
 SMALL = 200  # pressed points of a position up to which its response is stored as a matrix

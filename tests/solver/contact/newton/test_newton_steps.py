@@ -8,19 +8,20 @@ import scipy.sparse as sp
 
 from evolvent import NotConverged
 from evolvent.contact.newton import newton_steps
+from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
-from evolvent.contact.newton.reduced_tangent import Reals, ReducedTangent
+from evolvent.contact.newton.reduced_tangent import ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Floats, Ints, Reals
 
 N, K = 60, 3
 RNG = np.random.default_rng
 
 
-def compliance() -> Floats:
+def compliance() -> DenseCompliance:
     """A (m, m) of 60 nodes in a row on a soft body: 1/(1 + distance) between equal components, m = 180."""
     place = np.arange(N)
-    return np.kron(1.0 / (1.0 + np.abs(place[:, None] - place)), np.eye(K))
+    return DenseCompliance(np.kron(1.0 / (1.0 + np.abs(place[:, None] - place)), np.eye(K)), K)
 
 
 def motion() -> Floats:
@@ -39,7 +40,8 @@ def sliding(first: int, last: int, friction: float, tangential: float = 0.01) ->
 
 def dense(tangent: Tangent) -> Floats:
     """[I + M A, −M H; Hᵀ, 0]."""
-    M, A, H = tangent.M.toarray(), tangent.A, tangent.H
+    M, A, H = tangent.M.toarray(), tangent.A.matrix, tangent.H
+    assert A is not None
     return np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
 
 
@@ -106,7 +108,7 @@ def test_factor_of_a_dissimilar_tangent_is_replaced(factored: list[tuple[str, in
 
 def test_all_columns_are_factored_where_iterations_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     """GMRES that always fails: the step comes from a factor of all columns, exact to rounding."""
-    monkeypatch.setattr(newton_steps, "gmres", lambda T, right, **_: (np.zeros_like(right), 1))
+    monkeypatch.setattr(newton_steps, "gmres", lambda times, inverse, right, *_: (np.zeros_like(right), False))
     tangent = sliding(20, 40, 0.2)
     right = RNG(5).normal(size=N * K + 1)
     assert error(tangent, NewtonSteps(tangent.A, tangent.H).solve(tangent, right, 1e-2), right) < 1e-13

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent.fem.condensation.schur_complement import (
     Factor,
     SectorCondensation,
@@ -15,6 +16,7 @@ from evolvent.fem.condensation.schur_complement import (
     SectorSystem,
     compliance,
 )
+from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, MappedNodes
 from evolvent_meshes.arrays import Floats, Ints
 from tests.support.q1_elasticity import Ring, ring
@@ -77,7 +79,7 @@ def test_chained_compliance_equals_the_merged_model(shape: str) -> None:
     """Compliance of all teeth of four chained sectors = that of one mesh of four sectors, to 1e-12."""
     _, exact = merged(shape)
     gear = chained(shape)
-    found = gear.block(parts(all_rows(gear)))
+    found = gear.jumps(parts(all_rows(gear)))
     assert np.abs(found - exact).max() < 1e-12 * np.abs(exact).max()
     # the test would not see a missing coupling if there were none
     across = exact[: len(exact) // TEETH, len(exact) // TEETH : 2 * len(exact) // TEETH]
@@ -101,7 +103,13 @@ def test_displacements_under_forces_equal_the_merged_model(shape: str) -> None:
     assert np.abs(gear.apply(rows_in, forces, rows_out) - wanted).max() < 1e-12 * np.abs(wanted).max()
     sorted_rows = rows_out[np.argsort(rows_out[:, 0], kind="stable")]
     wanted = exact[np.ix_(dofs(sorted_rows), dofs(sorted_rows))]
-    assert np.abs(gear.block(parts(sorted_rows)) - wanted).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(gear.jumps(parts(sorted_rows)) - wanted).max() < 1e-12 * np.abs(exact).max()
+
+
+def random_map(random: np.random.Generator, nodes: int, d: int) -> JumpMap:
+    """Two components at each of two nodes from all displacements of a flank."""
+    projection = MortarProjection(sp.identity(2, format="csr"), sp.csr_matrix(random.normal(size=(2, nodes))))
+    return JumpMap(projection, random.normal(size=(2, 2, d)))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -109,9 +117,11 @@ def test_mapped_compliance_equals_the_merged_model(shape: str) -> None:
     """E C Eᵀ with a random linear map on each tooth, teeth in any order, = the same from the merged compliance."""
     _, exact = merged(shape)
     gear, random = chained(shape), np.random.default_rng(3)
-    size = gear.node_count * len(SHAPES[shape])
-    maps = {tooth: random.normal(size=(4, size)) for tooth in (1, -1, 0)}
-    found = gear.block([MappedNodes(t, np.arange(gear.node_count), E.__matmul__) for t, E in maps.items()])
+    d, n = len(SHAPES[shape]), gear.node_count
+    size = n * d
+    jumps = {tooth: random_map(random, n, d) for tooth in (1, -1, 0)}
+    found = gear.jumps([MappedNodes(t, np.arange(n), E) for t, E in jumps.items()])
+    maps = {tooth: E.jumps(np.eye(size)) for tooth, E in jumps.items()}
     E = np.zeros((12, len(exact)))
     for i, (tooth, own) in enumerate(maps.items()):
         E[4 * i : 4 * i + 4, (tooth - FIRST) * size : (tooth - FIRST + 1) * size] = own
@@ -146,7 +156,7 @@ def test_closed_ring_equals_merged_ring(shape: str, sectors: int) -> None:
     model = ring(SHAPES[shape], sectors, pitch, -2, closed=True)
     exact = compliance(model.stiffness, picker(np.concatenate(model.surface), model.stiffness.shape[0]), model.free)
     gear = ChainedCompliance(sector_of(shape, pitch), ChainSettings(pitch, sectors, -2, dimension=len(SHAPES[shape])))
-    assert np.abs(gear.block(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(gear.jumps(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
 @pytest.mark.parametrize("sectors", [7, 6])
@@ -189,8 +199,8 @@ def test_naming_fewer_teeth_of_a_ring_changes_nothing() -> None:
     whole = ChainedCompliance(sector, ChainSettings(pitch, 7, -3, dimension=2))
     window = ChainedCompliance(sector, ChainSettings(pitch, 3, -1, dimension=2))
     rows = all_rows(window)
-    wanted = whole.block(parts(rows))
-    assert np.abs(window.block(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()
+    wanted = whole.jumps(parts(rows))
+    assert np.abs(window.jumps(parts(rows)) - wanted).max() < 1e-14 * np.abs(wanted).max()
 
 
 def test_pitch_of_a_closed_ring_must_divide_the_circle() -> None:
@@ -209,7 +219,7 @@ def test_clamped_chain_equals_the_merged_model_with_fixed_ends() -> None:
     exact = compliance(model.stiffness, functionals, free=free)
     sector = sector_of("2D")
     gear = ChainedCompliance(sector, ChainSettings(PITCH, TEETH, FIRST, dimension=2, ends="clamped"))
-    assert np.abs(gear.block(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert np.abs(gear.jumps(parts(all_rows(gear))) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
 def test_chain_of_one_sector_is_the_free_sector() -> None:
@@ -221,7 +231,7 @@ def test_chain_of_one_sector_is_the_free_sector() -> None:
     rows = np.array([(0, 1), (0, 4), (0, 0)])
     gear = ChainedCompliance(sector, ChainSettings(PITCH, 1, 0, dimension=2, ends="free"))
     wanted = alone[np.ix_(dofs, dofs)]
-    np.testing.assert_allclose(gear.block(parts(rows)), wanted, rtol=0, atol=1e-12 * np.abs(alone).max())
+    np.testing.assert_allclose(gear.jumps(parts(rows)), wanted, rtol=0, atol=1e-12 * np.abs(alone).max())
     forces = np.array([[1.0, 2.0], [-3.0, 0.5], [0.2, 0.0]])
     moved = gear.apply(rows, forces, rows[:2])
     np.testing.assert_allclose((wanted @ forces.ravel())[:4].reshape(2, 2), moved, rtol=1e-11)
@@ -235,4 +245,4 @@ def test_rows_of_teeth_that_are_not_modelled_are_refused() -> None:
     """A tooth that is not modelled is an error, not a wrapped index."""
     gear = chained("2D")
     with pytest.raises(IndexError, match=r"teeth -1 to 2 .* found \(3, 0\)"):
-        gear.block(parts(np.array([(0, 0), (3, 0)])))
+        gear.jumps(parts(np.array([(0, 0), (3, 0)])))

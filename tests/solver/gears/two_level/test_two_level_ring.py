@@ -1,38 +1,44 @@
-"""The compliance of fine flanks: blocks and displacements against the sum written out, with random matrices. Exact."""
+"""The compliance of fine flanks: products and displacements against the sum written out, with random matrices."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from evolvent.contact.two_level.correction import Correction, PlacedResponse
+from evolvent.contact.nitsche.mortar_projection import MortarProjection
+from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
-from evolvent.gears.two_level.two_level_ring import RefinedLevel, TwoLevelRing
+from evolvent.gears.ring.ring_window import RingWindow
+from evolvent.gears.two_level.rough_flanks import RefinedLevel
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Floats, Ints
+from tests.support.random_strips import strips, written_out
 
-TEETH, COARSE, PITCH, D = 3, 5, 2 * np.pi / 17, 3
+TEETH, COARSE, PITCH, D = 3, 9, 2 * np.pi / 17, 3
 
 
-class DenseCompliance:
-    """Teeth 0 to 2 with a random symmetric compliance."""
+@dataclass(frozen=True)
+class RandomRing:
+    """Teeth 0 to 2 with a random symmetric compliance between nodes, in the frames of their sectors."""
 
-    def __init__(self, random: np.random.Generator) -> None:
-        matrix = random.normal(size=(TEETH * COARSE * D,) * 2)
-        self.matrix = matrix + matrix.T
+    matrix: Floats
 
-    def block(self, parts: Sequence[MappedNodes]) -> Floats:
-        maps = [part.map(np.eye(D * len(part.nodes))) for part in parts]
-        dofs = [dofs_of(np.column_stack([np.full(len(p.nodes), p.tooth), p.nodes]), COARSE) for p in parts]
-        E = sp.block_diag(maps).toarray()
-        return np.asarray(E @ self.matrix[np.ix_(np.concatenate(dofs), np.concatenate(dofs))] @ E.T)
-
-    def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
-        matrix = self.matrix[np.ix_(dofs_of(rows_out, COARSE), dofs_of(rows_in, COARSE))]
-        u = forces.reshape(*forces.shape[:-2], -1) @ matrix.T
-        return np.asarray(u.reshape(*forces.shape[:-2], -1, D))
+    def window(self, parts: Sequence[tuple[int, Ints]]) -> RingWindow:
+        """The coupling of sectors has one mode for each displacement."""
+        rows = [dofs_of(np.column_stack([np.full(len(nodes), tooth), nodes]), COARSE) for tooth, nodes in parts]
+        own = tuple(self.matrix[np.ix_(each, each)] for each in rows)
+        every = [dofs_of(np.column_stack([np.full(COARSE, t), np.arange(COARSE)]), COARSE) for t, _ in parts]
+        coupling = self.matrix[np.ix_(np.concatenate(every), np.concatenate(every))].copy()
+        for i in range(len(parts)):
+            coupling[i * COARSE * D : (i + 1) * COARSE * D, i * COARSE * D : (i + 1) * COARSE * D] = 0.0
+        modes = tuple(np.eye(COARSE * D)[dofs_of(np.column_stack([0 * n, n]), COARSE)] for _, n in parts)
+        return RingWindow(own, modes, coupling)
 
 
 def dofs_of(rows: Ints, size: int) -> Ints:
@@ -44,27 +50,29 @@ def turn(angle: float) -> Floats:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def level(random: np.random.Generator, size: int, before: int) -> RefinedLevel:
-    """Random shape functions, and a correction of two congruent places."""
+def level(random: np.random.Generator, layers: int, before: int) -> RefinedLevel:
+    """Random shape functions and a random correction of four rows and some layers."""
+    correction = strips(random, 4, layers)
+    size = correction.size
     transfer = sp.csr_matrix(random.random((size, before)) * (random.random((size, before)) < 0.4))
-    nodes = np.array([random.permutation(size)[:6], random.permutation(size)[:6]])
-    turns = np.array([turn(0.4), turn(-0.2)])
-    change = random.normal(size=(6 * D, 2 * D))
-    return RefinedLevel(transfer, Correction(size, [PlacedResponse(change, nodes, nodes[:, :2], turns)]))
+    return RefinedLevel(transfer, correction, random.normal(size=(size, 3)))
 
 
 def two_levels() -> tuple[TwoLevelRing, Floats]:
-    """A ring with two levels of 9 and 14 nodes, and its compliance written out."""
+    """A ring with two levels of 28 and 36 nodes, and its compliance written out."""
     random = np.random.default_rng(7)
-    coarse, levels = DenseCompliance(random), [level(random, 9, COARSE), level(random, 14, 9)]
-    C = coarse.matrix
+    matrix = random.normal(size=(TEETH * COARSE * D,) * 2)
+    first = level(random, 3, COARSE)
+    levels = [first, level(random, 4, first.correction.size)]
+    matrix = matrix @ matrix.T
+    C = matrix
     for each in levels:
-        n = each.correction.size
         R = np.kron(np.eye(TEETH), np.kron(each.transfer.toarray(), np.eye(D)))
-        own = [np.kron(np.eye(n), turn(i * PITCH)) for i in range(TEETH)]
-        near = each.correction.among(np.arange(n))
-        C = R @ C @ R.T + sp.block_diag([Q @ near @ Q.T for Q in own]).toarray()
-    return TwoLevelRing(coarse, levels, PITCH), C
+        C = R @ C @ R.T + np.kron(np.eye(TEETH), written_out(each.correction))
+    Q = sp.block_diag([np.kron(np.eye(levels[-1].correction.size), turn(i * PITCH)) for i in range(TEETH)]).toarray()
+    flank: Any = SimpleNamespace(points=random.normal(size=(COARSE, 3)), normals=random.normal(size=(COARSE, 3)))
+    coarse: Any = RandomRing(matrix)
+    return TwoLevelRing(coarse, flank, levels, PITCH), Q @ C @ Q.T
 
 
 @pytest.mark.parametrize("loads", [(), (2,)])
@@ -75,17 +83,42 @@ def test_displacements_of_fine_nodes(loads: tuple[int, ...]) -> None:
     rows_in = np.array([(0, 3), (2, 5), (0, 11), (2, 0)])
     rows_out = np.array([(1, 2), (0, 3), (2, 13), (0, 0), (1, 7)])
     forces = random.normal(size=(*loads, len(rows_in), D))
-    u = forces.reshape(*loads, -1) @ exact[np.ix_(dofs_of(rows_in, 14), dofs_of(rows_out, 14))]
+    u = forces.reshape(*loads, -1) @ exact[np.ix_(dofs_of(rows_in, ring.size), dofs_of(rows_out, ring.size))]
     assert ring.apply(rows_in, forces, rows_out) == pytest.approx(u.reshape(*loads, -1, D), rel=1e-12)
 
 
-def test_block_between_mapped_nodes() -> None:
-    """Maps of two teeth, one of them not the first, in any order."""
-    ring, exact = two_levels()
+def mapped(ring: TwoLevelRing) -> list[MappedNodes]:
+    """Two components of the jump at four nodes of tooth 2, from nine nodes of its flank, and at two of tooth 0."""
     random = np.random.default_rng(2)
-    nodes = {2: np.array([4, 1, 9]), 0: np.array([13, 2])}
-    maps = {tooth: random.normal(size=(4, D * len(own))) for tooth, own in nodes.items()}
-    dofs = np.concatenate([dofs_of(np.column_stack([np.full(len(n), t), n]), 14) for t, n in nodes.items()])
-    E = sp.block_diag(list(maps.values())).toarray()
-    found = ring.block([MappedNodes(tooth, own, maps[tooth].__matmul__) for tooth, own in nodes.items()])
-    assert found == pytest.approx(E @ exact[np.ix_(dofs, dofs)] @ E.T, rel=1e-11)
+    mass, mixed = sp.csr_matrix(np.diag([1.0, 2.0, 1.5, 1.2])), sp.csr_matrix(random.random((4, 9)))
+    many = JumpMap(MortarProjection(mass, mixed), random.normal(size=(4, 2, D)))
+    few = JumpMap(None, random.normal(size=(2, 2, D)))
+    return [MappedNodes(2, random.permutation(ring.size)[:9], many), MappedNodes(0, np.array([13, 2]), few)]
+
+
+def test_products_between_mapped_nodes() -> None:
+    """Jumps of two teeth under forces on both, in double and in single precision, and of the first component alone."""
+    ring, exact = two_levels()
+    parts = mapped(ring)
+    dofs = np.concatenate([dofs_of(np.column_stack([0 * p.nodes + p.tooth, p.nodes]), ring.size) for p in parts])
+    E = sp.block_diag([part.jumps(np.eye(D * len(part.nodes))) for part in parts]).toarray()
+    A = E @ exact[np.ix_(dofs, dofs)] @ E.T
+    window, f = ring.jumps(parts), np.random.default_rng(3).normal(size=(6, 2))
+    assert window.times(f).ravel() == pytest.approx(A @ f.ravel(), rel=1e-11)
+    single = window.times(f.astype(np.float32))
+    assert single.dtype == np.float32
+    assert single.ravel() == pytest.approx(A @ f.ravel(), abs=1e-5 * np.abs(A @ f.ravel()).max())
+    assert window.normal().times(f[:, :1]).ravel() == pytest.approx(A[::2, ::2] @ f[:, 0], rel=1e-11)
+
+
+def test_modes_that_teeth_share() -> None:
+    """With all modes kept, U K Uᵀ between nodes of different teeth is the compliance there."""
+    ring, exact = two_levels()
+    parts = mapped(ring)
+    dofs = np.concatenate([dofs_of(np.column_stack([0 * p.nodes + p.tooth, p.nodes]), ring.size) for p in parts])
+    E = sp.block_diag([part.jumps(np.eye(D * len(part.nodes))) for part in parts]).toarray()
+    A = E @ exact[np.ix_(dofs, dofs)] @ E.T
+    rough = ring.jumps(parts).nearly()
+    found = rough.modes * rough.couplings @ rough.modes.T
+    assert found[:8, 8:] == pytest.approx(A[:8, 8:], abs=3e-3 * np.abs(A).max())
+    assert [len(block) for block in rough.blocks] == [4, 2]

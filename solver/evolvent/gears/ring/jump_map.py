@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent_meshes.arrays import Floats
 
 
@@ -13,11 +14,11 @@ from evolvent_meshes.arrays import Floats
 class JumpMap:
     """Displacements at m flank nodes of one gear, in its frame, to local jumps at the n nodes of one tooth pair.
 
-    weights: (n, m), of the projection; None where it is the identity.
+    projection: Π (n, m); None where it is the identity.
     axes: (n, k, d), rows of the local frames in the gear's frame, with the jump's sign.
     """
 
-    weights: Floats | None
+    projection: MortarProjection | None
     axes: Floats
 
     def jumps(self, displacements: Floats) -> Floats:
@@ -25,10 +26,14 @@ class JumpMap:
         n, k, d = self.axes.shape
         columns = displacements.shape[1]
         u = displacements.reshape(-1, d * columns)
-        projected = u if self.weights is None else self.weights @ u
+        projected = u if self.projection is None else self.projection @ u
         return np.matmul(self.axes, projected.reshape(n, d, columns)).reshape(n * k, columns)
 
     def forces(self, contact_forces: Floats) -> Floats:
         """Forces (m, d) on the gear's nodes under contact forces (n, k), but for the sign: the transposed map."""
         nodal = np.einsum("jka,jk->ja", self.axes, contact_forces)
-        return nodal if self.weights is None else self.weights.T @ nodal
+        return nodal if self.projection is None else self.projection.transposed(nodal)
+
+    def opposite(self, points: Floats) -> Floats:
+        """Where the jump's nodes lie on the gear's flank, (n, d), from its nodes there (m, d) [mm]."""
+        return points if self.projection is None else self.projection @ points

@@ -1,0 +1,104 @@
+"""A compliance that is known by products with forces, and roughly as a matrix, to precondition with.
+
+    A ≈ blockdiag(A_1, A_2, ...) + U K Uᵀ
+
+The blocks are contacts that hardly feel each other, such as the tooth pairs of a gear: normal components only, good to
+a few per cent. U are the few smooth modes that they share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
+from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
+from evolvent_meshes.arrays import Ints, Reals
+
+
+class SurfaceCompliance(Protocol):
+    """What one body adds to the compliance of n nodes, in local jumps with k components."""
+
+    def times(self, force: Reals) -> Reals:
+        """Jumps (n, k) [mm] under forces (n, k) [N], of their precision."""
+        ...
+
+    def normal(self) -> SurfaceCompliance:
+        """Of the normal components."""
+        ...
+
+    def nearly(self) -> NearlyNormal:
+        """Roughly, as a matrix."""
+        ...
+
+
+@dataclass(frozen=True)
+class AppliedCompliance:
+    """A as the sum of what bodies add.
+
+    surfaces: one a body.
+    k: components a node.
+    known: `rough` where it is known, else None.
+    """
+
+    surfaces: tuple[SurfaceCompliance, ...]
+    k: int
+    known: NearlyNormal | None = None
+    matrix = None
+
+    @cached_property
+    def rough(self) -> NearlyNormal:
+        """A, roughly."""
+        return self.known or NearlyNormal.sum([surface.nearly() for surface in self.surfaces])
+
+    def times(self, force: Reals) -> Reals:
+        """See `JumpCompliance.times`."""
+        f = force.reshape(-1, self.k)
+        return np.asarray(sum(surface.times(f) for surface in self.surfaces)).ravel()
+
+    def active(self, unknowns: Ints) -> AppliedActive:
+        """See `JumpCompliance.active`."""
+        return AppliedActive(self, unknowns)
+
+    def normal(self) -> AppliedCompliance:
+        """See `JumpCompliance.normal`."""
+        return AppliedCompliance(tuple(s.normal() for s in self.surfaces), 1, self.rough.normal(self.k))
+
+
+@dataclass(frozen=True)
+class AppliedActive:
+    """The same among some unknowns (u,)."""
+
+    whole: AppliedCompliance
+    unknowns: Ints
+    dtype = np.float32
+    refactored = True
+
+    def times(self, force: Reals) -> Reals:
+        """See `ActiveCompliance.times`."""
+        f = np.zeros(self.whole.rough.size, dtype=np.float32)
+        f[self.unknowns] = force
+        return self.whole.times(f)[self.unknowns]
+
+    def inverse(self, M: sp.csr_matrix, H: Reals, kept: Ints) -> BlockInverse:
+        """See `ActiveCompliance.inverse`."""
+        return BlockInverse(self.whole.rough, self.whole.k, self.unknowns, M, H, kept)
+
+
+def summed(
+    parts: Sequence[NDArray[np.float64] | SurfaceCompliance], k: int, known: NearlyNormal | None = None
+) -> JumpCompliance:
+    """The compliance of bodies that are all matrices (n·k, n·k), or all products; known: roughly, if it is known."""
+    matrices = [part for part in parts if isinstance(part, np.ndarray)]
+    surfaces = [part for part in parts if not isinstance(part, np.ndarray)]
+    if not surfaces:
+        return DenseCompliance(np.asarray(sum(matrices)), k)
+    if matrices:
+        raise ValueError("compliance: wanted bodies that are all matrices or all products, found some of each")
+    return AppliedCompliance(tuple(surfaces), k, known)

@@ -1,0 +1,96 @@
+"""Mortar projection of the trace of surface 2 onto the nodal space of surface 1.
+
+M Π = B with M = ∫N_1 N_1 and B = ∫N_1 N_2∘π. M⁻¹ is dense, M and B are sparse: Π is applied by solving with the
+factored M, and written out only for a few columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from evolvent_meshes.arrays import Floats, Ints
+
+ROUNDING = 1e-15
+"""Of the projection's largest entry: smaller ones are rounding errors."""
+
+
+@dataclass(frozen=True)
+class MortarProjection:
+    """Π (n, n2).
+
+    mass: M (n, n) [mm²; mm in 2D].
+    mixed: B (n, n2) [mm²; mm in 2D].
+    """
+
+    mass: sp.csr_matrix
+    mixed: sp.csr_matrix
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n, n2)."""
+        n, n2 = self.mixed.shape
+        return n, n2
+
+    @cached_property
+    def columns(self) -> Ints:
+        """The nodes of surface 2 that Π reads, sorted."""
+        return np.unique(self.mixed.indices)
+
+    def __matmul__(self, values: Floats) -> Floats:
+        """Π values, (n, ...) from (n2, ...)."""
+        return self.solved(_times(self.mixed, values))
+
+    def transposed(self, values: Floats) -> Floats:
+        """Πᵀ values, (n2, ...) from (n, ...)."""
+        return _times(self._mixed_transposed, self.solved(values))
+
+    def solved(self, values: Floats) -> Floats:
+        """M⁻¹ values, (n, ...)."""
+        flat = np.asarray(values, dtype=float).reshape(len(values), -1)
+        return np.asarray(self._factor.solve(flat)).reshape(values.shape)
+
+    def at(self, columns: Ints) -> Floats:
+        """Some columns of Π, (n, c)."""
+        return self.solved(self.mixed[:, columns].toarray())
+
+    def matrix(self) -> sp.csr_matrix:
+        """Π (n, n2), without entries that are rounding errors."""
+        dense = self.at(self.columns)
+        dense[np.abs(dense) < ROUNDING * np.abs(dense).max(initial=0.0)] = 0.0
+        block = sp.csr_matrix(dense)
+        return sp.csr_matrix((block.data, self.columns[block.indices], block.indptr), self.shape)
+
+    def of_columns(self) -> MortarProjection:
+        """Π of the nodes that it reads alone, (n, columns)."""
+        return MortarProjection(self.mass, self.mixed[:, self.columns].tocsr())
+
+    @staticmethod
+    def stacked(projections: Sequence[MortarProjection]) -> MortarProjection:
+        """Several projections side by side, block-diagonal."""
+        mass, mixed = (sp.block_diag(each, format="csr") for each in zip(*((p.mass, p.mixed) for p in projections)))
+        return MortarProjection(mass, mixed)
+
+    @cached_property
+    def _factor(self) -> spla.SuperLU:
+        return spla.splu(self.mass.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+    @cached_property
+    def _mixed_transposed(self) -> sp.csr_matrix:
+        return self.mixed.T.tocsr()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the factor, which cannot be sent between ranks."""
+        return {"mass": self.mass, "mixed": self.mixed}
+
+
+def _times(matrix: sp.csr_matrix, values: Floats) -> Floats:
+    """A sparse matrix applied along the first axis of values (n, ...)."""
+    flat = matrix @ values.reshape(len(values), -1)
+    return np.asarray(flat).reshape(-1, *values.shape[1:])

@@ -1,0 +1,128 @@
+"""Newton steps with a compliance that is known by products, against the same as a matrix.
+
+Two contacts of 30 nodes in rows on soft bodies, coupled by three smooth modes; in each, a few nodes touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed
+from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
+from evolvent.contact.newton.jump_compliance import DenseCompliance
+from evolvent.contact.newton.newton_steps import NewtonSteps
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.contact.newton.tangent import Tangent
+from evolvent_meshes.arrays import Bools, Floats, Reals
+
+N, HALF = 60, 30
+RNG = np.random.default_rng
+
+
+def exact(k: int) -> Floats:
+    """A (m, m): 1/(1 + distance) within each contact, less between components, and the modes."""
+    place = np.arange(N)
+    near = (place[:, None] < HALF) == (place < HALF)
+    A = near / (1.0 + np.abs(place[:, None] - place))
+    components = np.eye(k) + 0.1 * (1.0 - np.eye(k))
+    modes, coupling = smooth(k)
+    return np.asarray(np.kron(A, components) + modes * coupling @ modes.T)
+
+
+def smooth(k: int) -> tuple[Floats, Floats]:
+    """U (m, 3), K (3,)."""
+    x = np.linspace(-1.0, 1.0, N)
+    return np.kron(np.stack([np.ones(N), x, x**2], axis=1), np.ones((k, 1))), np.array([0.5, -0.2, 0.1])
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One of two equal bodies: half of the compliance."""
+
+    k: int
+
+    def times(self, force: Reals) -> Reals:
+        return np.asarray((0.5 * exact(self.k)).astype(force.dtype) @ force.ravel()).reshape(force.shape)
+
+    def normal(self) -> Surface:
+        return Surface(1)
+
+    def nearly(self) -> NearlyNormal:
+        """The normal components of each contact, without what couples them to others."""
+        place = np.arange(HALF)
+        block = (0.5 / (1.0 + np.abs(place[:, None] - place))).astype(np.float32)
+        modes, coupling = smooth(self.k)
+        return NearlyNormal((block, block), modes, 0.5 * coupling)
+
+
+def applied(k: int) -> AppliedCompliance:
+    found = summed([Surface(k), Surface(k)], k)
+    assert isinstance(found, AppliedCompliance)
+    return found
+
+
+def touching() -> Bools:
+    place = np.arange(N)
+    return np.asarray(((place > 8) & (place < 22)) | ((place > 40) & (place < 50)))
+
+
+def tangent(A: AppliedCompliance | DenseCompliance, k: int, friction: float = 0.2, sticks: float = 0.0) -> Tangent:
+    """T where nodes touch, stiffness 5: they slide, and the last contact's first nodes stick."""
+    block = np.array([[1.0, 0.0, 0.0], [friction, 0.0, 0.0], [0.0, 0.0, 0.01]])[:k, :k]
+    on = touching()
+    M = sp.csr_matrix(sp.kron(sp.diags(5.0 * on), block))
+    kept = [k * np.flatnonzero(on)]
+    if sticks:
+        stuck = k * np.array([41, 42, 43])[:, None] + np.arange(1, k)
+        M = M + sp.csr_matrix(sp.diags(np.bincount(stuck.ravel(), minlength=N * k) * sticks))
+        kept.append(stuck.ravel())
+    M.eliminate_zeros()
+    H = np.tile(np.eye(k)[0], N)[:, None].copy()
+    return Tangent(M, A, H, np.sort(np.concatenate(kept)), whole=k == 1)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-9])
+@pytest.mark.parametrize(("k", "sticks"), [(1, 0.0), (3, 0.0), (3, 4.0)])
+def test_newton_step_is_that_of_the_matrix(k: int, sticks: float, accuracy: float) -> None:
+    """T y = b to the accuracy, with a free motion, also where nodes stick."""
+    T = tangent(applied(k), k, sticks=sticks)
+    right = np.append(T.M @ RNG(1).normal(size=N * k), 3.0)
+    found = NewtonSteps(T.A, T.H).solve(T, right, accuracy)
+    A = exact(k)
+    dense = np.block([[np.eye(N * k) + T.M @ A, -(T.M @ T.H)], [T.H.T, np.zeros((1, 1))]])
+    assert np.linalg.norm(right - dense @ found) <= 1.1 * accuracy * np.linalg.norm(right)
+
+
+def test_rough_inverse_is_exact_without_friction() -> None:
+    """k = 1, where the rough compliance is A itself: the inverse to single precision. Other blocks are left out."""
+    T = tangent(applied(1), 1)
+    unknowns = np.flatnonzero(touching())
+    rough = applied(1).rough
+    inverse = BlockInverse(rough, 1, unknowns, T.M[unknowns][:, unknowns], T.H[unknowns], np.arange(len(unknowns)))
+    A, M, H = exact(1)[np.ix_(unknowns, unknowns)], T.M[unknowns][:, unknowns].toarray(), T.H[unknowns]
+    dense = np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
+    right = RNG(2).normal(size=len(unknowns) + 1)
+    assert dense @ inverse.solve(right) == pytest.approx(right, abs=1e-4)
+
+
+def test_products_and_normal_components() -> None:
+    """A f in both precisions, and A of the normal components alone."""
+    A, f = applied(3), RNG(3).normal(size=3 * N)
+    assert A.times(f) == pytest.approx(exact(3) @ f, rel=1e-12)
+    assert A.active(np.arange(7)).times(f[:7].astype(np.float32)) == pytest.approx(exact(3)[:7, :7] @ f[:7], rel=1e-4)
+    assert A.normal().times(f[:N]) == pytest.approx(exact(1) @ f[:N], rel=1e-12)
+
+
+def test_what_cannot_be_solved_or_summed_is_refused() -> None:
+    """Nothing touches, and a motion is free: no step. Matrices beside products have no sum."""
+    T = tangent(applied(1), 1)
+    nothing = Tangent(0.0 * T.M, T.A, T.H, T.kept, whole=True)
+    with pytest.raises(NotConverged):
+        NewtonSteps(T.A, T.H).solve(nothing, np.append(np.zeros(N), 1.0), 1e-3)
+    with pytest.raises(ValueError, match="all matrices or all products"):
+        summed([exact(1), Surface(1)], 1)
+    assert isinstance(summed([exact(1), exact(1)], 1), DenseCompliance)

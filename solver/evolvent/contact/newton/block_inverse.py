@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -82,10 +81,10 @@ class BlockInverse:
     ) -> None:
         self._M = M[:, kept].tocsr()
         node, axis = np.divmod(unknowns, k)
+        contact = np.searchsorted(rough.starts, node, side="right") - 1
         self._blocks = [
-            _Block.of(block, k, start, node, axis, kept, self._M)
-            for block, (start, end) in zip(rough.blocks, pairwise(rough.starts))
-            if np.any((node[kept] >= start) & (node[kept] < end))
+            _Block.of(rough.blocks[i], node - rough.starts[i], np.where(contact == i, axis, -1), M, kept)
+            for i in np.unique(contact[kept])
         ]
         self._smooth = np.hstack([rough.modes[unknowns], -H])
         self._under_smooth = (self._M.T @ self._smooth).T
@@ -103,7 +102,7 @@ class BlockInverse:
         b, load = np.split(right, [self._M.shape[0]])
         z = np.zeros(self._M.shape[1])
         for block in self._blocks:
-            z[block.kept] = block.solved(block.A @ b[block.near].astype(np.float32))
+            z[block.kept] = block.solved(block.moved(b))
         known = self._smooth.T @ b - self._under_smooth @ z
         known[len(known) - len(load) :] += load
         v = self._scale * (self._inner @ (self._scale * known))
@@ -119,45 +118,58 @@ class BlockInverse:
 
 
 @dataclass(frozen=True)
+class _Component:
+    """One component of one contact.
+
+    rows: (s_a,) its unknowns among the contact's s_i.
+    near: (u_a,) its active unknowns.
+    A: (s_a, u_a) rough compliance between them.
+    """
+
+    rows: Ints
+    near: Ints
+    A: Singles
+
+
+@dataclass(frozen=True)
 class _Block:
     """One contact.
 
     kept: (s_i,) its unknowns among S.
-    near: (u_i,) its active unknowns.
-    A: (s_i, u_i) rough compliance between them.
+    components: those that it has.
     factor: of I + A_b M_S.
-    order: in which they are factored.
     """
 
     kept: Ints
-    near: Ints
-    A: Singles
+    components: tuple[_Component, ...]
     factor: tuple[Singles, Ints]
-    order: Ints
 
     @staticmethod
-    def of(block: Singles, k: int, start: int, node: Ints, axis: Ints, kept: Ints, M: sp.csr_matrix) -> _Block:
-        near = np.flatnonzero((node >= start) & (node < start + len(block)))
-        mine = np.flatnonzero(np.isin(kept, near))
-        own = M[kept[mine]][:, mine]
-        mine = mine[reverse_cuthill_mckee(own, symmetric_mode=False)]
-        rows = kept[mine]
-        A = block[np.ix_(node[rows] - start, node[near] - start)]
-        if k > 1:
-            A = A * _same_axis(axis[rows], axis[near])
-        B = _times_banded(A[:, np.searchsorted(near, rows)], M[rows][:, mine].tocsc())
+    def of(block: Singles, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
+        """block: of its nodes. node: of each active unknown; axis: component, −1 where it is of another contact."""
+        mine = np.flatnonzero(axis[kept] >= 0)
+        own = M[kept[mine]][:, kept[mine]]
+        order = reverse_cuthill_mckee(own, symmetric_mode=False)
+        mine, own = mine[order], own[order][:, order]
+        rows, B, components = kept[mine], np.empty((len(mine),) * 2, dtype=np.float32, order="F"), []
+        for each in np.unique(axis[rows]):
+            among, near = np.flatnonzero(axis[rows] == each), np.flatnonzero(axis == each)
+            A = block[np.ix_(node[rows[among]], node[near])] * np.float32(TANGENTIAL if each else 1.0)
+            B[among] = _times_banded(A[:, np.searchsorted(near, rows[among])], own[among].tocsc())
+            components.append(_Component(among, near, A))
         B[np.diag_indices_from(B)] += 1.0
-        return _Block(mine, near, A, lu_factor(B, overwrite_a=True, check_finite=False), rows)
+        return _Block(mine, tuple(components), lu_factor(B, overwrite_a=True, check_finite=False))
+
+    def moved(self, b: Floats) -> Singles:
+        """A_b b (s_i,) for forces (u,) on all active unknowns."""
+        result = np.empty(len(self.kept), dtype=np.float32)
+        for each in self.components:
+            result[each.rows] = each.A @ b[each.near].astype(np.float32)
+        return result
 
     def solved(self, right: Singles) -> Singles:
         """(I + A_b M_S)⁻¹ right, (s_i, ...)."""
         return np.asarray(lu_solve(self.factor, right, check_finite=False))
-
-
-def _same_axis(rows: Ints, columns: Ints) -> Singles:
-    """(s, u) how compliant a component is over the normal one; zero between different ones."""
-    compliant = np.where(rows == 0, 1.0, TANGENTIAL)[:, None]
-    return np.where(rows[:, None] == columns, compliant, 0.0).astype(np.float32)
 
 
 def _times_banded(A: Singles, M: sp.csc_matrix) -> Singles:

@@ -35,16 +35,19 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
     frame1, frame2 = _frames(surface1)[facets1], _frames(surface2)
     keep = np.einsum("pd,pd->p", frame1[i1, 0], frame2[i2, 0]) < OPPOSED
     i1, i2 = i1[keep], i2[keep]
-    keep = _beside(centre2[i2] - centre1[i1], frame1[i1, 0]) <= radius1[i1] + radius2[i2] + TILT * reach
+    keep = _balls_meet(centre2[i2] - centre1[i1], radius1[i1] + radius2[i2], frame1[i1, 0], max_gap, max_overlap)
     i1, i2 = i1[keep], i2[keep]
     keep = _boxes_meet(surface1, surface2, facets1[i1], i2, frame1[i1], max_gap, max_overlap)
     return facets1[i1[keep]], i2[keep]
 
 
-def _beside(distance: Floats, normal: Floats) -> Floats:
-    """Length (p,) of distances (p, d) across normals (p, d)."""
+def _balls_meet(distance: Floats, radii: Floats, normal: Floats, max_gap: float, max_overlap: float) -> Bools:
+    """Whether balls at a distance (p, d) may have points within reach of each other along normals near `normal` (p, d);
+    radii: (p,) both together."""
     along = np.einsum("pd,pd->p", distance, normal)
-    return np.sqrt(np.maximum(np.einsum("pd,pd->p", distance, distance) - along**2, 0.0))
+    across = np.sqrt(np.maximum(np.einsum("pd,pd->p", distance, distance) - along**2, 0.0))
+    beside = across <= radii + TILT * max(max_gap, max_overlap)
+    return np.asarray(beside & (along <= radii + max_gap) & (along >= -radii - max_overlap))
 
 
 def facet_balls(surface: Surface, facets: Ints) -> tuple[Floats, Floats]:

@@ -137,6 +137,16 @@ def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
     return _equilibrium(law, snes.solve(law, start, "contact without slip", ITERATIONS // 2, TOLERANCE))
 
 
+def sliding(system: CondensedSystem, friction: Floats | float, heading: Floats, start: Equilibrium) -> Equilibrium:
+    """The state in which all points in contact slide in known directions, τ = μλ·heading.
+
+    heading: (q, d−1) unit directions, zero where a point sticks. start: the equilibrium without friction. Raises
+    NotConverged.
+    """
+    law = ContactEquations(system, lambda t: starting_guess(t, friction, heading))
+    return _converged(law, law.join(_padded(start.force, system.k), start.motion), "contact that slides everywhere")
+
+
 def frictional(
     system: CondensedSystem, friction: Floats | float, slip: Floats, heading: Floats, start: Equilibrium,
     near: InitialGuess | None = None,
@@ -176,14 +186,18 @@ def _starts(
     assumed to stick, tractions of a hundred times the load separate the surfaces in the first iteration; the state
     without friction then still leads to the solution.
     """
-    force = np.zeros((len(system.operator.nodes), system.k))
-    force[:, : start.force.shape[1]] = start.force
+    force = _padded(start.force, system.k)
     headings = [heading, np.zeros_like(heading)] if heading.any() else [heading]
     for known in headings:
         guess = ContactEquations(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
         x = guess.join(force, start.motion)
         yield snes.solve(guess, x, "first guess of slip", 1, TOLERANCE).x
     yield ContactEquations(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
+
+
+def _padded(force: Floats, k: int) -> Floats:
+    """Forces (n, k), with zeros for the components that they lack."""
+    return np.pad(force, ((0, 0), (0, k - force.shape[1])))
 
 
 class ContactEquations:

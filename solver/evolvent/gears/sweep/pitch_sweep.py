@@ -14,6 +14,7 @@ from itertools import compress
 
 import numpy as np
 
+from evolvent.contact.newton.equilibrium import sliding
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.gear_model import GearModel
@@ -23,6 +24,7 @@ from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump,
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent.gears.sweep.slip import nominal_direction
 from evolvent_meshes.arrays import Bools
 
 HALVINGS = 4
@@ -177,13 +179,16 @@ def _histories(
     model: GearModel, shared: SharedPosition, frictions: Sequence[float], state: SweepState, span: float
 ) -> tuple[Histories, float]:
     """The history of each friction coefficient (None for μ = 0) and the step [rad] since then. Where there is none yet,
-    the flanks are taken to have moved by `span` in the state without friction."""
+    the flanks are taken to have moved by `span` in the state in which they slide everywhere, as they nearly do."""
     kept = next((history for history in state.histories if history is not None), None)
     if kept is not None:
         return state.histories, shared.contact.stand.angle - kept.stand.angle
-    rough = [model.has_friction_terms(μ) for μ in frictions]
-    fresh = FrictionHistory.of(model, shared.contact, shared.smooth) if any(rough) else None
-    return tuple(fresh if rubs else None for rubs in rough), span
+    return tuple(_first_history(model, shared, μ) if model.has_friction_terms(μ) else None for μ in frictions), span
+
+
+def _first_history(model: GearModel, shared: SharedPosition, friction: float) -> FrictionHistory:
+    heading = nominal_direction(shared.contact.geometry)
+    return FrictionHistory.of(model, shared.contact, sliding(shared.system, friction, heading, shared.smooth))
 
 
 def _previous_jumps(shared: SharedPosition, histories: Histories) -> list[PreviousJump | None]:

@@ -27,12 +27,16 @@ def slip_increment(geometry: ContactGeometry, before: PreviousJump, span: float)
 def slip_direction(geometry: ContactGeometry) -> Floats:
     """(q, d−1) unit tangent of the nominal slip where the slice is far enough from the pitch point to know it, else
     zero."""
-    shape = geometry.operator.shape
-    v = shape @ relative_velocity(geometry)[:, 1:]
-    size = np.linalg.norm(v, axis=1, keepdims=True)
     module = geometry.stand.pair.pinion.normal_module
-    far = np.abs(shape @ geometry.roll_distance)[:, None] > NEAR_PITCH * module
-    return np.where(far & (size > 0.0), v / np.where(size > 0.0, size, 1.0), 0.0)
+    far = np.abs(geometry.operator.shape @ geometry.roll_distance)[:, None] > NEAR_PITCH * module
+    return np.where(far, nominal_direction(geometry), 0.0)
+
+
+def nominal_direction(geometry: ContactGeometry) -> Floats:
+    """(q, d−1) unit tangent of the nominal slip, zero at the pitch point."""
+    v = geometry.operator.shape @ relative_velocity(geometry)[:, 1:]
+    size = np.linalg.norm(v, axis=1, keepdims=True)
+    return np.where(size > 0.0, v / np.where(size > 0.0, size, 1.0), 0.0)
 
 
 def slip_growth_direction(geometry: ContactGeometry) -> Floats:

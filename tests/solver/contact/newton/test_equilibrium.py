@@ -26,6 +26,7 @@ from evolvent.contact.newton.equilibrium import (
     frictional,
     frictionless,
     normal_part,
+    sliding,
     stuck,
 )
 from evolvent.contact.nitsche.coulomb import coulomb, starting_guess
@@ -183,6 +184,17 @@ def test_solution_does_not_depend_on_the_initial_contact_set() -> None:
     few[np.argsort(system.operator.gap)[:6]] = True
     a, b = frictionless(system), frictionless(system, few)
     assert np.abs(a.force - b.force).max() < 1e-9 * a.force.max()
+
+
+def test_all_points_slide_in_known_directions() -> None:
+    """τ = μλ·heading at every point in contact, whatever the displacement, and balance: the tractions by the law, the
+    forces' sum by the load."""
+    system = _position(cylinder()).system()
+    heading = np.ones((len(system.operator.weights), 1))
+    state = sliding(system, FRICTION, heading, frictionless(normal_part(system)))
+    assert state.traction[:, 0].max() > 0.0
+    assert state.traction[:, 1] == pytest.approx(FRICTION * state.traction[:, 0], rel=1e-12)
+    assert np.abs(system.motion.T @ state.force.ravel() - system.load).max() < 1e-9 * system.scale
 
 
 def test_bad_initial_guess_does_not_prevent_the_solution() -> None:

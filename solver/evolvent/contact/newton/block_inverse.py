@@ -46,6 +46,11 @@ class NearlyNormal:
         """n·k."""
         return len(self.modes)
 
+    @property
+    def k(self) -> int:
+        """Components a node."""
+        return self.size // int(self.starts[-1])
+
     @cached_property
     def starts(self) -> Ints:
         """First node of each block, and n."""

@@ -49,7 +49,12 @@ class ActiveCompliance(Protocol):
 
 
 class JumpCompliance(Protocol):
-    """A (m, m) [mm/N], k components a node, symmetric."""
+    """A (m, m) [mm/N], symmetric."""
+
+    @property
+    def k(self) -> int:
+        """Components a node."""
+        ...
 
     @property
     def matrix(self) -> Floats | None:

@@ -54,7 +54,8 @@ def gmres(
     y = b.duplicate()
     ksp.solve(b, y)
     reached = ksp.getConvergedReason() > 0
-    ksp.destroy()
+    for each in (ksp, operator):  # PETSc holds its Python objects until then
+        each.destroy()
     for product in (matrix, preconditioner):
         if product.error is not None:
             raise product.error

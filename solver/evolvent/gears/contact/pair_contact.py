@@ -16,6 +16,7 @@ from types import MappingProxyType
 import numpy as np
 
 from evolvent.contact.newton.equilibrium import CondensedSystem
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.condensed_gear import GearBody
@@ -70,11 +71,15 @@ class GearContact:
         normal_only: without friction only the normal components are condensed, a ninth of the work. threads: in which
         each gear's compliance is put together.
         """
-        k = 1 if normal_only else self.geometry.d
+        compliance = self.geometry.compliance(1 if normal_only else self.geometry.d, threads)
+        return self.system_with(compliance, loaded, torque)
+
+    def system_with(self, compliance: JumpCompliance, loaded: Member, torque: float) -> CondensedSystem:
+        """The same with a compliance that is known."""
+        k = compliance.k
         n = len(self.geometry.node) * k
         motion = self.geometry.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
-        compliance = self.geometry.compliance(k, threads)
         return CondensedSystem(self.operator, compliance, motion, np.zeros(n), np.array([torque]), lever)
 
     @property

@@ -14,16 +14,18 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
-import numpy as np
 from mpi4py import MPI
 
 from evolvent.contact.newton.applied_compliance import AppliedCompliance
 from evolvent.contact.newton.block_inverse import NearlyNormal
-from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
+from evolvent.contact.newton.equilibrium import Equilibrium
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import SharedBroadcast, together
+from evolvent.gears.contact.overlap_check import UnsearchedOverlap
+from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, joined, sweep_pitch
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
@@ -143,23 +145,22 @@ class _RankedSweep:
         return swept
 
     def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
-        """Rank `root`'s position on all ranks: without the gears, which all have; what is large of its compliance
-        through shared memory."""
-        bare: SharedPosition | None = None
+        """Rank `root`'s position on all ranks: without the gears, which all have; its compliance through shared memory,
+        only roughly where it is known by products, which all ranks can make."""
+        bare: tuple[GearContact, Equilibrium, tuple[UnsearchedOverlap, ...], float] | None = None
         large: NearlyNormal | JumpCompliance | None = None
         if prepared is not None:
-            compliance, k = prepared.system.compliance, prepared.system.k
-            large = compliance.rough if isinstance(compliance, AppliedCompliance) else compliance
-            system = replace(prepared.system, compliance=DenseCompliance(np.zeros((0, 0)), k))
-            bare = replace(prepared, contact=prepared.contact.without_bodies(), system=system)
+            bare = prepared.contact.without_bodies(), prepared.smooth, prepared.unsearched, prepared.stiffness
+            large = prepared.system.compliance
+            large = large.rough if isinstance(large, AppliedCompliance) else large
         received = self.comm.bcast(bare, root)
         if received is None:
             return None
+        contact, smooth, unsearched, stiffness = received
+        contact, load = contact.with_bodies(self.model.bodies), self.model.load
         sent = self.broadcasts[root].send(large)
-        if prepared is not None and isinstance(sent, NearlyNormal):
-            return prepared
-        contact = received.contact.with_bodies(self.model.bodies)
-        if isinstance(sent, NearlyNormal):
-            sent = contact.geometry.compliance(received.system.k, rough=sent)
         assert sent is not None
-        return replace(received, contact=contact, system=replace(received.system, compliance=sent))
+        if isinstance(sent, NearlyNormal):
+            sent = contact.geometry.compliance(sent.k, rough=sent)
+        system = contact.system_with(sent, load.on, load.torque)
+        return SharedPosition(contact, system, smooth, unsearched, stiffness)

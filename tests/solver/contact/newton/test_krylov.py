@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -45,3 +48,18 @@ def test_exceptions_of_products_pass() -> None:
     for times, inverse in ((failing, lambda v: v), (lambda v: v, failing)):
         with pytest.raises(ArithmeticError, match="as the test wants"):
             gmres(times, inverse, np.ones(N), 1e-8, 10)
+
+
+def test_nothing_is_held_afterwards() -> None:
+    """The product, and with it all that it has, such as a compliance, is free once GMRES has returned."""
+
+    class Doubling:
+        def __call__(self, v: Floats) -> Floats:
+            return 2.0 * v
+
+    times = Doubling()
+    gmres(times, lambda v: v, np.ones(N), 1e-8, 10)
+    held = weakref.ref(times)
+    del times
+    gc.collect()
+    assert held() is None

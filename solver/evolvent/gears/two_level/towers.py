@@ -18,7 +18,7 @@ from evolvent.contact.two_level.fine_surface import CoarseBody
 from evolvent.contact.two_level.patch_response import patch_response
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.strips import Strip, StripCorrection, turned
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
 REACH = 1.1
 """How far a patch extends beyond the loaded cells, in the longest edges of the coarse flank's cells. Difference of nine
@@ -175,20 +175,25 @@ class Towers:
 
     def _response(self, rows: range, layers: range) -> Response:
         """Of the patch about some cells."""
-        loaded = np.isin(self._cells[:, 0], rows) & np.isin(self._cells[:, 1], layers)
-        patch = self._body.near(np.flatnonzero(loaded), self._reach)
-        response = patch_response(self._body, patch, self._held, self._flux_safety)
-        at, last = self._fine.place(response.points), np.array(self._fine.nodes.shape) - 1
+        of_cells = np.isin(self._cells[:, 0], rows) & np.isin(self._cells[:, 1], layers)
+        patch = self._body.near(np.flatnonzero(of_cells), self._reach)
+        last = np.array(self._fine.nodes.shape) - 1
         cells = np.array([[rows.start, layers.start], [rows.stop, layers.stop]])
         low, high = cells * self._nodes
         high += high == last  # the last nodes of the flank belong to its last cells
-        sides = self._sides
-        start, stop = np.maximum(0, low - sides), np.minimum(last, high + sides) + 1
-        moves, sources = ((at >= a).all(axis=1) & (at < b).all(axis=1) for a, b in ((start, stop), (low, high)))
+
+        def within(points: Floats) -> Bools:
+            at = self._fine.place(points)
+            return np.asarray((at >= low).all(axis=1) & (at < high).all(axis=1))
+
+        response = patch_response(self._body, patch, self._held, self._flux_safety, within)
+        start, stop = np.maximum(0, low - self._sides), np.minimum(last, high + self._sides) + 1
+        at = self._fine.place(response.points)
+        moves = (at >= start).all(axis=1) & (at < stop).all(axis=1)
         turn = _rotation(-self._normal_angle(rows.start) + self._angle[low[1]])
-        change = np.einsum("ba,ibjc,ce->iaje", turn, response.change[moves][:, :, sources], turn, optimize=True)
+        change = np.einsum("ba,ibjc,ce->iaje", turn, response.change[moves], turn, optimize=True)
         result = np.zeros((*(stop - start), 3, *(high - low), 3))
-        i, j = at[moves] - start, at[sources] - low
+        i, j = at[moves] - start, at[response.loaded] - low
         result[i[:, 0, None], i[:, 1, None], :, j[:, 0], j[:, 1]] = np.moveaxis(change, 1, 2)
         return Response(result, low - start, np.zeros(2, dtype=np.int64))
 

@@ -86,3 +86,17 @@ def test_patches_correct_all_but_what_their_cut_leaves(with_flux: bool) -> None:
         errors.append(np.abs(both.two_level - both.exact).max() / np.abs(both.exact).max())
     assert errors[0] < 0.02 and errors[1] < 0.005 and errors[2] < 1e-12
     assert np.abs(both.correction).max() > 0.1 * np.abs(both.exact).max()
+
+
+@pytest.mark.parametrize("upper", [1.1, 6.0])
+def test_forces_on_some_nodes_only(upper: float) -> None:
+    """The columns of the nodes with x < upper are those of the response to forces on all, whether they are few, solved
+    for one by one, or many. Exact."""
+    body = block()
+    patch = body.near(np.array([1, 2]), 2.1)
+    every = patch_response(body, patch, ("bottom",), SAFETY)
+    some = patch_response(body, patch, ("bottom",), SAFETY, lambda points: points[:, 0] < upper)
+    assert every.loaded.all() and np.array_equal(some.loaded, some.points[:, 0] < upper)
+    assert 0 < some.change.shape[2] < every.change.shape[2]
+    tiny = 1e-11 * np.abs(every.change).max()
+    assert some.change == pytest.approx(every.change[:, :, some.loaded], abs=tiny)

@@ -4,7 +4,8 @@ With A ≈ A_b + U K Uᵀ, A_b block-diagonal, and only the columns S of M = ∂
 
     (I + A_b M_S) z = A_b b + U w − H δ ,   K⁻¹ w = Uᵀ f ,   Hᵀ f = c .
 
-Each block is factored by itself, and a system of the size of (w, δ) couples them (Woodbury).
+Each block is banded, as only nodes near each other along a contact line are coupled in it; it is factored by itself,
+and a system of the size of (w, δ) couples the blocks (Woodbury).
 """
 
 from __future__ import annotations
@@ -15,29 +16,28 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import block_diag, lu_factor, lu_solve
+from scipy.linalg import block_diag
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from evolvent.contact.newton.band_factor import BandFactor, times_banded
 from evolvent.contact.newton.snes import NotConverged
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
 TANGENTIAL = 1.2
 """Tangential over normal compliance of the surface of a half-space, (1 − ν/2)/(1 − ν) at ν = 0.3 (Johnson 1985, 3.2 and
 3.6)."""
-COLUMNS = 128
-"""Of a banded matrix, multiplied at once."""
 
 
 @dataclass(frozen=True)
 class NearlyNormal:
     """A compliance of n nodes with k components, roughly: blocks of normal components, and modes of all components.
 
-    blocks: (n_i, n_i) of consecutive nodes [mm/N].
+    blocks: (n_i, n_i) of consecutive nodes, symmetric, sparse, in single precision [mm/N].
     modes: U (n·k, r).
     couplings: diagonal of K (r,), not zero [mm/N].
     """
 
-    blocks: tuple[Singles, ...]
+    blocks: tuple[sp.csr_matrix, ...]
     modes: Floats
     couplings: Floats
 
@@ -54,7 +54,7 @@ class NearlyNormal:
     @cached_property
     def starts(self) -> Ints:
         """First node of each block, and n."""
-        return np.cumsum([0] + [len(block) for block in self.blocks])
+        return np.cumsum([0] + [block.shape[0] for block in self.blocks])
 
     def normal(self, k: int) -> NearlyNormal:
         """That of the normal components."""
@@ -63,7 +63,7 @@ class NearlyNormal:
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
         """Of bodies with the same blocks of nodes."""
-        blocks = tuple(np.sum(each, axis=0) for each in zip(*(part.blocks for part in parts)))
+        blocks = tuple(sum(each[1:], each[0]) for each in zip(*(part.blocks for part in parts)))
         return NearlyNormal(
             blocks, np.hstack([p.modes for p in parts]), np.concatenate([p.couplings for p in parts])
         )
@@ -123,66 +123,51 @@ class BlockInverse:
 
 
 @dataclass(frozen=True)
-class _Component:
-    """One component of one contact.
-
-    rows: (s_a,) its unknowns among the contact's s_i.
-    near: (u_a,) its active unknowns.
-    A: (s_a, u_a) rough compliance between them.
-    """
-
-    rows: Ints
-    near: Ints
-    A: Singles
-
-
-@dataclass(frozen=True)
 class _Block:
     """One contact.
 
     kept: (s_i,) its unknowns among S.
-    components: those that it has.
+    near: (u_i,) its active unknowns.
+    A: (s_i, u_i) rough compliance between them.
     factor: of I + A_b M_S.
     """
 
     kept: Ints
-    components: tuple[_Component, ...]
-    factor: tuple[Singles, Ints]
+    near: Ints
+    A: sp.csr_matrix
+    factor: BandFactor
 
     @staticmethod
-    def of(block: Singles, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
+    def of(block: sp.csr_matrix, node: Ints, axis: Ints, M: sp.csr_matrix, kept: Ints) -> _Block:
         """block: of its nodes. node: of each active unknown; axis: component, −1 where it is of another contact."""
-        mine = np.flatnonzero(axis[kept] >= 0)
-        own = M[kept[mine]][:, kept[mine]]
-        order = reverse_cuthill_mckee(own, symmetric_mode=False)
-        mine, own = mine[order], own[order][:, order]
-        rows, B, components = kept[mine], np.empty((len(mine),) * 2, dtype=np.float32, order="F"), []
-        for each in np.unique(axis[rows]):
-            among, near = np.flatnonzero(axis[rows] == each), np.flatnonzero(axis == each)
-            A = block[np.ix_(node[rows[among]], node[near])] * np.float32(TANGENTIAL if each else 1.0)
-            B[among] = _times_banded(A[:, np.searchsorted(near, rows[among])], own[among].tocsc())
-            components.append(_Component(among, near, A))
-        B[np.diag_indices_from(B)] += 1.0
-        return _Block(mine, tuple(components), lu_factor(B, overwrite_a=True, check_finite=False))
+        near, mine = np.flatnonzero(axis >= 0), np.flatnonzero(axis[kept] >= 0)
+        A = block[node[kept[mine]]]
+        mine = mine[reverse_cuthill_mckee(A[:, node[kept[mine]]], symmetric_mode=True)]
+        rows = kept[mine]
+        A = _of_components(block[node[rows]], node[near], axis[rows], axis[near])
+        B = times_banded(A[:, np.searchsorted(near, rows)], M[rows][:, rows].tocsc())
+        return _Block(mine, near, A, BandFactor(B))
 
     def moved(self, b: Floats) -> Singles:
         """A_b b (s_i,) for forces (u,) on all active unknowns."""
-        result = np.empty(len(self.kept), dtype=np.float32)
-        for each in self.components:
-            result[each.rows] = each.A @ b[each.near].astype(np.float32)
-        return result
+        return np.asarray(self.A @ b[self.near].astype(np.float32))
 
     def solved(self, right: Singles) -> Singles:
         """(I + A_b M_S)⁻¹ right, (s_i, ...)."""
-        return np.asarray(lu_solve(self.factor, right, check_finite=False))
+        return self.factor.solve(right)
 
 
-def _times_banded(A: Singles, M: sp.csc_matrix) -> Singles:
-    """A M for a matrix M with few diagonals, ordered so: ten times faster than a sparse product."""
-    result = np.zeros((len(A), M.shape[1]), dtype=np.float32, order="F")
-    for a in range(0, M.shape[1], COLUMNS):
-        part = M[:, a : a + COLUMNS]
-        if part.nnz:
-            low, high = part.indices.min(), part.indices.max() + 1
-            result[:, a : a + COLUMNS] = A[:, low:high] @ part[low:high].toarray().astype(np.float32)
+def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:
+    """(s, u) compliance between unknowns from that of normal components (s, nodes): none between different components,
+    more between tangential ones. node: (u,); rows, columns: their components."""
+    parts = []
+    for axis in range(int(columns.max()) + 1):
+        here = sp.diags(np.where(rows == axis, TANGENTIAL if axis else 1.0, 0.0).astype(np.float32))
+        of_axis = np.flatnonzero(columns == axis)
+        place = sp.csr_matrix(
+            (np.ones(len(of_axis), dtype=np.float32), (node[of_axis], of_axis)), (block.shape[1], len(columns))
+        )
+        parts.append(here @ block @ place)
+    result = sum(parts[1:], parts[0]).tocsr()
+    result.eliminate_zeros()
     return result

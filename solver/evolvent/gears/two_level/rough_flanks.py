@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -70,14 +71,33 @@ class RoughFlanks:
         moved = C @ P
         return np.asarray(solve_triangular(cholesky(P.T @ moved, lower=True), moved.T, lower=True).T)
 
-    def _block(self, tooth: ToothWindow, C: Floats, bending: Floats) -> Singles:
-        """(n, n) normal compliance of a tooth's part of the contact without its bending [mm/N]."""
+    def _block(self, tooth: ToothWindow, C: Floats, bending: Floats) -> sp.csr_matrix:
+        """(n, n) normal compliance of a tooth's part of the contact without its bending, between nodes less than a
+        coarse layer apart along the face [mm/N]. Nodes further apart hardly change how well it preconditions."""
         lattice = self.levels[-1].correction.lattice
-        N = lattice.interpolation(tooth.map.opposite(lattice.at(tooth.nodes[-1])))
-        result: Singles = np.zeros((N.shape[0],) * 2, dtype=np.float32)
+        x = tooth.map.opposite(lattice.at(tooth.nodes[-1]))
+        parts = self._parts(lattice.interpolation(x), tooth, C, bending)
+        layer = float(np.diff(self._heights).max())
+        group = ((x[:, 2] - x[:, 2].min()) / layer).astype(np.int64)
+        members = [np.flatnonzero(group == each) for each in range(group.max() + 1)]
+        rows, columns, values = [], [], []
+        for first, second in [*zip(members, members), *pairwise(members)]:
+            dense = np.sum([_between(N[first], S, N[second]) for N, S in parts], axis=0)
+            i, j = np.nonzero(np.abs(x[first, 2][:, None] - x[second, 2]) <= layer)
+            rows.append(first[i])
+            columns.append(second[j])
+            values.append(dense[i, j] if first is not second else 0.5 * dense[i, j])
+        half = sp.csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (len(x),) * 2)
+        return (half + half.T).tocsr()
+
+    def _parts(
+        self, N: sp.csr_matrix, tooth: ToothWindow, C: Floats, bending: Floats
+    ) -> list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]]:
+        """N_l, S_l of each level and of the coarse flank: the normal compliance is Σ N_l S_l N_lᵀ. N: from the finest
+        nodes."""
+        parts: list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]] = []
         for level, own in zip(reversed(self.levels), reversed(self._normal)):
-            used = np.unique(N.indices)
-            result += _between(N[:, used], own[used][:, used].toarray())
+            parts.append((N.astype(np.float32), own))
             N = (N @ level.transfer).tocsr()
         place = np.full(N.shape[1], -1)
         place[tooth.nodes[0]] = np.arange(len(tooth.nodes[0]))
@@ -86,7 +106,12 @@ class RoughFlanks:
         among = C.reshape(len(tooth.nodes[0]), 3, -1, 3)[k][:, :, k]
         U = np.einsum("iab,ia->ib", bending.reshape(-1, 3, bending.shape[1])[k], n)
         rest = np.einsum("iajb,ia,jb->ij", among, n, n, optimize=True) - U @ U.T
-        return result + _between(N[:, used], rest)
+        return [*parts, (N[:, used].astype(np.float32).tocsr(), rest.astype(np.float32))]
+
+    @cached_property
+    def _heights(self) -> Floats:
+        """Of the layers' limits in the coarse flank [mm]."""
+        return np.unique(np.round(self.flank.points[:, 2], 9))[::2]
 
     @cached_property
     def _normal(self) -> list[sp.csr_matrix]:
@@ -94,7 +119,9 @@ class RoughFlanks:
         return [level.correction.normal(level.normals) for level in self.levels]
 
 
-def _between(N: sp.csr_matrix, C: Floats | Singles) -> Singles:
-    """N C Nᵀ in single precision."""
-    N = N.astype(np.float32)
-    return np.asarray(N @ (N @ C.astype(np.float32)).T)
+def _between(N: sp.csr_matrix, S: sp.csr_matrix | Singles, M: sp.csr_matrix) -> Singles:
+    """N S Mᵀ, dense."""
+    rows, columns = np.unique(N.indices), np.unique(M.indices)
+    among = S[rows][:, columns]
+    dense = among.toarray() if sp.issparse(among) else among
+    return np.asarray(N[:, rows] @ (M[:, columns] @ dense.T).T)

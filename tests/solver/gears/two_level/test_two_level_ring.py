@@ -121,4 +121,4 @@ def test_modes_that_teeth_share() -> None:
     rough = ring.jumps(parts).nearly()
     found = rough.modes * rough.couplings @ rough.modes.T
     assert found[:8, 8:] == pytest.approx(A[:8, 8:], abs=3e-3 * np.abs(A).max())
-    assert [len(block) for block in rough.blocks] == [4, 2]
+    assert [block.shape for block in rough.blocks] == [(4, 4), (2, 2)]

@@ -96,13 +96,18 @@ def mapped(ring: TwoLevelRing) -> list[MappedNodes]:
     return [MappedNodes(2, random.permutation(ring.size)[:9], many), MappedNodes(0, np.array([13, 2]), few)]
 
 
+def of_jumps(ring: TwoLevelRing, exact: Floats, parts: Sequence[MappedNodes]) -> Floats:
+    """E C Eᵀ of the parts' maps E, written out."""
+    dofs = np.concatenate([dofs_of(np.column_stack([0 * p.nodes + p.tooth, p.nodes]), ring.size) for p in parts])
+    E = sp.block_diag([part.jumps(np.eye(D * len(part.nodes))) for part in parts]).toarray()
+    return np.asarray(E @ exact[np.ix_(dofs, dofs)] @ E.T)
+
+
 def test_products_between_mapped_nodes() -> None:
     """Jumps of two teeth under forces on both, in double and in single precision, and of the first component alone."""
     ring, exact = two_levels()
     parts = mapped(ring)
-    dofs = np.concatenate([dofs_of(np.column_stack([0 * p.nodes + p.tooth, p.nodes]), ring.size) for p in parts])
-    E = sp.block_diag([part.jumps(np.eye(D * len(part.nodes))) for part in parts]).toarray()
-    A = E @ exact[np.ix_(dofs, dofs)] @ E.T
+    A = of_jumps(ring, exact, parts)
     window, f = ring.jumps(parts), np.random.default_rng(3).normal(size=(6, 2))
     assert window.times(f).ravel() == pytest.approx(A @ f.ravel(), rel=1e-11)
     single = window.times(f.astype(np.float32))
@@ -115,9 +120,7 @@ def test_modes_that_teeth_share() -> None:
     """With all modes kept, U K Uᵀ between nodes of different teeth is the compliance there."""
     ring, exact = two_levels()
     parts = mapped(ring)
-    dofs = np.concatenate([dofs_of(np.column_stack([0 * p.nodes + p.tooth, p.nodes]), ring.size) for p in parts])
-    E = sp.block_diag([part.jumps(np.eye(D * len(part.nodes))) for part in parts]).toarray()
-    A = E @ exact[np.ix_(dofs, dofs)] @ E.T
+    A = of_jumps(ring, exact, parts)
     rough = ring.jumps(parts).nearly()
     found = rough.modes * rough.couplings @ rough.modes.T
     assert found[:8, 8:] == pytest.approx(A[:8, 8:], abs=3e-3 * np.abs(A).max())

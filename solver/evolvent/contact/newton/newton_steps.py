@@ -111,7 +111,10 @@ class NewtonSteps:
 
     def _exact(self, tangent: Tangent, right: Floats) -> Floats:
         if self.A.matrix is None:
-            raise NotConverged(f"Newton step: wanted it within {ITERATIONS} iterations of GMRES, found no convergence")
+            raise NotConverged(
+                f"Newton step: wanted it within {ITERATIONS} iterations of GMRES, found no convergence; a smaller step "
+                "may help"
+            )
         return tangent.solve(right)
 
     def _activate(self, tangent: Tangent, right: Floats) -> None:

@@ -88,7 +88,7 @@ class AppliedActive:
 
     def inverse(self, M: sp.csr_matrix, H: Reals, kept: Ints) -> BlockInverse:
         """See `ActiveCompliance.inverse`."""
-        return BlockInverse(self.whole.rough, self.whole.k, self.unknowns, M, H, kept)
+        return BlockInverse(self.whole.rough, self.unknowns, M, H, kept)
 
 
 def summed(

@@ -16,7 +16,6 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import block_diag
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from evolvent.contact.newton.band_factor import BandFactor, times_banded
@@ -73,7 +72,6 @@ class BlockInverse:
     """T⁻¹, roughly.
 
     rough: A.
-    k: components a node.
     unknowns: (u,) that are active.
     M, H: (u, u) and (u, r) among them.
     kept: S (s,), columns of M that are not left out.
@@ -81,11 +79,9 @@ class BlockInverse:
     Raises NotConverged where a free rigid motion meets no resistance.
     """
 
-    def __init__(
-        self, rough: NearlyNormal, k: int, unknowns: Ints, M: sp.csr_matrix, H: Floats, kept: Ints
-    ) -> None:
+    def __init__(self, rough: NearlyNormal, unknowns: Ints, M: sp.csr_matrix, H: Floats, kept: Ints) -> None:
         self._M = M[:, kept].tocsr()
-        node, axis = np.divmod(unknowns, k)
+        node, axis = np.divmod(unknowns, rough.k)
         contact = np.searchsorted(rough.starts, node, side="right") - 1
         self._blocks = [
             _Block.of(rough.blocks[i], node - rough.starts[i], np.where(contact == i, axis, -1), M, kept)
@@ -94,8 +90,8 @@ class BlockInverse:
         self._smooth = np.hstack([rough.modes[unknowns], -H])
         self._under_smooth = (self._M.T @ self._smooth).T
         self._response = self._solved(self._smooth[kept])
-        inner = block_diag(np.diag(1.0 / rough.couplings), np.zeros((H.shape[1],) * 2))
-        inner = inner[: self._smooth.shape[1], : self._smooth.shape[1]] + self._under_smooth @ self._response
+        inner = self._under_smooth @ self._response
+        inner[np.diag_indices(len(rough.couplings))] += 1.0 / rough.couplings
         self._scale = 1.0 / np.sqrt(np.abs(np.diag(inner)).clip(min=np.finfo(float).tiny))
         try:
             self._inner = np.linalg.inv(inner * self._scale * self._scale[:, None])

@@ -144,7 +144,8 @@ def sliding(system: CondensedSystem, friction: Floats | float, heading: Floats, 
     NotConverged.
     """
     law = ContactEquations(system, lambda t: starting_guess(t, friction, heading))
-    return _converged(law, law.join(_padded(start.force, system.k), start.motion), "contact that slides everywhere")
+    x = law.join(with_components(start.force, system.k), start.motion)
+    return _converged(law, x, "contact that slides everywhere")
 
 
 def frictional(
@@ -186,7 +187,7 @@ def _starts(
     assumed to stick, tractions of a hundred times the load separate the surfaces in the first iteration; the state
     without friction then still leads to the solution.
     """
-    force = _padded(start.force, system.k)
+    force = with_components(start.force, system.k)
     headings = [heading, np.zeros_like(heading)] if heading.any() else [heading]
     for known in headings:
         guess = ContactEquations(system, lambda t: starting_guess(t, friction, known), slip)  # noqa: B023  used at once
@@ -195,9 +196,9 @@ def _starts(
     yield ContactEquations(system, lambda t: coulomb(t, friction), slip).join(force, start.motion)
 
 
-def _padded(force: Floats, k: int) -> Floats:
-    """Forces (n, k), with zeros for the components that they lack."""
-    return np.pad(force, ((0, 0), (0, k - force.shape[1])))
+def with_components(values: Floats, k: int) -> Floats:
+    """Local components (n, ≤ k) as (n, k), with zeros for those that they lack."""
+    return np.pad(values, ((0, 0), (0, k - values.shape[1])))
 
 
 class ContactEquations:

@@ -11,9 +11,6 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 OPPOSED = -0.2
 """n1·n2 at the centres of two facets above which they cannot face each other."""
-TILT = 0.5
-"""Of the reach: by how much points within reach along the normals of a facet may lie beside it, as these differ from
-the one at its centre by less than 30°."""
 
 
 def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_gap: float,
@@ -35,19 +32,31 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
     frame1, frame2 = _frames(surface1)[facets1], _frames(surface2)
     keep = np.einsum("pd,pd->p", frame1[i1, 0], frame2[i2, 0]) < OPPOSED
     i1, i2 = i1[keep], i2[keep]
-    keep = _balls_meet(centre2[i2] - centre1[i1], radius1[i1] + radius2[i2], frame1[i1, 0], max_gap, max_overlap)
+    beside = radius1 + reach * _tilt(surface1.normals[surface1.facets[facets1]], frame1[:, 0])
+    distance, along = centre2[i2] - centre1[i1], frame1[i1, 0]
+    keep = _balls_meet(distance, along, radius1[i1] + radius2[i2], beside[i1] + radius2[i2], (max_gap, max_overlap))
     i1, i2 = i1[keep], i2[keep]
     keep = _boxes_meet(surface1, surface2, facets1[i1], i2, frame1[i1], max_gap, max_overlap)
     return facets1[i1[keep]], i2[keep]
 
 
-def _balls_meet(distance: Floats, radii: Floats, normal: Floats, max_gap: float, max_overlap: float) -> Bools:
-    """Whether balls at a distance (p, d) may have points within reach of each other along normals near `normal` (p, d);
-    radii: (p,) both together."""
+def _tilt(normals: Floats, centre: Floats) -> Floats:
+    """Largest sine (m,) of the angles between normals (m, k, d) at a facet's nodes and that at its centre (m, d)."""
+    across = normals - np.einsum("mkd,md->mk", normals, centre)[..., None] * centre[:, None]
+    return np.linalg.norm(across, axis=2).max(axis=1, initial=0.0)
+
+
+def _balls_meet(
+    distance: Floats, normal: Floats, radii: Floats, beside: Floats, reach: tuple[float, float]
+) -> Bools:
+    """Whether two balls may have points within a gap and an overlap, `reach`, of each other.
+
+    distance: (p, d) between their centres. normal: (p, d) along which the reach is. radii: (p,) both together. beside:
+    (p,) how far across the normal points may lie.
+    """
     along = np.einsum("pd,pd->p", distance, normal)
     across = np.sqrt(np.maximum(np.einsum("pd,pd->p", distance, distance) - along**2, 0.0))
-    beside = across <= radii + TILT * max(max_gap, max_overlap)
-    return np.asarray(beside & (along <= radii + max_gap) & (along >= -radii - max_overlap))
+    return np.asarray((across <= beside) & (along <= radii + reach[0]) & (along >= -radii - reach[1]))
 
 
 def facet_balls(surface: Surface, facets: Ints) -> tuple[Floats, Floats]:

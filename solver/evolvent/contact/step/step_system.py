@@ -16,6 +16,7 @@ from evolvent.contact.newton.equilibrium import (
     frictionless,
     normal_part,
     stuck,
+    with_components,
 )
 from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotion
@@ -208,11 +209,11 @@ class StepSystem:
 
     def _nodal_forces(self, state: Equilibrium) -> Floats:
         """(Σn, d) [N] in local frames, with zeros where there is no friction."""
-        return _padded(state.force, self.d)
+        return with_components(state.force, self.d)
 
     def _tractions(self, state: Equilibrium) -> list[Floats]:
         """Local tractions (q, d) [MPa] at the points of each contact."""
-        return self._split(_padded(state.traction, self.d))
+        return self._split(with_components(state.traction, self.d))
 
     def _split(self, values: Floats) -> list[Floats]:
         """Values (Σq, ...) at all points, contact by contact."""
@@ -272,11 +273,6 @@ class StepSystem:
             result.append(surface.points + u @ self.placements[side[0]].rotation.T)
         result[0][paired.operator.nodes] += paired.operator.flux(traction)
         return result[0], result[1]
-
-
-def _padded(components: Floats, d: int) -> Floats:
-    """Local components (n, k) as (n, d), with zero tangential ones where k = 1."""
-    return np.pad(components, ((0, 0), (0, d - components.shape[1])))
 
 
 def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:

@@ -211,7 +211,7 @@ class ChainedCompliance:
         return self._coupling.between(self._place(tooth), self._place(other))
 
     def _turn(self, tooth: int) -> Floats:
-        return _turn_by(tooth * self._pitch, self.dimension)
+        return turn_by(tooth * self._pitch, self.dimension)
 
     def _turned(self, tooth: int, matrix: Floats) -> Floats:
         return matrix if tooth == 0 else _turn_rows(self._turn(tooth), matrix)
@@ -224,12 +224,13 @@ class ChainedCompliance:
 
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
     """From face displacements (2c = `size`: low; high in the frame of the next sector) to those in the sector's own."""
-    turn = _turn_by(settings.pitch, settings.dimension)
+    turn = turn_by(settings.pitch, settings.dimension)
     low, high = sp.eye(size // 2), sp.kron(sp.eye(size // 2 // settings.dimension), turn)
     return sp.csr_array(sp.block_diag([low, high]))
 
 
-def _turn_by(angle: float, dimension: int) -> Floats:
+def turn_by(angle: float, dimension: int) -> Floats:
+    """Rotation about +z (d, d)."""
     turn = np.eye(dimension)
     turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     return turn

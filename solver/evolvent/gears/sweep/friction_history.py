@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import Equilibrium
+from evolvent.contact.newton.equilibrium import Equilibrium, with_components
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
@@ -43,7 +43,7 @@ class FrictionHistory:
         geometry = contact.geometry
         pinion_rows, wheel_rows = (geometry.rows(gear)[0] for gear in Member)
         pinion, wheel = (geometry.flank_forces(gear, equilibrium.force) for gear in Member)
-        traction = _with_all_components(equilibrium.traction, geometry.d)
+        traction = with_components(equilibrium.traction, geometry.d)
         flux = contact.operator.flux(traction) @ geometry.stand.rotation(Member.PINION, geometry.d)
         stand = geometry.stand.turned(model.load.on, float(equilibrium.motion[0]))
         return FrictionHistory(stand, (pinion_rows, wheel_rows), (pinion, wheel), flux)
@@ -122,7 +122,3 @@ def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistor
 def _row_keys(rows: Ints) -> Ints:
     """One number for each row (tooth, node)."""
     return rows[:, 0] * 2**32 + rows[:, 1]
-
-
-def _with_all_components(values: Floats, d: int) -> Floats:
-    return np.hstack([values, np.zeros((len(values), d - values.shape[1]))])

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, InitialGuess, frictional
+from evolvent.contact.newton.equilibrium import (
+    CondensedSystem,
+    Equilibrium,
+    InitialGuess,
+    frictional,
+    with_components,
+)
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.friction_history import PreviousJump
@@ -67,8 +71,7 @@ def extrapolated_guess(friction: float, solved: Sequence[Solved]) -> InitialGues
         return None
     older, last = solved[-2:]
     share = (friction - last.friction) / (last.friction - older.friction)
-    earlier = np.zeros_like(last.equilibrium.force)
-    earlier[:, : older.equilibrium.force.shape[1]] = older.equilibrium.force
+    earlier = with_components(older.equilibrium.force, last.equilibrium.force.shape[1])
     force = last.equilibrium.force + share * (last.equilibrium.force - earlier)
     motion = last.equilibrium.motion + share * (last.equilibrium.motion - older.equilibrium.motion)
     return InitialGuess(force, motion)

@@ -13,7 +13,7 @@ from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
-from evolvent.gears.two_level.rough_flanks import RefinedLevel
+from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.towers import Towers, reach_of
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.gear import GearParameters

@@ -18,7 +18,7 @@ from scipy.linalg import block_diag, cholesky, solve_triangular
 from evolvent.contact.newton.block_inverse import NearlyNormal
 from evolvent.fem.surface import Surface
 from evolvent.gears.two_level.flank_window import FlankWindow, ToothWindow
-from evolvent.gears.two_level.strips import StripCorrection
+from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
 SMOOTH = ((0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (2, 0))
@@ -26,20 +26,6 @@ SMOOTH = ((0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (2, 0))
 frictional Newton step of Yang's pair at standard with none, the first three, all six: 12, 8, 7."""
 COUPLED = 3e-3
 """Of the largest coupling between teeth: what is smaller is left out."""
-
-
-@dataclass(frozen=True)
-class RefinedLevel:
-    """A flank finer than the one before.
-
-    transfer: (n, c) shape functions of the level before at the nodes.
-    correction: what its cells change, in the frame of tooth 0.
-    normals: (n, 3) at the nodes of the flank.
-    """
-
-    transfer: sp.csr_matrix
-    correction: StripCorrection
-    normals: Floats
 
 
 @dataclass(frozen=True)

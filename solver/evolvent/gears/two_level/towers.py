@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +17,7 @@ from scipy.interpolate import BarycentricInterpolator
 
 from evolvent.contact.two_level.fine_surface import CoarseBody
 from evolvent.contact.two_level.patch_response import patch_response
+from evolvent.gears.ring.ring_compliance import turn_by
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.strips import Strip, StripCorrection, turned
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -128,7 +130,7 @@ class Towers:
         self._cells = self._coarse.place(body.surface.points[body.surface.facets[:, -1]]) // 2
         self._reach = reach_of(body)
 
-    @property
+    @cached_property
     def axes(self) -> tuple[Axis, Axis]:
         """Along the profile and along the face."""
         rows, layers = self._coarse.cells
@@ -163,7 +165,7 @@ class Towers:
             change = np.sum([weight * each.change for weight, each in zip(weights, known)], axis=0)
             yield row, replace(known[0], change=change)
 
-    @property
+    @cached_property
     def _sides(self) -> Ints:
         """(2,) by how many rows and levels of nodes a patch extends beyond its loaded cells."""
         return np.array(self._nodes * [axis.side for axis in self.axes])
@@ -190,7 +192,7 @@ class Towers:
         start, stop = np.maximum(0, low - self._sides), np.minimum(last, high + self._sides) + 1
         at = self._fine.place(response.points)
         moves = (at >= start).all(axis=1) & (at < stop).all(axis=1)
-        turn = _rotation(-self._normal_angle(rows.start) + self._angle[low[1]])
+        turn = turn_by(self._angle[low[1]] - self._normal_angle(rows.start), 3)
         change = np.einsum("ba,ibjc,ce->iaje", turn, response.change[moves], turn, optimize=True)
         result = np.zeros((*(stop - start), 3, *(high - low), 3))
         i, j = at[moves] - start, at[response.loaded] - low
@@ -212,7 +214,7 @@ class Towers:
         places = [(int(each[1]), int(each[0])) for each in (source, start)]
         return Strip(change, (q, p), (Q, P), places[0], places[1], len(layers)).trimmed(NEGLIGIBLE)
 
-    @property
+    @cached_property
     def _angle(self) -> Floats:
         """(levels,) of the frames of the coarse layers, in which each level of fine nodes is [rad]."""
         layer = np.minimum(np.arange(self._fine.nodes.shape[1]) // self._nodes[1], self._coarse.cells[1] - 1)
@@ -222,9 +224,3 @@ class Towers:
         """By which the flank's normal turns along the profile up to the first corner of a row of coarse cells [rad]."""
         r = self._coarse.radius[2 * row]
         return float(np.sqrt(max(r**2 - self._base_radius**2, 0.0)) / self._base_radius)
-
-
-def _rotation(angle: float) -> Floats:
-    """(3, 3) about z."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -9,9 +9,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.fem.surface import Surface
-from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes
+from evolvent.gears.ring.ring_compliance import ChainedCompliance, MappedNodes, turn_by
 from evolvent.gears.two_level.flank_window import FlankWindow, LevelWindow, ToothWindow, map_of
-from evolvent.gears.two_level.rough_flanks import RefinedLevel, RoughFlanks
+from evolvent.gears.two_level.refined_level import RefinedLevel
+from evolvent.gears.two_level.rough_flanks import RoughFlanks
 from evolvent_meshes.arrays import Floats, Ints
 
 
@@ -65,8 +66,7 @@ class TwoLevelRing:
         return self.levels[-1].correction.size
 
     def _turn(self, tooth: int) -> Floats:
-        c, s = np.cos(tooth * self.pitch), np.sin(tooth * self.pitch)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return turn_by(tooth * self.pitch, 3)
 
     @cached_property
     def _rough(self) -> RoughFlanks:

@@ -102,7 +102,7 @@ def test_rough_inverse_is_exact_without_friction() -> None:
     T = tangent(applied(1), 1)
     unknowns = np.flatnonzero(touching())
     rough = applied(1).rough
-    inverse = BlockInverse(rough, 1, unknowns, T.M[unknowns][:, unknowns], T.H[unknowns], np.arange(len(unknowns)))
+    inverse = BlockInverse(rough, unknowns, T.M[unknowns][:, unknowns], T.H[unknowns], np.arange(len(unknowns)))
     A, M, H = exact(1)[np.ix_(unknowns, unknowns)], T.M[unknowns][:, unknowns].toarray(), T.H[unknowns]
     dense = np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
     right = RNG(2).normal(size=len(unknowns) + 1)

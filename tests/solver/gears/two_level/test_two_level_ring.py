@@ -15,7 +15,7 @@ from evolvent.contact.nitsche.mortar_projection import MortarProjection
 from evolvent.gears.ring.jump_map import JumpMap
 from evolvent.gears.ring.ring_compliance import MappedNodes
 from evolvent.gears.ring.ring_window import RingWindow
-from evolvent.gears.two_level.rough_flanks import RefinedLevel
+from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Floats, Ints
 from tests.support.random_strips import strips, written_out

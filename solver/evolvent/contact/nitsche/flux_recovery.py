@@ -127,8 +127,8 @@ class _ContactCells:
     def gradients(self, xi: Floats) -> tuple[Floats, Floats]:
         """∇N (f, q, k, d) [1/mm] and det J (f, q) at the reference points xi (q, d)."""
         dN = tabulate(self.mesh.shape, self.mesh.order, xi)[1]
-        J = np.einsum("fka,qtk->fqat", self.coordinates, dN)
-        return np.einsum("qtk,fqta->fqka", dN, np.linalg.inv(J)), np.linalg.det(J)
+        J = np.swapaxes(dN @ self.coordinates[:, None], 2, 3)  # (f, q, d, t)
+        return np.swapaxes(dN, 1, 2) @ np.linalg.inv(J), np.linalg.det(J)
 
     def facet_tractions(self, material: Material, normals: Floats) -> Floats:
         """From displacements of the cells to σ(u)n at the nodes of the facets, (f, kf, d, k, d) [MPa/mm]; normals:
@@ -161,7 +161,7 @@ def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
     T = cells.facet_tractions(material, n)
     f, kf, d, k, _ = T.shape
     T = T.reshape(f, kf, d, k * d)
-    normal = np.einsum("fjr,fjrs->fjs", n, T)
+    normal = (n[:, :, None] @ T)[:, :, 0]
     tangential = (T - n[..., None] * normal[:, :, None, :]).reshape(f, kf * d, k * d)
     M = _facet_mass(surface)
     M_t = np.einsum("fij,ab->fiajb", M, np.eye(d)).reshape(f, kf * d, kf * d)
@@ -171,8 +171,8 @@ def inverse_trace_constants(cells: _ContactCells, material: Material) -> Floats:
 def _largest_ratio(K: Floats, T: Floats, M: Floats) -> Floats:
     """max_v (Tv)ᵀM(Tv) / vᵀKv of each cell, (f,), where T vanishes for rigid motions."""
     L = np.linalg.cholesky(M)
-    W = np.einsum("fji,fjs->fis", L, T)
-    return np.linalg.eigvalsh(np.einsum("fis,fsj->fij", W, np.linalg.solve(K, np.swapaxes(W, 1, 2))))[:, -1]
+    W = np.swapaxes(L, 1, 2) @ T
+    return np.asarray(np.linalg.eigvalsh(W @ np.linalg.solve(K, np.swapaxes(W, 1, 2)))[:, -1])
 
 
 def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
@@ -181,15 +181,15 @@ def _element_stiffness(cells: _ContactCells, material: Material) -> Floats:
     xi, w = quadrature(shape, 2 * order)
     G, det = cells.gradients(xi)
     λ, μ = material.lame
-    wd = w * np.abs(det)
-    f, _, k, d = G.shape
-    K = λ * np.einsum("fq,fqka,fqlb->fkalb", wd, G, G, optimize=True)
-    K += μ * np.einsum("fq,fqkb,fqla->fkalb", wd, G, G, optimize=True)
-    K += μ * np.einsum("fq,fqkc,fqlc,ab->fkalb", wd, G, G, np.eye(d), optimize=True)
+    f, q, k, d = G.shape
+    weighted = ((w * np.abs(det))[:, :, None, None] * G).reshape(f, q, k * d)
+    M = (np.swapaxes(weighted, 1, 2) @ G.reshape(f, q, k * d)).reshape(f, k, d, k, d)  # ∫∂_a N_k ∂_b N_l
+    K = λ * M + μ * np.swapaxes(M, 2, 4)
+    K += μ * np.trace(M, axis1=2, axis2=4)[:, :, None, :, None] * np.eye(d)[:, None, :]
     K = K.reshape(f, k * d, k * d)
     R = np.linalg.qr(np.stack([rigid_modes(x - x.mean(axis=0)).reshape(k * d, -1) for x in cells.coordinates]))[0]
     stiff = np.trace(K, axis1=1, axis2=2) / (k * d)
-    return K + stiff[:, None, None] * np.einsum("fir,fjr->fij", R, R)
+    return np.asarray(K + stiff[:, None, None] * (R @ np.swapaxes(R, 1, 2)))
 
 
 def _facet_mass(surface: Surface, γ: Floats | None = None) -> Floats:

@@ -19,7 +19,8 @@ from evolvent.contact.two_level.fine_surface import CoarseBody
 from evolvent.contact.two_level.patch_response import patch_response
 from evolvent.gears.ring.ring_compliance import turn_by
 from evolvent.gears.two_level.flank_lattice import FlankLattice
-from evolvent.gears.two_level.strips import Strip, StripCorrection, turned
+from evolvent.gears.two_level.strips import StripCorrection, turned
+from evolvent.gears.two_level.symmetric_strips import Strip
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 REACH = 1.1

@@ -7,60 +7,56 @@ import pytest
 
 from evolvent.gears.two_level.strips import StripCorrection
 from evolvent_meshes.arrays import Floats, Ints
-from tests.support.random_strips import strips, written_out
+from tests.support.random_strips import RandomCorrection, random_correction
 
 
 @pytest.fixture
-def correction() -> StripCorrection:
+def correction() -> RandomCorrection:
     """Five rows, six layers."""
-    return strips(np.random.default_rng(1), 5, 6)
+    return random_correction(np.random.default_rng(1), 5, 6)
 
 
 def dofs(nodes: Ints) -> Ints:
     return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
 
 
-def test_products_with_the_forces_on_all_nodes(correction: StripCorrection) -> None:
-    """½ (D + Dᵀ) f, in both precisions; and some nodes of the matrix are zero, as no strip has them."""
-    f, D = np.random.default_rng(2).normal(size=(correction.size, 3)), written_out(correction)
-    whole = correction.among([np.arange(correction.size)])
-    assert whole.times(f).ravel() == pytest.approx(D @ f.ravel(), abs=1e-13 * np.abs(D).sum())
+def test_products_with_the_forces_on_all_nodes(correction: RandomCorrection) -> None:
+    """S f, in both precisions."""
+    strips, S = correction.strips, correction.matrix
+    f = np.random.default_rng(2).normal(size=(strips.size, 3))
+    whole = strips.among([np.arange(strips.size)])
+    assert whole.times(f).ravel() == pytest.approx(S @ f.ravel(), abs=1e-13 * np.abs(S).sum())
     single = whole.times(f.astype(np.float32))
     assert single.dtype == np.float32
-    assert single.ravel() == pytest.approx(D @ f.ravel(), abs=1e-6 * np.abs(D).sum(axis=0).max())
+    assert single.ravel() == pytest.approx(S @ f.ravel(), abs=1e-6 * np.abs(S).sum(axis=0).max())
 
 
-def test_products_between_some_nodes_of_several_teeth(correction: StripCorrection) -> None:
-    """Each tooth feels its own forces only: the blocks of the matrix. One tooth has nodes that no strip loads."""
-    random, D = np.random.default_rng(3), written_out(correction)
-    few = np.flatnonzero(np.abs(D).reshape(correction.size, -1).max(axis=1) == 0.0)[:1]
-    nodes = [random.permutation(correction.size)[:17], random.permutation(correction.size)[:5], few]
+def test_products_between_some_nodes_of_several_teeth(correction: RandomCorrection) -> None:
+    """Each tooth feels its own forces only: the blocks of the matrix."""
+    strips, S, random = correction.strips, correction.matrix, np.random.default_rng(3)
+    nodes = [random.permutation(strips.size)[:count] for count in (17, 5, 1)]
     parts: list[Floats] = [random.normal(size=(len(each), 3)) for each in nodes]
-    found = correction.among(nodes).times(np.concatenate(parts))
-    wanted = [D[np.ix_(dofs(each), dofs(each))] @ f.ravel() for each, f in zip(nodes, parts)]
-    assert found.ravel() == pytest.approx(np.concatenate(wanted), abs=1e-13 * np.abs(D).sum())
+    found = strips.among(nodes).times(np.concatenate(parts))
+    wanted = [S[np.ix_(dofs(each), dofs(each))] @ f.ravel() for each, f in zip(nodes, parts)]
+    assert found.ravel() == pytest.approx(np.concatenate(wanted), abs=1e-13 * np.abs(S).sum())
 
 
-def test_normal_components(correction: StripCorrection) -> None:
-    """nᵀ D n with normals that turn with the layers, in single precision."""
-    n = np.random.default_rng(4).normal(size=(*correction.numbers.shape, 3))
+def test_normal_components(correction: RandomCorrection) -> None:
+    """nᵀ S n with normals that turn with the layers, in single precision."""
+    strips = correction.strips
+    n = np.random.default_rng(4).normal(size=(*strips.numbers.shape, 3))
     n[:] = n[:1]  # in the frames of the layers, one normal a row
-    c, s = np.cos(correction.angle)[:, None], np.sin(correction.angle)[:, None]
-    normals = np.empty((correction.size, 3))
+    c, s = np.cos(strips.angle)[:, None], np.sin(strips.angle)[:, None]
+    normals = np.empty((strips.size, 3))
     x, y, z = np.moveaxis(n, -1, 0)
-    normals[correction.numbers] = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
-    D = written_out(correction).reshape(correction.size, 3, correction.size, 3)
-    wanted = np.einsum("iajb,ia,jb->ij", D, normals, normals)
-    assert np.abs(correction.normal(normals).toarray() - wanted).max() < 1e-6 * np.abs(wanted).max()
+    normals[strips.numbers] = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+    S = correction.matrix.reshape(strips.size, 3, strips.size, 3)
+    wanted = np.einsum("iajb,ia,jb->ij", S, normals, normals)
+    assert np.abs(strips.normal(normals).toarray() - wanted).max() < 1e-6 * np.abs(wanted).max()
 
 
-def test_small_displacements_at_the_rim_are_left_out(correction: StripCorrection) -> None:
-    """A strip whose outer level and two outer rows hardly move loses them, and nothing else."""
-    strip = max(correction.strips, key=lambda each: each.moved)
-    Q, P = strip.moved
-    change = strip.change.reshape(-1, Q, P, 3)
-    change[:, 0], change[:, :, -2:] = 1e-6 * change[:, 0], 1e-6 * change[:, :, -2:]
-    found = strip.trimmed(1e-3)
-    assert found.moved == (Q - 1, P - 2) and found.start == (strip.start[0] + 1, strip.start[1])
-    assert np.array_equal(found.change, change[:, 1:, :-2].reshape(len(change), -1))
-    assert strip.trimmed(0.0).moved == (Q, P)
+def test_sources_that_leave_nodes_out_are_refused(correction: RandomCorrection) -> None:
+    """Nodes of no patch would have no displacement."""
+    strips = correction.strips
+    with pytest.raises(ValueError, match="each node once"):
+        StripCorrection(strips.lattice, strips.per_layer, strips.angle, strips.strips[1:])

@@ -18,7 +18,7 @@ from evolvent.gears.ring.ring_window import RingWindow
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.arrays import Floats, Ints
-from tests.support.random_strips import strips, written_out
+from tests.support.random_strips import random_correction
 
 TEETH, COARSE, PITCH, D = 3, 9, 2 * np.pi / 17, 3
 
@@ -50,12 +50,12 @@ def turn(angle: float) -> Floats:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def level(random: np.random.Generator, layers: int, before: int) -> RefinedLevel:
-    """Random shape functions and a random correction of four rows and some layers."""
-    correction = strips(random, 4, layers)
-    size = correction.size
+def level(random: np.random.Generator, layers: int, before: int) -> tuple[RefinedLevel, Floats]:
+    """Random shape functions and a random correction of four rows and some layers, and that as a matrix."""
+    correction = random_correction(random, 4, layers)
+    size = correction.strips.size
     transfer = sp.csr_matrix(random.random((size, before)) * (random.random((size, before)) < 0.4))
-    return RefinedLevel(transfer, correction, random.normal(size=(size, 3)))
+    return RefinedLevel(transfer, correction.strips, random.normal(size=(size, 3))), correction.matrix
 
 
 def two_levels() -> tuple[TwoLevelRing, Floats]:
@@ -63,12 +63,13 @@ def two_levels() -> tuple[TwoLevelRing, Floats]:
     random = np.random.default_rng(7)
     matrix = random.normal(size=(TEETH * COARSE * D,) * 2)
     first = level(random, 3, COARSE)
-    levels = [first, level(random, 4, first.correction.size)]
+    both = [first, level(random, 4, first[0].correction.size)]
+    levels = [each for each, _ in both]
     matrix = matrix @ matrix.T
     C = matrix
-    for each in levels:
+    for each, change in both:
         R = np.kron(np.eye(TEETH), np.kron(each.transfer.toarray(), np.eye(D)))
-        C = R @ C @ R.T + np.kron(np.eye(TEETH), written_out(each.correction))
+        C = R @ C @ R.T + np.kron(np.eye(TEETH), change)
     Q = sp.block_diag([np.kron(np.eye(levels[-1].correction.size), turn(i * PITCH)) for i in range(TEETH)]).toarray()
     flank: Any = SimpleNamespace(points=random.normal(size=(COARSE, 3)), normals=random.normal(size=(COARSE, 3)))
     coarse: Any = RandomRing(matrix)

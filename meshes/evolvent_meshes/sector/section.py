@@ -58,6 +58,8 @@ class SectorResolution:
     flank_start_diameter: start of the fine flank [mm], a little below the start of the active profile, so that the
         whole width of the contact lies on it; None: the root form diameter.
     size_at: relative element length along the profile at radii [mm]; None: uniform.
+    graded_middles: whether the middle nodes along the profile follow `size_at` too, so that rows which are split later
+        vary in size smoothly, not parent by parent; else they lie midway.
     fillet_elements: from the flank start to the sector's cut on the loaded side.
     back_elements: the same on the back side.
     neck_elements: of the two before, those above the middle of the fillet.
@@ -74,6 +76,7 @@ class SectorResolution:
     tip_depth_share: float = 0.4
     flank_start_diameter: float | None = None
     size_at: Callable[[Floats], Floats] | None = None
+    graded_middles: bool = False
     fillet_elements: int = 6
     back_elements: int = 5
     neck_elements: int = 3
@@ -123,7 +126,7 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     """
     profile = Profile(gear)
     start = _flank_start(profile, resolution)
-    radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at)
+    radii = row_radii(profile, start, resolution.profile_elements, resolution.size_at, resolution.graded_middles)
     band = sum(resolution.layer_depths)
     fine_back = resolution.fine_back
     rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, fine_back)

@@ -153,17 +153,23 @@ class ToothRows:
         return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
 
 
-def row_radii(profile: Profile, start: float, n: int, size_at: Callable[[Floats], Floats] | None) -> Floats:
+def row_radii(
+    profile: Profile, start: float, n: int, size_at: Callable[[Floats], Floats] | None, graded_middles: bool = False
+) -> Floats:
     """Radii (2n + 1,) [mm] of the nodes of n cells along the involute, from radius `start` [mm] to the tip.
 
     size_at: relative length of the cells at radii [mm]; None: uniform.
+    graded_middles: see `SectorResolution`.
     """
     base = profile.gear.base_radius
     ends = profile.roll_length(np.array([start, profile.radii[2]])) ** 2 / (2 * base)
     arc = np.linspace(ends[0], ends[1], TABLE)
     density = 1 / size_at(profile.radius(np.sqrt(2 * base * arc))) if size_at else np.ones(TABLE)
     count = np.concatenate([[0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
-    cells = np.interp(np.linspace(0, count[-1], n + 1), count, arc)
-    radii = profile.radius(np.sqrt(2 * base * subdivided(cells, 2)))
+    if graded_middles:
+        nodes = np.interp(np.linspace(0, count[-1], 2 * n + 1), count, arc)
+    else:
+        nodes = subdivided(np.interp(np.linspace(0, count[-1], n + 1), count, arc), 2)
+    radii = profile.radius(np.sqrt(2 * base * nodes))
     radii[[0, -1]] = start, profile.radii[2]
     return np.asarray(radii)

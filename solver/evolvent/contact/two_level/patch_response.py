@@ -1,8 +1,8 @@
 """What fine cells change in the response of a contact surface near a load: a patch of the body, condensed twice.
 
-The patch is clamped where it is cut out of the body. Its compliance with fine cells, where the contact's functionals
-are those of Nitsche's method, less that with coarse cells, transferred to the fine nodes, falls off with the distance
-from the load like the error of the coarse cells.
+The patch is clamped where it is cut out of the body. Its compliance with fine cells, less that with coarse cells,
+transferred to the fine nodes, falls off with the distance from the load like the error of the coarse cells. What the
+functionals of Nitsche's method change falls off within the fine cells about the load, a smaller patch.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import scipy.sparse as sp
 
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction, trace_functionals
 from evolvent.contact.two_level.fine_surface import CoarseBody
-from evolvent.fem.body import Body, Fixed, assemble
+from evolvent.fem.body import Assembled, Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor, compliance, compliance_by_columns
 from evolvent.fem.material import Material
 from evolvent.fem.surface import Surface, surface_of
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
-from evolvent_meshes.mesh.patches import CUT, Patch
+from evolvent_meshes.mesh.patches import CUT, Patch, cells_near, cut_out
 
 FEW = 0.25
 """Of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's inside."""
@@ -45,7 +45,7 @@ class PatchResponse:
 
 def patch_response(
     body: CoarseBody, patch: Patch, is_held: tuple[str, ...] = (), flux_safety: float | None = None,
-    places: Places | None = None,
+    places: Places | None = None, flux_reach: float = np.inf,
 ) -> PatchResponse:  # fmt: skip
     """Condenses a patch with fine and with coarse cells.
 
@@ -53,34 +53,68 @@ def patch_response(
     flux_safety: factor on the stabilisation of Nitsche's method, where the functionals are those of its pressure side;
         None: they are the displacements.
     places: where forces act, by default at all nodes.
+    flux_reach: how far what these functionals change is followed beyond the loaded nodes [mm]. They act within a cell
+        of the surface and their resultants vanish. Error with 0.6, 1.1, 1.6, 2.1 fine edges, of what all of a patch
+        changes: 0.6, 0.5, 0.2, 0.1 %.
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
-    fine, d = body.split_patch(patch), body.mesh.dimension
-    held = tuple(Fixed(name) for name in (CUT, *is_held) if len(patch.mesh.facets.get(name, ())))
-    above, below = surface_of(fine.mesh, body.group), surface_of(patch.mesh, body.group)
-    n = len(above.points)
-    loaded = np.ones(n, dtype=bool) if places is None else places(above.points)
+    split, d = body.split_patch(patch), body.mesh.dimension
+    fine, coarse = (_Condensable.of(mesh, body, is_held) for mesh in (split.mesh, patch.mesh))
+    n = len(fine.surface.points)
+    loaded = np.ones(n, dtype=bool) if places is None else places(fine.surface.points)
     columns = np.flatnonzero(np.repeat(loaded, d))
-    change = _condensed(fine.mesh, body.material, above, held, flux_safety, columns)
-    C_coarse = _condensed(patch.mesh, body.material, below, held, None, np.arange(d * len(below.points)))
-    R = sp.kron(fine.values[above.nodes][:, below.nodes], np.eye(d), format="csr")
-    change -= R @ (R[columns] @ C_coarse).T
-    return PatchResponse(above.points, loaded, change.reshape(n, d, -1, d))
-
-
-def _condensed(
-    mesh: MeshData, material: Material, surface: Surface, held: tuple[Fixed, ...], flux_safety: float | None,
-    columns: Ints,
-) -> Floats:  # fmt: skip
-    """Some columns of the compliance of a patch's contact surface, (n·d, columns) [mm/N]."""
-    assembled = assemble(Body(mesh, material, supports=held, name="patch"))
-    K = assembled.stiffness
-    P = trace_functionals(surface, K.shape[0])
-    graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
+    change = fine.columns(columns)
+    R = sp.kron(split.values[fine.surface.nodes][:, coarse.surface.nodes], np.eye(d), format="csr")
+    change -= R @ (R[columns] @ coarse.columns(np.arange(R.shape[1]))).T
+    change = change.reshape(n, d, -1, d)
     if flux_safety is not None:
-        traction = nitsche_traction(mesh, material, surface, flux_safety)
-        K, P = K - traction.constant_term(), P - traction.flux()
-    if len(columns) < FEW * P.shape[0]:
-        return compliance_by_columns(Factor(K, assembled.free), P, P.tocsr()[columns])
-    return compliance(K, P, assembled.free, graph=graph)[:, columns]
+        part = cut_out(fine.mesh, cells_near(fine.mesh, fine.surface.nodes[loaded], flux_reach))
+        _add_flux(change, fine, part, _Condensable.of(part.mesh, body, is_held), loaded, flux_safety)
+    return PatchResponse(fine.surface.points, loaded, change)
+
+
+def _add_flux(
+    change: Floats, fine: _Condensable, part: Patch, inner: _Condensable, loaded: Bools, safety: float
+) -> None:
+    """Adds what Nitsche's functionals change. inner: the part of the fine patch in which that is followed."""
+    number = np.full(len(fine.mesh.points), -1)
+    number[fine.surface.nodes] = np.arange(len(fine.surface.nodes))
+    rows, d = number[part.nodes[inner.surface.nodes]], change.shape[1]
+    with_force, of_column = loaded[rows], np.cumsum(loaded) - 1
+    columns = np.flatnonzero(np.repeat(with_force, d))
+    more = inner.columns(columns, safety) - inner.columns(columns)
+    at = np.ix_(rows, np.arange(d), of_column[rows[with_force]], np.arange(d))
+    change[at] += more.reshape(len(rows), d, -1, d)
+
+
+@dataclass(frozen=True)
+class _Condensable:
+    """A mesh of a patch and its contact surface, held where it is cut out.
+
+    assembled: its stiffness.
+    """
+
+    mesh: MeshData
+    material: Material
+    surface: Surface
+    assembled: Assembled
+
+    @staticmethod
+    def of(mesh: MeshData, body: CoarseBody, is_held: tuple[str, ...]) -> _Condensable:
+        held = tuple(Fixed(name) for name in (CUT, *is_held) if len(mesh.facets.get(name, ())))
+        assembled = assemble(Body(mesh, body.material, supports=held, name="patch"))
+        return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled)
+
+    def columns(self, columns: Ints, flux_safety: float | None = None) -> Floats:
+        """Some columns of the compliance of the contact surface, (n·d, columns) [mm/N]; flux_safety: see
+        `patch_response`."""
+        K, free = self.assembled.stiffness, self.assembled.free
+        P = trace_functionals(self.surface, K.shape[0])
+        graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
+        if flux_safety is not None:
+            traction = nitsche_traction(self.mesh, self.material, self.surface, flux_safety)
+            K, P = K - traction.constant_term(), P - traction.flux()
+        if len(columns) < FEW * P.shape[0]:
+            return compliance_by_columns(Factor(K, free), P, P.tocsr()[columns])
+        return compliance(K, P, free, graph=graph)[:, columns]

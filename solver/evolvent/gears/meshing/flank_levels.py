@@ -63,6 +63,7 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
     coarse = replace(
         sector_resolution(problem, member), profile_elements=rows, face_elements=layers, end_size_ratio=1.0,
+        graded_middles=True,
         layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
     )  # fmt: skip
     return LevelledSector(coarse, tuple(_levels(count, factor, float(depths[0]), needs)))

@@ -105,6 +105,7 @@ def shared_position(
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
         normal = normal_part(system)
         smooth = frictionless(normal, _initially_pressed(contact.geometry, before))
+        before = ContactPatch.of(contact.geometry, smooth.traction[:, 0])  # for the next search
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(

@@ -23,15 +23,31 @@ from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.meshes.sector_cases import gear_and_start
 
 
+def along(sizes: list[float], reach: float, samples: int) -> Axis:
+    """Cells of these sizes [mm]."""
+    x = np.concatenate([[0.0], np.cumsum(sizes)])
+    return Axis.of(np.column_stack([x, 0 * x, 0 * x]), reach, samples)
+
+
 def test_cells_near_the_ends_have_their_own_patches() -> None:
     """Twenty cells, two within reach of each other: three at each end; of the 14 between, the middle one stands for all
-    layers, and five, closer near both ends, for all rows. Where one patch of all costs less, it is one. Exact."""
-    layers, rows, few = Axis(20, 2, 1), Axis(20, 2, 5), Axis(9, 2, 5)
+    layers, and three, at both ends and in the middle, for all rows. Where one patch of all costs less, it is one.
+    Exact."""
+    layers, rows, few = along(20 * [1.0], 1.1, 1), along(20 * [1.0], 1.1, 3), along(8 * [1.0], 1.1, 3)
     assert layers.own == [range(3), range(17, 20)] and layers.sampled == [10]
-    assert rows.own == layers.own and rows.sampled == [3, 5, 9, 14, 16]
-    assert few.own == [range(9)] and len(few.between) == 0 and few.sampled == []
-    assert Axis(9, 2, 1).own == [range(3), range(6, 9)] and Axis(9, 2, 1).sampled == [4]
-    assert Axis(7, 2, 1).own == [range(7)]
+    assert rows.own == layers.own and rows.sampled == [3, 9, 16]
+    assert few.own == [range(8)] and len(few.between) == 0 and few.sampled == []
+    assert along(9 * [1.0], 1.1, 1).own == [range(3), range(6, 9)] and along(9 * [1.0], 1.1, 1).sampled == [4]
+    assert along(7 * [1.0], 1.1, 1).own == [range(7)]
+
+
+def test_cells_within_reach_are_counted_by_their_length() -> None:
+    """Cells of 1 mm, then of 0.5 mm, patches that extend by 1.1 mm: two large ones or three small ones lie within
+    reach. Exact."""
+    axis = along(8 * [1.0] + 12 * [0.5], 1.1, 3)
+    assert axis.own == [range(3), range(16, 20)]
+    assert axis.extent([4]) == (2, 2) and axis.extent([6]) == (2, 2) and axis.extent([7, 14]) == (3, 3)
+    assert axis.extent(axis.between) == (3, 3)
 
 
 def correction() -> StripCorrection:

@@ -62,7 +62,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.pressure",
     ),
     "scene.schema": ("meshes",),
-    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
+    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "scene.schema"),
     "scene.checking": (
         "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing",
         "gears.pressure", "scene", "scene.schema",
@@ -79,8 +79,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.error_bars",
     ),
     "results.fields": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears", "gears.sweep",
-        "gears.pressure", "results.archive", "results",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
+        "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
@@ -90,7 +90,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
-        "gears.two_level", "gears.contact", "gears.sweep", "gears.solution", "wear",
+        "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",

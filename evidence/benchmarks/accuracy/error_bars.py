@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
+from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.error_bar_data import FigureErrors
@@ -135,7 +136,7 @@ def _rows(
     ]
 
 
-def solved(scene: Scene, mesh: Mesher = gear_mesh) -> RunData:
+def solved(scene: Scene, mesh: Mesher = run_mesh) -> RunData:
     """A run on this rank alone. mesh: of a gear's sector."""
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
     assert run is not None

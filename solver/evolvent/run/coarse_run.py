@@ -15,12 +15,15 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.meshed_gear import MeshedGear
+from evolvent.gears.meshing.flank_levels import LevelledSector
+from evolvent.gears.meshing.levelled_meshes import SectorMesh, is_two_level, levelled_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
-from evolvent.results.archive.archive import gear_shape
 from evolvent.results.archive.error_bar_data import read_error_bars
+from evolvent.results.archive.gear_shapes import gear_shape
 from evolvent.results.error_bars.estimation import Companion
 from evolvent.results.run_data import RunData, run_data
 from evolvent.run.context import RunContext
@@ -29,7 +32,6 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.errors import EvolventError
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
 COARSENING = 2.0
@@ -84,8 +86,16 @@ def coarser(fine: SectorResolution) -> SectorResolution:
     )
 
 
-def companion_mesh(problem: GearProblem, member: Member) -> MeshData:
-    """The coarse sector of the pinion or the wheel. Raises MeshError."""
+def coarser_levels(fine: LevelledSector) -> LevelledSector:
+    """As many levels on a sector with elements of `COARSENING` times the size: so those of every level are as much
+    larger, in the body and in the contact."""
+    return replace(fine, coarse=coarser(fine.coarse))
+
+
+def companion_mesh(problem: GearProblem, member: Member) -> SectorMesh:
+    """The coarse sector of the pinion or the wheel, in levels where the run's is. Raises MeshError."""
+    if is_two_level(problem):
+        return levelled_mesh(problem, member, adapted=coarser_levels)
     return gear_mesh(problem, member, adapted=coarser)
 
 
@@ -98,7 +108,7 @@ def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunD
     swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
 
     def assembled() -> RunData:
-        shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]
+        shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]
         return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept))
 
     return together(comm, lambda: assembled() if comm.rank == 0 else None)

@@ -36,6 +36,7 @@ from evolvent.cli import main
 from evolvent.contact.newton.equilibrium import CondensedSystem
 from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.solution import certificates
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
 from evolvent.results.archive.archive import Archive
@@ -119,7 +120,7 @@ def no_number(wanted: int) -> None:
 def break_it(how: str) -> None:
     kind, *numbers = how.split("-")
     if how == "kill-mesh":
-        before_call(gear_model, "gear_mesh", kill_when(2))
+        before_call(levelled_meshes, "gear_mesh", kill_when(2))
     elif kind == "kill":
         when, wanted = numbers[0], int(numbers[1])
         if when == "before":

@@ -15,9 +15,10 @@ import pytest
 from evolvent.cli import main
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.sector_sizes import sector_size
 from evolvent.scene.checking import problem_size
 from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_size, sector_sizes
+from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
@@ -187,7 +188,7 @@ def test_force_computes_a_mesh_that_does_not_fit(
 
     machine(200.0)
     monkeypatch.setattr("evolvent.run.scene_run.run_scene", begin)
-    monkeypatch.setattr("evolvent.gears.meshing.sector_meshes.standing_pair", begin)
+    monkeypatch.setattr("evolvent.gears.meshing.standing_pair.standing_pair", begin)
     with pytest.raises(Begun):
         main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])
 

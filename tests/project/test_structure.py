@@ -64,11 +64,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "scene.schema"),
     "scene.checking": (
-        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing",
-        "gears.pressure", "scene", "scene.schema",
+        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure", "scene",
+        "scene.schema",
     ),
     "results.archive": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
+        "meshes", "meshes.mesh", "meshes.gears", "scene", "gears", "gears.contact", "gears.sweep",
     ),
     "results": (
         "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",

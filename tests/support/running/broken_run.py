@@ -2,6 +2,8 @@
 
 FAULT:
     ok              none
+    levels          none; flanks have levels of their own, however small the mesh
+    levels-N        the same, and killed before the N-th file is renamed
     count           none; prints how many gears this rank has condensed and how many positions it has searched
     kill-mesh       killed when the second gear is meshed
     kill-before-N   killed before the N-th file of the archive is renamed
@@ -133,6 +135,10 @@ def break_it(how: str) -> None:
         at_archive_file(int(numbers[0]), disk_full)
     elif kind == "raise":
         before_call(parallel_sweep._RankedSweep, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "levels":
+        levelled_meshes.MOST_DOFS = 0
+        if numbers:
+            at_archive_file(int(numbers[0]), kill_before_renaming)
     elif kind == "killrank":
         before_call(parallel_sweep._RankedSweep, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "nan":

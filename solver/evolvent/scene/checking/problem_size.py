@@ -12,6 +12,7 @@ from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes
+from evolvent.scene.checking.levels_memory import levels_megabytes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
@@ -24,9 +25,6 @@ DENSE_COPIES = 1.65
 """Memory of a run by dimension: constant part, part per degree of freedom, and copies of each dense matrix. Compared
 with 25 runs of 0.2 to 23 GB (Yang's pair of both orders and shapes up to 829,020 degrees of freedom, He's in 3D;
 docs/benchmark.md) the estimate is from 12 % low to 35 % high, from 2 GB on from 12 % low to 20 % high."""
-LEVELS_BASE, LEVELS_PER_DOF = 150.0, 5e-3
-"""Memory [MB] of flanks with levels of their own: constant part, and part per degree of freedom of both finest
-flanks."""
 MOST_MODES, SQUARES_PER_TOOTH = 300, 6
 """Modes that couple the teeth of a ring (200 in Yang's pair at quick), and square matrices of this size for each tooth
 (`evolvent.gears.ring.ring_modes`): negligible but for hundreds of teeth where far ones are not skipped."""
@@ -73,13 +71,9 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
     far = 2 * len(problem.contact_teeth) if problem.options.all_teeth else 0
     modes = min(MOST_MODES, max(size.cuts for size in sizes))
     ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
-    every = MEGABYTES_BASE[dimension] + (levels_megabytes(scene) if is_two_level(problem) else 0.0)
-    return ranks * every + gears + ring + results_megabytes(scene)
-
-
-def levels_megabytes(scene: Scene) -> float:
-    """Memory [MB] that the levels of both flanks take on each rank: patches, corrections, and a position's products."""
-    return LEVELS_BASE + LEVELS_PER_DOF * sum(flank_dofs(scene))
+    if is_two_level(problem):
+        gears = max(gears, levels_megabytes(problem, ranks))
+    return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
 
 
 def result_count(scene: Scene) -> int:

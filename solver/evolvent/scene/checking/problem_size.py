@@ -122,10 +122,16 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
         remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
         return InputProblem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
-    dofs, ranks = sum(size.dofs for size in sector_sizes(scene)), f" on {processes} ranks" if processes > 1 else ""
-    needs = f"{counted(dofs)} degrees of freedom that want about {gigabytes(wanted)}{ranks}"
+    ranks = f" on {processes} ranks" if processes > 1 else ""
+    needs = f"{_counted_dofs(scene)} that want about {gigabytes(wanted)}{ranks}"
     found = f"{shown(getattr(scene.mesh, name))}, {needs}"
     return InputProblem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
+
+
+def _counted_dofs(scene: Scene) -> str:
+    """Degrees of freedom of both gears, in words."""
+    flanks = f" and {counted(sum(flank_dofs(scene)))} of fine flanks" if is_two_level(gear_problem(scene)) else ""
+    return f"{counted(sum(size.dofs for size in sector_sizes(scene)))} degrees of freedom{flanks}"
 
 
 def require_room(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:

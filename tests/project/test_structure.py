@@ -97,7 +97,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "wear", "wear.gears",
     ),
     "run": (
-        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run"),

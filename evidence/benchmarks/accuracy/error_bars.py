@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
+from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -21,7 +22,7 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.run.coarse_run import companion_mesh, solved_run
+from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member

@@ -1,14 +1,16 @@
 """Memory of gears whose flanks have levels of their own, estimated from the numbers of cells.
 
 Three times of a run want most: a coarse sector is eliminated, a patch is condensed, a position is solved. Compared with
-runs of Yang's pair on one rank: quick 2705 MB, standard 1670 MB, fine 3200 MB; the estimates are 2700, 1720 and 3190.
+runs of Yang's pair on one rank, without error bars: quick 2705 MB, standard 1670 MB, fine 3200 MB; the estimates are
+2710, 1760 and 3350. The coarse companion of standard takes 2040 MB, as all of its rows are in one patch.
 """
 
 from __future__ import annotations
 
-from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
-from evolvent.gears.meshing.sector_sizes import LevelledSize, levelled_sizes
-from evolvent.gears.problem.gear_problem import GearProblem
+from collections.abc import Sequence
+
+from evolvent.gears.meshing.flank_levels import LevelledSector
+from evolvent.gears.meshing.sector_sizes import LevelledSize
 from evolvent_meshes.gears.member import Member
 
 LEVELS_PER_DOF = 8.4e-3
@@ -21,10 +23,11 @@ PATCH_LAYERS, PATCH_ROWS, WHOLE_PROFILE = 5, 9, 17
 these (`evolvent.gears.two_level.towers.Axis`)."""
 
 
-def levels_megabytes(problem: GearProblem, ranks: int) -> float:
-    """Memory [MB] of what is beside the elimination of the sectors, on so many ranks of one machine: both compliances
-    with the largest patch, of both gears on several ranks, or with what all positions share and each rank's own."""
-    sizes, (pinion, wheel) = levelled_sizes(problem), (_patch_megabytes(problem, member) for member in Member)
+def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
+    """Memory [MB] of what is beside the elimination of the sectors of pinion and wheel, on so many ranks of one
+    machine: both compliances with the largest patch, of both gears on several ranks, or with what positions need."""
+    sizes = [LevelledSize.of(sector) for sector in sectors]
+    pinion, wheel = (_patch_megabytes(sector, member) for sector, member in zip(sectors, Member))
     patches = max(pinion, wheel) if ranks == 1 else pinion + wheel
     positions = LEVELS_PER_DOF * sum(size.flank for size in sizes)
     return sum(map(_compliance_megabytes, sizes)) + max(patches, positions)
@@ -35,9 +38,8 @@ def _compliance_megabytes(size: LevelledSize) -> float:
     return 8e-6 * size.sector.flank**2
 
 
-def _patch_megabytes(problem: GearProblem, member: Member) -> float:
+def _patch_megabytes(sector: LevelledSector, member: Member) -> float:
     """Of the largest patch of a gear."""
-    sector = levelled_sector(problem, member)
     last = len(sector.levels) - 1
     return max(
         PATCH_PER_NODE[member is Member.PINION and number == last] * nodes

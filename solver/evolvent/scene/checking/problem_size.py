@@ -9,7 +9,9 @@ from typing import Any
 from mpi4py import MPI
 
 from evolvent.fem.parallel.machine import machine_megabytes
+from evolvent.gears.meshing.companion_meshes import coarser_levels
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH
+from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes
 from evolvent.scene.checking.levels_memory import levels_megabytes
@@ -18,6 +20,8 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import SkipSection
+from evolvent.scene.skips import wanted_output
+from evolvent_meshes.gears.member import Member
 
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
 MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
@@ -72,7 +76,9 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
     modes = min(MOST_MODES, max(size.cuts for size in sizes))
     ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
     if is_two_level(problem):
-        gears = max(gears, levels_megabytes(problem, ranks))
+        sectors = [levelled_sector(problem, member) for member in Member]
+        companion = [coarser_levels(sector) for sector in sectors] if wanted_output(scene).error_bars else sectors
+        gears = max(gears, levels_megabytes(sectors, ranks), levels_megabytes(companion, ranks))
     return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
 
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from evolvent.fem.lagrange import gmsh_permutation
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_gear import levelled_flank
+from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -23,6 +27,12 @@ class MeshedGear:
     """The loaded flank."""
     has_levels: bool = False
     """Whether the flank is finer than the sector; else its nodes are the sector's."""
+
+    @property
+    def flank_facets(self) -> Ints:
+        """(m, k) points of the flank's facets, in the order of gmsh."""
+        from_gmsh = gmsh_permutation(self.flank.shape, self.flank.order)
+        return self.flank.facets[:, np.argsort(from_gmsh)]
 
     @staticmethod
     def of(body: GearBody) -> MeshedGear:

@@ -19,8 +19,8 @@ class GearShape:
     points: Floats
     """(n, 3), nodes of the sector mesh, then those of a flank with levels of its own [mm]."""
     facets: dict[str, Ints]
-    """Name -> (f, k), nodes of the facets of a part of the boundary: "flank", "back", "tip", "fillet", "face_low",
-    "face_high", "bore"."""
+    """Name -> (f, k), nodes of the facets of a part of the boundary, in gmsh's order: "flank", "back", "tip", "fillet",
+    "face_low", "face_high", "bore"."""
     flank_nodes: Ints
     """(m,), index into `points` of each flank node, in the order of PositionResult.node."""
 
@@ -58,6 +58,6 @@ def gear_shape(gear: MeshedGear) -> GearShape:
     points, facets, flank = gear.mesh.points, dict(gear.mesh.facets), gear.flank
     if not gear.has_levels:
         return GearShape(points, facets, flank.nodes)
-    facets["flank"] = len(points) + flank.facets
+    facets["flank"] = len(points) + gear.flank_facets
     own = len(points) + np.arange(len(flank.points))
     return GearShape(np.concatenate([points, flank.points]), facets, own)

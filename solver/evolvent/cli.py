@@ -151,16 +151,20 @@ def mesh(
         _require(overwrite or not (out.exists() or out.is_symlink()), exists)
         _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
         _require_room(loaded, "mesh", force, MPI.COMM_SELF)
-        from evolvent.gears.meshing.sector_meshes import standing_pair
+        from evolvent.gears.meshing.levelled_meshes import is_two_level
+        from evolvent.gears.meshing.standing_pair import standing_pair
         from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
         from evolvent_meshes.mesh.gmsh_io import write_msh
         from evolvent_meshes.mesh.quality import scaled_jacobians
 
-        made = standing_pair(gear_problem(loaded))
+        problem = gear_problem(loaded)
+        made = standing_pair(problem)
         write_msh(made, out)
         quality = float(scaled_jacobians(made).min())
         counts = f"{len(made.cells):,} cells, {len(made.points):,} nodes"
         typer.echo(f"{out}: {counts}, smallest scaled Jacobian {quality:.2g}")
+        if is_two_level(problem):
+            typer.echo("The flanks of a run have finer levels: --no-skip two-level writes one fine mesh a sector")
         if quality < WORST_CELL:
             typer.echo(f"Warning: {bad_cells(quality)}", err=True)
 

@@ -62,13 +62,13 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.pressure",
     ),
     "scene.schema": ("meshes",),
-    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "scene.schema"),
+    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "scene.schema"),
     "scene.checking": (
-        "meshes.gears", "meshes.sector", "fem.parallel", "contact", "gears.problem", "gears.meshing",
-        "gears.pressure", "scene", "scene.schema",
+        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure", "scene",
+        "scene.schema",
     ),
     "results.archive": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "scene", "gears", "gears.contact", "gears.sweep",
+        "meshes", "meshes.mesh", "meshes.gears", "scene", "gears", "gears.contact", "gears.sweep",
     ),
     "results": (
         "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
@@ -79,8 +79,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.error_bars",
     ),
     "results.fields": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears", "gears.sweep",
-        "gears.pressure", "results.archive", "results",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
+        "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
@@ -90,14 +90,14 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
-        "gears.two_level", "gears.contact", "gears.sweep", "gears.solution", "wear",
+        "gears.contact", "gears.sweep", "gears.solution", "wear",
     ),
     "wear.results": (
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
         "results.*", "wear", "wear.gears",
     ),
     "run": (
-        "meshes.*", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
+        "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run"),

@@ -19,8 +19,8 @@ from evolvent.scene.skips import Skipped
 GOOD = MeshFacts(0.3, 3.1, 2.0)
 """A mesh that gives no reason for a warning."""
 FACTS = RunFacts(
-    {"numpy": np.__version__}, 2, 123, 45, MeshFacts(0.31, 2.1, 1.4), (Skipped("one-pitch", "One pitch is solved."),),
-    Timings(1.0, 2.0), 99.5,
+    {"numpy": np.__version__}, 2, 123, 0, 45, MeshFacts(0.31, 2.1, 1.4),
+    (Skipped("one-pitch", "One pitch is solved."),), Timings(1.0, 2.0), 99.5,
 )  # fmt: skip
 
 

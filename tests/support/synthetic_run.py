@@ -19,10 +19,11 @@ from evolvent.contact.hertz import line_half_width, line_peak_pressure, line_pre
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
+from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.archive import GearShape, gear_shape
+from evolvent.results.archive.gear_shapes import GearShape, gear_shape
 from evolvent.results.run_data import RunData, SolvedPosition, run_data
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
@@ -76,8 +77,8 @@ def synthetic_shapes(scene: Scene) -> tuple[tuple[GearShape, GearShape], Surface
         sector_mesh(gear, resolution, shape)
         for gear, resolution in zip(scene.gear_pair().gears, sector_resolutions(gear_problem(scene)))
     ]
-    first, second = (surface_of(mesh, "flank") for mesh in meshes)
-    return (gear_shape(meshes[0], first.nodes), gear_shape(meshes[1], second.nodes)), first
+    pinion, wheel = (MeshedGear(mesh, surface_of(mesh, "flank")) for mesh in meshes)
+    return (gear_shape(pinion), gear_shape(wheel)), pinion.flank
 
 
 def synthetic_sweep(scene: Scene, flank: Surface) -> list[SweptPosition]:

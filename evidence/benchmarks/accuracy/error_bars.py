@@ -14,13 +14,15 @@ from mpi4py import MPI
 
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
+from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.error_bars.estimation import errors_between
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import friction_rows
-from evolvent.run.coarse_run import companion_mesh, solved_run
+from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent_meshes.gears.member import Member
@@ -135,7 +137,7 @@ def _rows(
     ]
 
 
-def solved(scene: Scene, mesh: Mesher = gear_mesh) -> RunData:
+def solved(scene: Scene, mesh: Mesher = run_mesh) -> RunData:
     """A run on this rank alone. mesh: of a gear's sector."""
     run = solved_run(scene, pitch_of(scene), MPI.COMM_SELF, mesh)
     assert run is not None

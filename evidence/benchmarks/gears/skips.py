@@ -44,6 +44,7 @@ CASES = (
     Case("window", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("deflected-flanks", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("coarse-body", HELICAL, (*QUICK, SMOOTH, FOUR)),
+    Case("two-level", HELICAL, ("mesh.level=standard", *QUIET, "output.error_bars=false", SMOOTH, FOUR)),
     Case("reuse", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("error-bars", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("fields", SPUR, (*QUICK, SMOOTH)),

@@ -20,6 +20,7 @@ from evolvent.fem.parallel.cores import Threads
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
 from evolvent.gears.kinematics import turn
+from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
@@ -54,6 +55,9 @@ class GearBody:
     """Wall time of the condensation [s]."""
     worn: Floats | None = None
     """Depth (n,) that the flank has lost and that mesh and compliance do not include [mm]."""
+    levels: tuple[FlankLevel, ...] = ()
+    """Levels by which the flank is finer than the mesh, which then has no flank modifications either; none: its nodes
+    are the mesh's."""
 
     def lost(self, facets: Ints, xi: Floats) -> Floats:
         """Worn depth (q,) [mm] at xi (q, d−1) of the flank's facets (q,)."""

@@ -14,16 +14,15 @@ from mpi4py import MPI
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
-from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, run_mesh
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.two_level_gear import levelled_mesh, two_level_gear
+from evolvent.gears.two_level_gear import two_level_gear
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.mesh.mesh_data import MeshData
 
-Mesher = Callable[[GearProblem, Member], MeshData]
-"""Makes the sector mesh of the pinion or the wheel."""
+Mesher = Callable[[GearProblem, Member], SectorMesh]
+"""Makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
 
 
 @dataclass(frozen=True)
@@ -93,29 +92,28 @@ class Preparation:
 def prepare_model(
     problem: GearProblem,
     comm: MPI.Comm = MPI.COMM_WORLD,
-    mesh: Mesher | None = None,
+    mesh: Mesher = run_mesh,
     meshed: Callable[[], None] = lambda: None,
 ) -> Preparation:
     """Meshes and condenses both gears; all ranks of `comm` call it.
 
-    mesh: makes a sector's mesh, by default `gear_mesh`; meshed: called when both gears are meshed.
+    mesh: makes a sector's mesh, by default that of the problem; meshed: called when both gears are meshed.
 
     Raises MeshError, TooMuchRelief, NotPositiveDefinite, OutOfMemory.
     """
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
-    mesher = mesh or (levelled_mesh if problem.is_two_level else gear_mesh)
-    meshes = together(comm, lambda: {member: mesher(problem, member) for member in own})
+    meshes = together(comm, lambda: {member: mesh(problem, member) for member in own})
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
 
     def condensed(member: Member) -> GearBody:
-        gear, material = problem.pair.gears[member], problem.materials[member]
-        if problem.is_two_level:
-            return two_level_gear(problem, member, meshes[member], cores.used)
+        gear, sector, material = problem.pair.gears[member], meshes[member], problem.materials[member]
+        if isinstance(sector, LevelledMesh):
+            return two_level_gear(problem, member, sector, cores.used)
         return condensed_gear(
-            gear, meshes[member], material, problem.contact_teeth, member, member is Member.PINION,
+            gear, sector, material, problem.contact_teeth, member, member is Member.PINION,
             whole=problem.options.whole_gears, threads=cores.used,
         )  # fmt: skip
 

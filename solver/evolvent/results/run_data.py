@@ -13,8 +13,9 @@ from evolvent.gears.pressure.contact_slices import Slices, ToothSummary, slices,
 from evolvent.gears.pressure.tip_zones import path_between_zones, row_before_tip
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.archive import Archive, ArchiveError, GearShape
+from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.error_bar_data import NOT_ESTIMATED, EstimatedErrors, requested_error_bars
+from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters

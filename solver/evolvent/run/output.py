@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.results.archive.archive import Meshes
+from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, write_cost
 from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.drawing.picture_files import Drawn, draw
@@ -24,7 +24,6 @@ from evolvent.run.pitch_run import SweepRecord
 from evolvent.run.run_log import RunLog
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import skipped, wanted_output
-from evolvent_meshes.mesh.quality import scaled_jacobians
 
 SUMMARY, FIELDS = "summary.json", "fields for ParaView"
 
@@ -115,21 +114,16 @@ def log_pictures(drawn: Drawn, log: RunLog) -> None:
         log.warning(failure)
 
 
-def facts_of(data: RunData, meshes: Meshes, ranks: int, cost: Cost) -> RunFacts:
+def facts_of(data: RunData, meshes: MeshRecord, ranks: int, cost: Cost) -> RunFacts:
     """What the summary says of a run besides its results."""
     return RunFacts(
         versions=dolfinx_compat.versions(),
         ranks=ranks,
-        dofs=sum(mesh.points.shape[0] * mesh.dimension for mesh in meshes),
-        cells=sum(len(mesh.cells) for mesh in meshes),
-        mesh=mesh_facts(data, meshes),
+        dofs=meshes.dofs,
+        flank_dofs=meshes.flank_dofs,
+        cells=meshes.cells,
+        mesh=MeshFacts(meshes.min_scaled_jacobian, cells_across(data), cells_across(data, NARROW)),
         skipped=skipped(data.scene),
         timings_s=cost.timings,
         peak_memory_MB=cost.memory_MB,
     )
-
-
-def mesh_facts(data: RunData, meshes: Meshes) -> MeshFacts:
-    """Quality of the cells, and how many of them lie across the contact."""
-    quality = min(float(scaled_jacobians(mesh).min()) for mesh in meshes)
-    return MeshFacts(quality, cells_across(data), cells_across(data, NARROW))

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from evolvent.gears.gear_model import Preparation
+from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import PitchImbalance, balance_error, certify, certify_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state, joined, uniform_pitch
-from evolvent.results.archive.archive import Archive, Meshes
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.run.context import RunContext
 from evolvent.run.progress import POSITIONS
@@ -26,7 +28,7 @@ from evolvent_meshes.arrays import Floats
 class SweepRecord:
     """Meshes that positions were solved on, and the wall time that it took."""
 
-    meshes: Meshes
+    meshes: MeshRecord
     timings: Timings
 
 
@@ -49,7 +51,7 @@ class ScenePitch:
         self.groups = friction_groups(scene)
         self.resume = resume if len(self.groups) == 1 else None  # several groups leave nothing before the end
         self.gears = gears
-        self.meshes: Meshes | None = None
+        self.meshes: MeshRecord | None = None
         self.preparing = Timings()
 
     def solve(self) -> SweepRecord:
@@ -94,8 +96,7 @@ class ScenePitch:
             self.preparing += timings_of(gears)
             self.gears = gears if len(self.groups) == 1 else None
         if self.meshes is None:
-            pinion, wheel = gears.model.bodies
-            self.meshes = meshes = pinion.mesh, wheel.mesh
+            self.meshes = meshes = MeshRecord.of([MeshedGear.of(body) for body in gears.model.bodies])
             resumed = self.resume is not None
             self.run.on_first(lambda: open_archive(self.scene, self.archive, meshes, resumed))
         return gears

@@ -25,7 +25,7 @@ from evolvent.run.start import ResumePoint, no_results_warning, resume_point, sc
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import skipped, switched_off, wanted_output
+from evolvent.scene.skips import skipped, switched_off, wanted_output, wear_on_one_mesh
 
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
 """What is said of a resumed run that was finished."""
@@ -72,6 +72,8 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.info("skipped, %s: %s", skip.name, skip.sentence)
     for name in switched_off(scene):
         run.log.info("not skipped: %s", name)
+    if sentence := wear_on_one_mesh(scene):
+        run.log.info("%s", sentence)
     for sentence in modification_warnings(gear_problem(scene)):
         run.log.warning(sentence)
     for sentence in tip_edge_warnings(gear_problem(scene)):

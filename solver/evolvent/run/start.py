@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from evolvent.gears.gear_model import Preparation, prepare_model
-from evolvent.gears.meshing.sector_meshes import sector_meshes
+from evolvent.gears.meshed_gear import meshed_gear
 from evolvent.gears.sweep.periodic_pitch import transmission_errors
 from evolvent.gears.sweep.pitch_sweep import SweepState
-from evolvent.results.archive.archive import Archive, Meshes, gear_shapes
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import SCENE_FILES, write_scene
@@ -18,6 +19,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import with_deflected_flanks
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -79,20 +81,21 @@ def timings_of(preparation: Preparation) -> Timings:
     return Timings(*parts, total=preparation.mesh_seconds + preparation.seconds)
 
 
-def checked_meshes(scene: Scene, archive: Archive) -> Meshes:
+def checked_meshes(scene: Scene, archive: Archive) -> MeshRecord:
     """The meshes of the scene. Raises ArchiveError where the results in the archive belong to other meshes."""
-    meshes = sector_meshes(gear_problem(scene))
-    archive.check_gears(gear_shapes(meshes))
+    problem = gear_problem(scene)
+    meshes = MeshRecord.of([meshed_gear(problem, member) for member in Member])
+    archive.check_gears(meshes.shapes)
     return meshes
 
 
-def open_archive(scene: Scene, archive: Archive, meshes: Meshes, resumed: bool) -> None:
+def open_archive(scene: Scene, archive: Archive, meshes: MeshRecord, resumed: bool) -> None:
     """Prepares the folder for the positions of this scene. Raises ArchiveError, OSError."""
     if resumed:
-        archive.check_gears(gear_shapes(meshes))
+        archive.check_gears(meshes.shapes)
     else:
         clear(archive.files)
-        archive.write_gears(gear_shapes(meshes))
+        archive.write_gears(meshes.shapes)
     write_scene(scene, archive.files)
 
 

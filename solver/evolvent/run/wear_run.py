@@ -8,9 +8,11 @@ from dataclasses import replace
 from functools import partial
 
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
+from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.results.archive.archive import Archive, Meshes
+from evolvent.results.archive.archive import Archive
+from evolvent.results.archive.gear_shapes import MeshRecord
 from evolvent.results.archive.run_cost import Cost, Timings, write_cost
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import write_scene
@@ -54,11 +56,10 @@ def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
             run.log.open()
             return SweepRecord(meshes, Timings())
     preparation = prepare_gears(run, scene)
-    pinion, wheel = preparation.model.bodies
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
     μ = scene.contact.friction[0]
     gears = GearWear(preparation.model, pitch, μ, law_of(wear), run.comm, mesh_motion_of(run, scene))
-    meshes = pinion.mesh, wheel.mesh
+    meshes = MeshRecord.of([MeshedGear.of(body) for body in preparation.model.bodies])
     run.progress.stage(CYCLES, round(wear.cycles), round(kept.cycles if kept else 0.0))
     for stage in study_states(gears, wear.reports, settings_of(wear), kept):
         certify_positions(stage.state.evaluation)
@@ -120,21 +121,21 @@ def certify_positions(state: PitchState) -> None:
 
 
 def _write(
-    scene: Scene, archive: Archive, gears: GearWear, meshes: Meshes, stage: StudyState, study: StudyCheckpoint,
+    scene: Scene, archive: Archive, gears: GearWear, meshes: MeshRecord, stage: StudyState, study: StudyCheckpoint,
     ranks: int, cost: Cost,
 ) -> None:  # fmt: skip
     """Writes the worn pair at a report; then the state of the study, whose file marks the block as complete."""
     state = stage.state
     if stage.report and state.cycles == 0.0:
         clear(archive.files)
-        write_pitch(archive, meshes, state.evaluation.positions)
+        write_pitch(archive, meshes.shapes, state.evaluation.positions)
         write_scene(scene, archive.files)
     elif stage.report:
         folder = worn_folder(archive.out, state.cycles)
         RunFolder(folder).clear()
         worn = write_worn(scene, folder, gears, state.depth)
         worn_archive = Archive(folder, worn)
-        write_pitch(worn_archive, meshes, state.evaluation.positions)
+        write_pitch(worn_archive, meshes.shapes, state.evaluation.positions)
         data = run_data(worn, worn_archive.read_gears(), worn_archive.read_positions(worn.gear_pair()))
         write_tables(worn_archive.files, summary(data, facts_of(data, meshes, ranks, cost)))
         write_cost(worn_archive.files, cost)

@@ -16,7 +16,7 @@ def gear_problem(scene: Scene) -> GearProblem:
         torque=1e3 * scene.load.torque_Nm,
         torque_on=Member.named(scene.load.on),
         materials=scene.materials(),
-        mesh=MeshSettings(mesh.level, mesh.elements_per_contact_width, mesh.shape, mesh.order),
+        mesh=MeshSettings(mesh.level, mesh.elements_per_contact_width, mesh.shape, mesh.order, two_levels(scene)),
         flanks=(pinion, wheel),
         options=gear_options(scene),
     )
@@ -35,6 +35,12 @@ def gear_options(scene: Scene) -> GearOptions:
         deflected_flanks="deflected-flanks" in off,
         fine_body="coarse-body" in off,
     )
+
+
+def two_levels(scene: Scene) -> bool | None:
+    """Whether flanks have levels of their own: None where it is left to the size of the mesh. Wear is followed on the
+    nodes of one fine mesh."""
+    return None if scene.wear is None and "two-level" not in scene.skip.off else False
 
 
 def shares_gears(scene: Scene) -> bool:

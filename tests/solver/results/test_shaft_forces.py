@@ -12,8 +12,9 @@ from dataclasses import astuple
 import numpy as np
 import pytest
 
+from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
-from evolvent.results.archive.archive import gear_shape
+from evolvent.results.archive.gear_shapes import gear_shape
 from evolvent.results.run_data import RunData, run_data
 from evolvent.results.shaft_forces import ShaftForces, shaft_forces
 from evolvent.scene.scene import Scene
@@ -26,7 +27,7 @@ FRICTION = 0.1
 def solved(scene: Scene) -> RunData:
     model, frictions = model_of(scene), scene.contact.friction
     pitch = uniform_pitch(scene.pinion.teeth, scene.sweep.positions)
-    shapes = [gear_shape(body.mesh, body.flank.nodes) for body in model.bodies]
+    shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]
     return run_data(scene, (shapes[0], shapes[1]), list(sweep_pitch(model, pitch, frictions, initial_state(frictions))))
 
 

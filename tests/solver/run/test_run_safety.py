@@ -185,7 +185,7 @@ def test_mesh_error_leaves_no_file(
     def fails(*_: object) -> None:
         raise MeshError("wanted a sector that can be meshed, found one that cannot")
 
-    monkeypatch.setattr("evolvent.gears.gear_model.gear_mesh", fails)
+    monkeypatch.setattr("evolvent.gears.meshing.levelled_meshes.gear_mesh", fails)
     assert run(tmp_path / "out") == 2
     assert "a sector that can be meshed" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -13,6 +13,7 @@ from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import OF_OUTPUT
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, spur_scene
+from tests.support.scene_texts import WEAR
 
 OPTIONS: dict[SkipName, str] = {
     "plane": "in_space",
@@ -42,11 +43,19 @@ def test_a_skip_switched_off_is_one_option(name: SkipName) -> None:
 
 
 def test_every_skip_has_an_option() -> None:
-    """The options, `shares_gears` and the output's are all skips that there are, and every option has its skip."""
-    assert {*OPTIONS, *OF_OUTPUT, "reuse"} == set(get_args(SkipName))
+    """The options, `two_levels`, `shares_gears` and the output's are all skips that there are, and every option has its
+    skip."""
+    assert {*OPTIONS, *OF_OUTPUT, "two-level", "reuse"} == set(get_args(SkipName))
     assert set(OPTIONS.values()) == {field.name for field in fields(GearOptions)}
     assert not shares_gears(helical_scene('skip.off=["reuse"]'))
     assert shares_gears(helical_scene('skip.off=["reuse"]', "contact.friction=0.1"))  # a single coefficient
+
+
+def test_levels_are_left_to_the_size_of_the_mesh() -> None:
+    """Unless they are switched off, or flanks wear."""
+    wearing = helical_scene("contact.friction=0.1", *WEAR)
+    scenes = helical_scene(), helical_scene('skip.off=["two-level"]'), wearing
+    assert [gear_problem(scene).mesh.two_level for scene in scenes] == [None, False, False]
 
 
 def test_problem_has_the_values_of_the_scene() -> None:

@@ -23,13 +23,15 @@ from evolvent.gears.sweep.position_search import shared_position
 from evolvent.results.archive.archive import fingerprint
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
+from evolvent.scene.checking.check_report import overview
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.scene import Scene, scene_from_text
+from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
-from evolvent.scene.skips import SKIPS, skip_named, skipped, switched_off
+from evolvent.scene.skips import SKIPS, skip_named, skipped, switched_off, wear_on_one_mesh
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
 from tests.support.running.patches import calling_first
 from tests.support.running.processes import Run
+from tests.support.scene_texts import WEAR
 
 SPUR = ("pair.helix_angle_deg=0", "mesh.order=2", "mesh.elements_per_contact_width=2")
 SMOOTH = "contact.friction=0"
@@ -108,7 +110,8 @@ def test_every_skip_is_tested_and_measured() -> None:
     """The registry, the scene's key, the tests and the benchmark name the same skips."""
     names = [skip.name for skip in SKIPS]
     assert tuple(names) == get_args(SkipName)
-    assert set(names) == {case.skip for case in ANSWERS.values()} == {case.skip for case in CASES}
+    elsewhere = {"two-level"}  # tests/solver/run/test_two_level_run.py
+    assert set(names) == {case.skip for case in ANSWERS.values()} | elsewhere == {case.skip for case in CASES}
 
 
 def contact_nodes(scene: Scene) -> int:
@@ -217,6 +220,20 @@ def test_resuming_wants_the_same_skips() -> None:
     assert scene_from_text(scene.resolved_toml()) == scene
     assert fingerprint(scene) != fingerprint(helical_scene())
     assert fingerprint(scene) == fingerprint(helical_scene('skip.off=["one-pitch", "fields", "window"]'))
+
+
+def test_wear_on_one_mesh_is_said() -> None:
+    """A large pair whose flanks wear: `check` says that it has no levels, and of the same without wear, or of a small
+    one, it does not."""
+    large = load_scene("demos/yang2022.toml", ["contact.friction=0.1", *WEAR])
+    assert wear_on_one_mesh(large) in overview(large) and "two-level" in wear_on_one_mesh(large)
+    assert "two-level" not in {skip.name for skip in skipped(large)}
+    assert switched_off(large) == []
+    bare = load_scene("demos/yang2022.toml", ["contact.friction=0.1"])
+    assert wear_on_one_mesh(bare) == "" and "two-level" in {skip.name for skip in skipped(bare)}
+    assert wear_on_one_mesh(helical_scene("contact.friction=0.1", *WEAR)) == ""
+    off = load_scene("demos/yang2022.toml", ['skip.off=["two-level"]'])
+    assert switched_off(off) == ["two-level"]
 
 
 def test_unknown_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

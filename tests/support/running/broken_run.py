@@ -2,6 +2,8 @@
 
 FAULT:
     ok              none
+    levels          none; flanks have levels of their own, however small the mesh
+    levels-N        the same, and killed before the N-th file is renamed
     count           none; prints how many gears this rank has condensed and how many positions it has searched
     kill-mesh       killed when the second gear is meshed
     kill-before-N   killed before the N-th file of the archive is renamed
@@ -36,6 +38,7 @@ from evolvent.cli import main
 from evolvent.contact.newton.equilibrium import CondensedSystem
 from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.solution import certificates
 from evolvent.gears.sweep import parallel_sweep, pitch_sweep
 from evolvent.results.archive.archive import Archive
@@ -119,7 +122,7 @@ def no_number(wanted: int) -> None:
 def break_it(how: str) -> None:
     kind, *numbers = how.split("-")
     if how == "kill-mesh":
-        before_call(gear_model, "gear_mesh", kill_when(2))
+        before_call(levelled_meshes, "gear_mesh", kill_when(2))
     elif kind == "kill":
         when, wanted = numbers[0], int(numbers[1])
         if when == "before":
@@ -132,6 +135,10 @@ def break_it(how: str) -> None:
         at_archive_file(int(numbers[0]), disk_full)
     elif kind == "raise":
         before_call(parallel_sweep._RankedSweep, "_solved", failing_rank(int(numbers[0]), int(numbers[1])))
+    elif kind == "levels":
+        levelled_meshes.MOST_DOFS = 0
+        if numbers:
+            at_archive_file(int(numbers[0]), kill_before_renaming)
     elif kind == "killrank":
         before_call(parallel_sweep._RankedSweep, "_solved", killed_rank(int(numbers[0]), int(numbers[1])))
     elif kind == "nan":

@@ -1,4 +1,4 @@
-"""The sector meshes of a gear pair: each in its gear's own frame, and both in place as the gears mesh."""
+"""The sector meshes of a gear pair, fine on the loaded flanks, each in its gear's own frame."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import numpy as np
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.modifications import too_much_relief
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.flank import nominal_angles
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.quality import least_determinants
@@ -72,26 +70,3 @@ def linear(mesh: MeshData) -> MeshData:
     used, first = np.unique(cells, return_inverse=True)
     renumbered = {name: np.searchsorted(used, nodes) for name, nodes in facets.items()}
     return MeshData(mesh.points[used], mesh.shape, 1, first.reshape(cells.shape), renumbered, dict(mesh.volumes))
-
-
-def standing_pair(problem: GearProblem) -> MeshData:
-    """Both sectors in place at φ = 0 as one mesh, tooth pair 0 touching at the pitch point.
-
-    Groups: pinion_tooth, pinion_flank, ..., wheel_tooth, ... Raises MeshError.
-    """
-    pair = problem.pair
-    first, second = sector_meshes(problem)
-    angles = nominal_angles(pair, 0.0)
-    centre = np.array([pair.centre_distance, 0.0, 0.0])
-    points = [_turned(first, float(angles[0])), _turned(second, float(angles[1])) + centre]
-    facets = {f"pinion_{name}": nodes for name, nodes in first.facets.items()}
-    facets |= {f"wheel_{name}": nodes + len(first.points) for name, nodes in second.facets.items()}
-    volumes = {f"pinion_{name}": cells for name, cells in first.volumes.items()}
-    volumes |= {f"wheel_{name}": cells + len(first.cells) for name, cells in second.volumes.items()}
-    cells = np.concatenate([first.cells, second.cells + len(first.points)])
-    return MeshData(np.concatenate(points), first.shape, first.order, cells, facets, volumes)
-
-
-def _turned(mesh: MeshData, angle: float) -> Floats:
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return mesh.points @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])

@@ -23,6 +23,9 @@ AT_LIMIT = 0.01
 bears on the edge; with another mesh or friction coefficient that slice lies a micrometre beside it, and round-off must
 not decide whether it counts."""
 
+SAME_ROW = 1e-6
+"""Curvature radii closer than this are of one row of nodes [mm]; between the nodes of a coarser flank they scatter."""
+
 Cut = tuple[PositionResult, Slices]
 """A position and its slices."""
 
@@ -70,4 +73,6 @@ def _reached(pair: GearPair, result: PositionResult, cut: Slices, k: int, gear: 
 def row_before_tip(roll_lengths: Floats, order: int) -> float:
     """Curvature radius [mm] at which the last row of facets before the tip begins. roll_lengths: (n,) curvature radii
     of the flank's nodes [mm]; order: of the facets."""
-    return float(np.unique(np.round(roll_lengths, 9))[-1 - order])
+    ordered = np.sort(roll_lengths)
+    rows = ordered[np.diff(ordered, prepend=-np.inf) > SAME_ROW]
+    return float(rows[-1 - order])

@@ -30,7 +30,7 @@ class MeshSettings:
 
     Examples:
         >>> MeshSettings("quick")
-        MeshSettings(level='quick', elements_per_contact_width=None, shape='hexahedron', order=2, two_level=False)
+        MeshSettings(level='quick', elements_per_contact_width=None, shape='hexahedron', order=2, two_level=None)
     """
 
     level: Level = "standard"
@@ -41,8 +41,10 @@ class MeshSettings:
     """Cells of sectors in space; plane sections have quadrilaterals or triangles."""
     order: Literal[1, 2] = 2
     """Order of the cells and of the displacement."""
-    two_level: bool = False
-    """The loaded flanks are meshed in levels of their own on a coarse body, in space and with hexahedra of order 2."""
+    two_level: bool | None = None
+    """Whether the loaded flanks are meshed in levels of their own on a coarse body, where the problem is in space; by
+    default where one fine mesh would be large, its cells are hexahedra of order 2, and neither whole_gears nor
+    fine_body is asked for (`evolvent.gears.meshing.levelled_meshes.is_two_level`)."""
 
     def __post_init__(self) -> None:
         one_of("mesh level", self.level, LEVELS)
@@ -150,11 +152,6 @@ class GearProblem:
     def is_plane(self) -> bool:
         """Whether it is solved in plane strain."""
         return self.has_equal_sections and not self.options.in_space
-
-    @property
-    def is_two_level(self) -> bool:
-        """Whether the flanks have levels of their own."""
-        return self.mesh.two_level and not self.is_plane
 
     @property
     def pinion_torque(self) -> float:

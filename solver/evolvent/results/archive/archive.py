@@ -14,60 +14,32 @@ import hashlib
 import io
 import json
 import zipfile
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from evolvent.fem.surface import surface_of
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.periodic_pitch import one_pitch
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.differences import charts, differences, essence
 from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
-from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.files import open_file
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.mesh.mesh_data import MeshData
 
-Meshes = tuple[MeshData, MeshData]
-"""Sector meshes of pinion and wheel."""
 CONTACT_KEYS = {"roll_distance": "ξ"}
 """Field of ContactPoints -> its name in archives, where they differ."""
 
 
 class ArchiveError(InputError):
     """An archive that cannot be read or belongs to another scene."""
-
-
-@dataclass(frozen=True)
-class GearShape:
-    """Surface of a gear's sector with tooth 0, in the gear's own frame."""
-
-    points: Floats
-    """(n, 3), nodes of the sector mesh [mm]."""
-    facets: dict[str, Ints]
-    """Name -> (f, k), nodes of the facets of a part of the boundary: "flank", "back", "tip", "fillet", "face_low",
-    "face_high", "bore"."""
-    flank_nodes: Ints
-    """(m,), index into `points` of each flank node, in the order of PositionResult.node."""
-
-
-def gear_shape(mesh: MeshData, flank_nodes: Ints) -> GearShape:
-    """The surface of a sector mesh. flank_nodes: (m,) nodes of its loaded flank."""
-    return GearShape(mesh.points, dict(mesh.facets), flank_nodes)
-
-
-def gear_shapes(meshes: Meshes) -> tuple[GearShape, GearShape]:
-    """The surfaces of both sector meshes."""
-    pinion, wheel = (gear_shape(mesh, surface_of(mesh, "flank").nodes) for mesh in meshes)
-    return pinion, wheel
 
 
 class Archive:

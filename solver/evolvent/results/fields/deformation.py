@@ -3,6 +3,9 @@
 The results of a run hold flanks only, since condensation eliminates the interior of a sector. Both gears are condensed
 once more. The displacements of the cut faces follow from the forces on all teeth, and one factorisation a gear gives
 the displacement of each sector.
+
+Where flanks have levels of their own, it is the coarse sector's displacement under the forces that its shape functions
+make of those on the finest level: right but for a few coarse cells about the contact.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
 from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -54,6 +58,8 @@ class GearField:
     """
 
     def __init__(self, body: GearBody, rows: Sequence[Ints], forces: Sequence[Floats]) -> None:
+        if isinstance(body.chain, TwoLevelRing):
+            body, rows, forces = _on_the_sector(body, body.chain, rows, forces)
         self.body, self._rows, self._forces = body, rows, forces
         self._pitch = 2.0 * np.pi / body.gear.z
         every, place = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
@@ -80,6 +86,30 @@ class GearField:
         field = np.zeros(len(self.body.mesh.points) * d)
         field[self._free] = self._recovery.displacement(forces.ravel(), self._cuts[number][k])
         return field.reshape(-1, d)
+
+
+def _on_the_sector(
+    body: GearBody, ring: TwoLevelRing, rows: Sequence[Ints], forces: Sequence[Floats]
+) -> tuple[GearBody, list[Ints], list[Floats]]:
+    """The gear without the levels of its flank, and for each position the forces on the nodes of its coarse flank that
+    do the same work (`GearField`)."""
+    moved = [_to_coarse_nodes(ring, *each) for each in zip(rows, forces)]
+    plain = replace(body, flank=ring.flank, traction=None, chain=ring.coarse, levels=())
+    return plain, [own for own, _ in moved], [force for _, force in moved]
+
+
+def _to_coarse_nodes(ring: TwoLevelRing, rows: Ints, forces: Floats) -> tuple[Ints, Floats]:
+    """Rows (c, 2) and forces (c, 3) of the coarse flank's nodes from those of the finest flank's."""
+    parts = []
+    for tooth in np.unique(rows[:, 0]):
+        here = rows[:, 0] == tooth
+        load = np.zeros((ring.size, 3))
+        load[rows[here, 1]] = forces[here]
+        for level in reversed(ring.levels):
+            load = level.transfer.T @ load
+        nodes = np.flatnonzero(load.any(axis=1))
+        parts.append((np.column_stack([np.full(len(nodes), tooth), nodes]), load[nodes]))
+    return np.concatenate([own for own, _ in parts]), np.concatenate([force for _, force in parts])
 
 
 @dataclass(frozen=True)

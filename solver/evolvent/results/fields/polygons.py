@@ -12,7 +12,7 @@ import numpy as np
 from evolvent.fem.nodal_frames import tangent_frames
 from evolvent.gears.kinematics import spin
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.archive.archive import GearShape
+from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.run_data import RunData, is_plane
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank

@@ -30,6 +30,9 @@ class RunFacts:
     """Number of MPI processes."""
     dofs: int
     """Degrees of freedom of one sector of both gears."""
+    flank_dofs: int
+    """Degrees of freedom of both loaded flanks on the finest of their own levels, see docs/two_level.md; 0 where they
+    have none, and their nodes are those of the sectors."""
     cells: int
     """Number of cells of one sector of both gears."""
     mesh: MeshFacts

@@ -9,17 +9,26 @@ from typing import NamedTuple
 
 from evolvent.contact.yang_estimate import LoadFactors, yang_estimate
 from evolvent.fem.parallel.machine import machine_megabytes
-from evolvent.gears.meshing.element_sizes import elements_per_contact_width, sector_resolutions
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width
+from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
-from evolvent.scene.checking.problem_size import counted, gigabytes, memory_megabytes, room_problem, sector_sizes
+from evolvent.scene.checking.problem_size import (
+    counted,
+    flank_dofs,
+    gigabytes,
+    memory_megabytes,
+    room_problem,
+    sector_sizes,
+)
 from evolvent.scene.checking.scene_warnings import scene_warnings
 from evolvent.scene.gear_pair import working_angle_of
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.schema.wear import WearSection
-from evolvent.scene.skips import skipped, switched_off
+from evolvent.scene.skips import skipped, switched_off, wear_on_one_mesh
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 HANDS = {1: "right", -1: "left"}
@@ -56,7 +65,8 @@ def _skip_lines(scene: Scene) -> str:
     column = 2 + max((len(skip.name) for skip in left_out), default=0)
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
     off = switched_off(scene)
-    return "\n".join([*lines, *(["Computed the long way", f"  {', '.join(off)}"] if off else [])])
+    long_way = [*([", ".join(off)] if off else []), *filter(None, [wear_on_one_mesh(scene)])]
+    return "\n".join([*lines, *(["Computed the long way", *(f"  {line}" for line in long_way)] if long_way else [])])
 
 
 def _warning_lines(scene: Scene) -> list[str]:
@@ -213,15 +223,16 @@ def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:
 
 def _cost_rows(scene: Scene) -> list[Row]:
     problem = gear_problem(scene)
-    sectors = sector_resolutions(problem)
-    layers = tuple("plane" if problem.is_plane else counted(sector.face_elements) for sector in sectors)
+    rows, layers = zip(*(flank_cells(problem, member) for member in Member))
+    levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
         _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem)),
-        Row("elements along the loaded flank", "", "", tuple(counted(sector.profile_elements) for sector in sectors)),
-        Row("layers over the face width", "", "", layers),
+        Row("elements along the loaded flank", "", "", tuple(map(counted, rows))),
+        Row("layers over the face width", "", "", ("plane",) * 2 if problem.is_plane else tuple(map(counted, layers))),
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
+        *(levels if is_two_level(problem) else []),
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from mpi4py import MPI
 
 from evolvent.fem.parallel.machine import machine_megabytes
-from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolutions
+from evolvent.gears.meshing.companion_meshes import coarser_levels
+from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH
+from evolvent.gears.meshing.flank_levels import levelled_sector
+from evolvent.gears.meshing.levelled_meshes import is_two_level
+from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes
+from evolvent.scene.checking.levels_memory import levels_megabytes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import SkipSection
-from evolvent_meshes.sector.section import SectorResolution
+from evolvent.scene.skips import wanted_output
+from evolvent_meshes.gears.member import Member
 
 MEGABYTES_BASE = {2: 150.0, 3: 250.0}
 MEGABYTES_PER_DOF = {2: 2.5e-3, 3: 1e-2}
@@ -38,50 +43,20 @@ MOST_DOUBLINGS = 60
 LEVELS: tuple[Level, ...] = ("fine", "standard", "quick")
 
 
-@dataclass(frozen=True)
-class SectorSize:
-    """Degrees of freedom of a sector, or of its plane section."""
-
-    dofs: int
-    """All degrees of freedom."""
-    flank: int
-    """Degrees of freedom of the loaded flank."""
-    cuts: int
-    """Degrees of freedom of both cut faces."""
-
-    def times(self, sectors: int, flanks: int) -> SectorSize:
-        """The size of so many sectors joined to a ring, with so many flanks in contact."""
-        return SectorSize(sectors * self.dofs, flanks * self.flank, 0)
-
-
-def sector_size(resolution: SectorResolution, order: int, plane: bool) -> SectorSize:
-    """The exact size of a sector mesh of order 1 or 2; cutting hexahedra into tetrahedra adds no node.
-
-    A section without holes has corners − edges + cells = 1 (Euler), and 4 cells + outline = 2 edges.
-    """
-    counts = resolution
-    alike, rows = counts.fine_back, counts.profile_elements // 3
-    inner = counts.core_elements + 1 + alike  # columns between the bands of both sides
-    below = counts.fillet_elements + counts.back_elements - 2 * counts.neck_elements + inner  # columns of the rim
-    tooth = rows * (13 * (1 + alike) + counts.core_elements + 1 - alike)  # 3 × 3 thin, 4 joining, then coarse cells
-    band = counts.fillet_elements - 1 + 4 + counts.back_elements + 3 * alike
-    cells = tooth + band + counts.neck_elements * inner + counts.rim_elements * below
-    cut = counts.rim_elements + 1
-    tip = 3 * (1 + alike) + counts.core_elements + 2
-    back = counts.back_elements + rows * (3 if alike else 1)
-    outline = counts.profile_elements + counts.fillet_elements + back + tip + 2 * cut + below
-    nodes = 1 + 4 * cells + outline if order == 2 else 1 + cells + outline // 2
-    levels = 2 if plane else 3 * (order * counts.face_elements + 1)
-    flank, cuts = order * counts.profile_elements + 1, 2 * (order * cut + 1)
-    return SectorSize(levels * nodes, levels * flank, levels * cuts)
-
-
 def sector_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
-    """Sector sizes of (pinion, wheel)."""
+    """Sizes of the sectors of (pinion, wheel) that are condensed: coarse ones where flanks have levels of their own."""
     problem = gear_problem(scene)
-    order, plane = problem.mesh.order, problem.is_plane
-    pinion, wheel = (sector_size(each, order, plane) for each in sector_resolutions(problem))
-    return pinion, wheel
+    if not is_two_level(problem):
+        return one_mesh_sizes(problem)
+    pinion, wheel = levelled_sizes(problem)
+    return pinion.sector, wheel.sector
+
+
+def flank_dofs(scene: Scene) -> tuple[int, int]:
+    """Degrees of freedom of the flanks of (pinion, wheel) that contact is computed on."""
+    problem = gear_problem(scene)
+    sizes = levelled_sizes(problem) if is_two_level(problem) else one_mesh_sizes(problem)
+    return sizes[0].flank, sizes[1].flank
 
 
 def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
@@ -100,6 +75,10 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
     far = 2 * len(problem.contact_teeth) if problem.options.all_teeth else 0
     modes = min(MOST_MODES, max(size.cuts for size in sizes))
     ring = far * SQUARES_PER_TOOTH * _square_megabytes(modes)
+    if is_two_level(problem):
+        sectors = [levelled_sector(problem, member) for member in Member]
+        companion = [coarser_levels(sector) for sector in sectors] if wanted_output(scene).error_bars else sectors
+        gears = max(gears, levels_megabytes(sectors, ranks), levels_megabytes(companion, ranks))
     return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
 
 
@@ -111,7 +90,7 @@ def result_count(scene: Scene) -> int:
 
 def results_megabytes(scene: Scene) -> float:
     """Memory [MB] of all results, which are loaded together for tables and pictures."""
-    return 8e-6 * NUMBERS_KEPT * sector_sizes(scene)[0].flank * result_count(scene)
+    return 8e-6 * NUMBERS_KEPT * flank_dofs(scene)[0] * result_count(scene)
 
 
 def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
@@ -149,10 +128,16 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
         remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
         return InputProblem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
-    dofs, ranks = sum(size.dofs for size in sector_sizes(scene)), f" on {processes} ranks" if processes > 1 else ""
-    needs = f"{counted(dofs)} degrees of freedom that want about {gigabytes(wanted)}{ranks}"
+    ranks = f" on {processes} ranks" if processes > 1 else ""
+    needs = f"{_counted_dofs(scene)} that want about {gigabytes(wanted)}{ranks}"
     found = f"{shown(getattr(scene.mesh, name))}, {needs}"
     return InputProblem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
+
+
+def _counted_dofs(scene: Scene) -> str:
+    """Degrees of freedom of both gears, in words."""
+    flanks = f" and {counted(sum(flank_dofs(scene)))} of fine flanks" if is_two_level(gear_problem(scene)) else ""
+    return f"{counted(sum(size.dofs for size in sector_sizes(scene)))} degrees of freedom{flanks}"
 
 
 def require_room(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:
@@ -195,7 +180,7 @@ def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) 
 def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:
     """Ever coarser scenes, each with the command-line options for it: first with all shortcuts, then at coarser levels,
     then with fewer elements across the contact."""
-    long_ways = [name for name in ("one-sector", "coarse-body", "plane") if name in scene.skip.off]
+    long_ways = [name for name in ("one-sector", "coarse-body", "two-level", "plane") if name in scene.skip.off]
     if long_ways:
         kept = SkipSection(off=tuple(name for name in scene.skip.off if name not in long_ways))
         scene = scene.model_copy(update={"skip": kept})

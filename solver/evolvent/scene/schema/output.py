@@ -33,7 +33,8 @@ class OutputSection(SceneSection):
 
 
 SkipName = Literal["plane", "friction-terms", "one-pitch", "one-sector", "far-teeth", "window",
-                   "deflected-flanks", "coarse-body", "reuse", "error-bars", "fields", "pictures"]  # fmt: skip
+                   "deflected-flanks", "coarse-body", "two-level", "reuse", "error-bars", "fields",
+                   "pictures"]  # fmt: skip
 """Shortcuts that a run takes where its scene allows them: `evolvent.scene.skips`."""
 SKIP_NAMES: tuple[SkipName, ...] = get_args(SkipName)
 

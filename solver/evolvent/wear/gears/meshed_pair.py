@@ -13,7 +13,6 @@ import numpy as np
 
 from evolvent.fem.surface import Surface
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.wear.gears.flank_grid import FlankGrid
 from evolvent.wear.mesh_motion import WornSurface, certify_mesh_volume, worn_mesh
 from evolvent_meshes.arrays import Floats
@@ -61,8 +60,8 @@ class MeshedPair:
     def of(model: GearModel) -> MeshedPair:
         """Of gears without wear in their meshes. Raises InputError where the nodes of a flank are no grid, and where
         flanks have levels of their own."""
-        if any(isinstance(body.chain, TwoLevelRing) for body in model.bodies):
-            remedy = "leave out MeshSettings(two_level=True)"
+        if any(body.levels for body in model.bodies):
+            remedy = "write MeshSettings(two_level=False)"
             refuse("wear", "gears whose flanks are those of their meshes", Words("flanks with levels"), remedy)
         grids = FlankGrid.of(model.bodies[0]), FlankGrid.of(model.bodies[1])
         unworn = tuple((body.mesh, body.flank) for body in model.bodies)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
@@ -49,6 +50,9 @@ def wearing_pair(
             "wear of gears: wanted one pitch on flanks before deflection, found the option deflected_flanks or "
             "whole_engagement; leave them out"
         )
+
+    if problem.mesh.two_level is None:  # wear is followed on the nodes of one fine mesh
+        problem = replace(problem, mesh=replace(problem.mesh, two_level=False))
 
     def condensed(mesh: Callable[[Member], MeshData]) -> GearModel:
         return prepare_model(problem, comm, lambda _, member: mesh(member)).model

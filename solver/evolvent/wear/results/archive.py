@@ -17,7 +17,8 @@ from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
-from evolvent.results.archive.archive import Archive, Meshes, gear_shapes, read_arrays
+from evolvent.results.archive.archive import Archive, read_arrays
+from evolvent.results.archive.gear_shapes import GearShape
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.scene_files import write_scene
 from evolvent.results.tables.tables import csv_text
@@ -94,9 +95,11 @@ def chart_of(gears: GearWear, gear: Member, depth: Floats) -> FlankChart:
     return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)
 
 
-def write_pitch(archive: Archive, meshes: Meshes, results: Sequence[PositionResult]) -> None:
+def write_pitch(
+    archive: Archive, shapes: tuple[GearShape, GearShape], results: Sequence[PositionResult]
+) -> None:
     """Writes a pitch at one friction coefficient as a run without wear does. Raises OSError."""
-    archive.write_gears(gear_shapes(meshes))
+    archive.write_gears(shapes)
     for k, result in enumerate(results):
         state = SweepState(result.stand.extra, (None,))
         position = SweptPosition(result.stand.angle, (result,), state, closes=k == len(results) - 1)

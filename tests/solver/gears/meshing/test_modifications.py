@@ -115,7 +115,7 @@ def test_missing_tip_relief_is_warned_of(settings: tuple[str, ...], words: str) 
 
 def test_check_warns_of_a_relief_that_may_fold_the_mesh() -> None:
     """A relief that `run` refuses because it folds the mesh is named before."""
-    text = overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=500"]))
+    text = overview(load_scene("demos/yang2022.toml", ["mesh.level=quick", "pinion.tip_relief_um=500"]))
     assert "The mesh may fold, which `run` then refuses: pinion.tip_relief_um: found 500" in text
     assert "fold" not in overview(load_scene("demos/yang2022.toml", ["pinion.tip_relief_um=20"]))
 

@@ -14,6 +14,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import FIGURES, BarRow, hit_rate, measure_bars, spur_problem
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import Mesher
+from evolvent.gears.meshing.companion_meshes import coarser, companion_mesh
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.archive import Archive
@@ -30,7 +31,7 @@ from evolvent.results.engagement import engagement
 from evolvent.results.error_bars.estimation import Companion, Curve, difference, errors_between, estimated_errors
 from evolvent.results.run_data import RunData, SolvedPosition, read_run
 from evolvent.run import coarse_run
-from evolvent.run.coarse_run import coarser, companion_mesh, solved_run
+from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.gear_problem import gear_problem

@@ -12,7 +12,9 @@ from evolvent.fem.stress import von_mises
 from evolvent.gears.condensed_gear import sector_body, sector_parts
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import turn
+from evolvent.gears.meshing import levelled_meshes
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import Deformation
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import Scene
@@ -50,6 +52,30 @@ def test_recovered_flank_displacement_is_that_of_the_compliance(case: Case) -> N
                 wanted = body.chain.apply(rows, forces, every) @ turn(number * pitch, body.d)
                 found = (parts.functionals @ u.ravel()).reshape(wanted.shape)
                 assert np.abs(found - wanted).max() < 1e-8 * np.abs(wanted).max()
+
+
+@pytest.mark.slow
+def test_levels_move_the_sector_as_contact_saw_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A helical pair whose flanks have levels of their own. Exact: the forces on the coarse flanks add up to those on
+    the fine ones, and on a tooth that carries no load, where finer cells change nothing, the fine flank moves as the
+    coarse sector's shape functions say."""
+    monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 0)
+    narrow = "mesh.order=2", "pinion.face_width_mm=4", "wheel.face_width_mm=4"
+    model = model_of(helical_scene(*narrow, "contact.friction=0.1"))
+    result = next(sweep_pitch(model, uniform_pitch(20, 2), [0.1], initial_state([0.1]))).results[0]
+    loads = (result.pinion_rows, result.pinion_forces), (result.wheel_rows, result.wheel_forces)
+    deformation = Deformation.of(model.bodies, [result])
+    for body, field, (rows, forces) in zip(model.bodies, deformation.gears, loads):
+        ring = body.chain
+        assert isinstance(ring, TwoLevelRing)
+        assert np.sum(field._forces[0], axis=0) == pytest.approx(np.sum(forces, axis=0), rel=1e-9)
+        idle = next(n for n in (body.member.sign * tooth for tooth in model.teeth) if n not in field.teeth(0))
+        moved = field.displacement(0, idle)[ring.flank.nodes]
+        for level in ring.levels:
+            moved = level.transfer @ moved
+        every = np.column_stack([np.full(ring.size, idle), np.arange(ring.size)])
+        wanted = ring.apply(rows, forces, every) @ turn(idle * 2.0 * np.pi / body.gear.z, 3)
+        assert np.abs(moved - wanted).max() < 1e-6 * np.abs(wanted).max()
 
 
 def test_forces_on_the_gears_balance_the_torques(case: Case) -> None:

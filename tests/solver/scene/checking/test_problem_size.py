@@ -15,9 +15,10 @@ import pytest
 from evolvent.cli import main
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.sector_sizes import sector_size
 from evolvent.scene.checking import problem_size
 from evolvent.scene.checking.check_report import overview
-from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_size, sector_sizes
+from evolvent.scene.checking.problem_size import memory_megabytes, room_problem, sector_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent_meshes.gears.member import Member
@@ -27,6 +28,11 @@ from tests.support.gear_cases import helical_scene, model_of, spur_scene, swept
 from tests.support.running.processes import Run
 
 MEBIBYTE = 1.048576
+
+
+ONE_MESH = 'skip.off=["two-level"]'
+SHORT = "contact.friction=0.1", "sweep.positions=3"
+QUICK = "mesh.level=quick", "contact.friction=0.11", ONE_MESH
 
 
 def yang(*settings: str) -> Scene:
@@ -62,8 +68,10 @@ def test_section_size_is_that_of_the_mesh(name: str, level: str) -> None:
 
 
 MEASURED = [
-    (yang("mesh.level=quick"), 3300), (yang("mesh.level=standard"), 11000),
-    *((yang("mesh.level=quick", "contact.friction=0.11", f"mesh.elements_per_contact_width={elements}"), megabytes)
+    (yang("mesh.level=quick"), 3300), (yang("mesh.level=standard", ONE_MESH), 11000),
+    (yang("mesh.level=standard", *SHORT, "output.error_bars=false"), 1590), (yang("mesh.level=standard", *SHORT), 1946),
+    (yang("mesh.level=fine", *SHORT, "output.error_bars=false"), 3050),
+    *((yang(*QUICK, f"mesh.elements_per_contact_width={elements}"), megabytes)
       for elements, megabytes in ((1, 1127), (1.4, 2255), (2, 3844), (2.6, 8420), (3.2, 17063), (3.5, 22401))),
     (yang("mesh.level=quick", "skip.off=coarse-body"), 6481),
     (spur_scene("mesh.level=quick", "skip.off=plane"), 1917),
@@ -85,17 +93,19 @@ def test_memory_estimate_of_small_runs() -> None:
 
 def test_memory_estimate_of_several_ranks() -> None:
     """Two ranks eliminate both gears at once; a third one only runs."""
-    one, two, three = (memory_megabytes(yang("mesh.level=standard"), ranks) for ranks in (1, 2, 3))
+    one, two, three = (memory_megabytes(yang("mesh.level=standard", ONE_MESH), ranks) for ranks in (1, 2, 3))
     assert 1.6 * one < two < 2.0 * one
     assert three - two == pytest.approx(problem_size.MEGABYTES_BASE[3])
 
 
 def test_memory_estimate_of_the_demos() -> None:
-    """The papers' pairs at quick and standard want less than 24 GB, also on two ranks; Yang's at fine does not."""
+    """The papers' pairs at quick and standard want less than 24 GB, also on two ranks, and at fine in levels; Yang's on
+    one fine mesh does not."""
     for name in ("yang2022", "he2022", "zhang2023"):
         for level in ("quick", "standard"):
             assert memory_megabytes(load_scene(ROOT / f"demos/{name}.toml", [f"mesh.level={level}"]), 2) < 24e3
-    assert memory_megabytes(yang("mesh.level=fine")) > 60e3
+    assert memory_megabytes(yang("mesh.level=fine"), 2) < 8e3
+    assert memory_megabytes(yang("mesh.level=fine", ONE_MESH)) > 60e3
 
 
 @pytest.fixture
@@ -104,15 +114,20 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     return lambda megabytes: monkeypatch.setattr(problem_size, "machine_megabytes", lambda: megabytes)
 
 
+TETRAHEDRA, ELEMENTS = "mesh.shape=tetrahedron", "mesh.elements_per_contact_width"
+
+
 @pytest.mark.parametrize(
     ("settings", "megabytes", "key", "remedy"),
     [
-        (["mesh.level=fine"], 25e3, "mesh.level", "take --level standard (12 GB)"),
-        (["mesh.level=fine"], 8e3, "mesh.level", "take --level quick (3.08 GB)"),
-        (["mesh.level=standard"], 2e3, "mesh.level", "take --level quick --set mesh.elements_per_contact_width=1.3"),
-        (["mesh.elements_per_contact_width=12"], 25e3, "mesh.elements_per_contact_width", "per_contact_width=3."),
+        ([TETRAHEDRA, "mesh.level=fine"], 25e3, "mesh.level", "take --level standard (12 GB)"),
+        ([TETRAHEDRA, "mesh.level=fine"], 8e3, "mesh.level", "take --level quick (3.08 GB)"),
+        ([TETRAHEDRA, "mesh.level=standard"], 2e3, "mesh.level", "quick --set mesh.elements_per_contact_width=1.3"),
+        ([TETRAHEDRA, "mesh.elements_per_contact_width=12"], 25e3, ELEMENTS, "per_contact_width=3."),
+        (["mesh.level=fine"], 3e3, "mesh.level", "take --level standard ("),
+        (["mesh.level=fine", ONE_MESH], 25e3, "mesh.level", "take two-level out of skip.off (--no-skip)"),
         (["mesh.level=quick", "skip.off=one-sector"], 8e3, "mesh.level", "take one-sector out of skip.off (--no-skip)"),
-        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 104.9 N·m on --level quick does"),
+        (["load.torque_Nm=1e-4"], 25e3, "mesh.level", "is too narrow. From about 3.277 N·m on --level quick does"),
     ],
 )  # fmt: skip
 def test_remedy_names_the_finest_mesh_that_fits(
@@ -153,7 +168,7 @@ def test_memory_of_results_is_counted(machine: Callable[[float], None]) -> None:
 
 def test_remedy_names_one_rank_where_two_do_not_fit(machine: Callable[[float], None]) -> None:
     machine(15e3)
-    problem = room_problem(yang("mesh.level=standard"), memory_megabytes, 2)
+    problem = room_problem(yang("mesh.level=standard", ONE_MESH), memory_megabytes, 2)
     assert problem is not None and problem.remedy.startswith("run on one rank")
 
 
@@ -163,13 +178,14 @@ def test_commands_refuse_a_mesh_that_does_not_fit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     """Status 2 before a mesh is made, nothing written; --force goes on."""
-    monkeypatch.setattr("evolvent.gears.meshing.sector_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
+    monkeypatch.setattr("evolvent.gears.meshing.levelled_meshes.sector_mesh", lambda *_: pytest.fail("a mesh was made"))
     machine(200.0)
     out = str(tmp_path / ("out" if command == "run" else "pair.msh"))
     arguments = [command, str(ROOT / "demos/yang2022.toml"), "--out", out]
     assert main(arguments) == 2
     said = capsys.readouterr().err
-    assert 'mesh.level: found "standard", 581,682 degrees of freedom' in said and "; remedy: " in said
+    assert 'mesh.level: found "standard", 137,862 degrees of freedom and 84,390 of fine flanks' in said
+    assert "; remedy: " in said
     assert list(tmp_path.iterdir()) == []
 
 
@@ -187,17 +203,28 @@ def test_force_computes_a_mesh_that_does_not_fit(
 
     machine(200.0)
     monkeypatch.setattr("evolvent.run.scene_run.run_scene", begin)
-    monkeypatch.setattr("evolvent.gears.meshing.sector_meshes.standing_pair", begin)
+    monkeypatch.setattr("evolvent.gears.meshing.standing_pair.standing_pair", begin)
     with pytest.raises(Begun):
         main([command, str(ROOT / "demos/yang2022.toml"), "--out", str(tmp_path / "pair.msh"), "--force"])
 
 
 def test_check_reports_a_mesh_that_does_not_fit(machine: Callable[[float], None]) -> None:
     machine(5e3)
-    text = overview(yang("mesh.level=standard"))
+    text = overview(yang("mesh.level=standard", TETRAHEDRA))
     assert "Too large for this machine" in text and "--level quick" in text
     machine(50e3)
-    assert "Too large" not in overview(yang("mesh.level=standard"))
+    assert "Too large" not in overview(yang("mesh.level=standard", TETRAHEDRA))
+
+
+def test_check_reports_both_meshes_of_a_flank_in_levels() -> None:
+    """Coarse sectors, and the elements and degrees of freedom of the fine flanks: 48 x 72 of second order."""
+    lines = [line for line in overview(yang("mesh.level=standard")).splitlines() if line.startswith("  ")]
+    rows = {line.strip().split("  ")[0]: line.split()[-2:] for line in lines}
+    assert rows["elements along the loaded flank"] == ["48", "48"]
+    assert rows["layers over the face width"] == ["72", "72"]
+    assert rows["degrees of freedom of a sector"] == ["68,931", "68,931"]
+    assert rows["degrees of freedom of a flank"] == [f"{3 * 97 * 145:,}"] * 2
+    assert "degrees of freedom of a flank" not in overview(yang("mesh.level=quick"))
 
 
 HUGE = [

@@ -1,0 +1,100 @@
+"""When flanks have levels of their own, and the sizes that are told before a mesh is made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evolvent.fem.surface import surface_of
+from evolvent.gears.meshed_gear import meshed_gear
+from evolvent.gears.meshing import levelled_meshes
+from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level, levelled_mesh, run_mesh
+from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
+from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.mesh.mesh_data import MeshData
+from tests.support.paper_pairs import yang
+
+RELIEVED = Modifications(tip_relief_um=10.0, tip_relief_start_diameter=46.0, lead_crowning_um=5.0)
+
+
+def problem(mesh: MeshSettings, options: GearOptions = GearOptions()) -> GearProblem:  # noqa: B008  frozen
+    return GearProblem(yang(pinion=RELIEVED), 250.0e3, mesh=mesh, options=options)
+
+
+def narrow() -> GearProblem:
+    """2.8 mm wide, in levels."""
+    pair = yang(pinion=RELIEVED)
+    pinion, wheel = (replace(gear, face_width=2.8) for gear in pair.gears)
+    mesh = MeshSettings("quick", 1.0, two_level=True)
+    return GearProblem(GearPair(pinion, wheel, pair.centre_distance), 20e3, mesh=mesh)
+
+
+def test_levels_are_for_large_meshes() -> None:
+    """Yang's pair: one mesh of 240,240 degrees of freedom at quick, one of 572,940 at standard."""
+    quick, standard = problem(MeshSettings("quick")), problem(MeshSettings("standard"))
+    assert [sum(size.dofs for size in one_mesh_sizes(each)) for each in (quick, standard)] == [240_240, 572_940]
+    assert 240_240 < levelled_meshes.MOST_DOFS < 572_940
+    assert [is_two_level(each) for each in (quick, standard)] == [False, True]
+
+
+def test_levels_can_be_asked_for_and_refused() -> None:
+    """Whatever the size; but a plane problem never has them."""
+    assert is_two_level(problem(MeshSettings("quick", two_level=True)))
+    assert not is_two_level(problem(MeshSettings("fine", two_level=False)))
+    gear = GearParameters.from_rack(
+        z=30, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=40.0
+    )  # fmt: skip
+    spur = GearProblem(GearPair(gear, gear, 90.0), 100e3, mesh=MeshSettings("fine", two_level=True))
+    assert spur.is_plane and not is_two_level(spur)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options"),
+    [
+        (MeshSettings("fine", shape="tetrahedron"), GearOptions()),
+        (MeshSettings("fine", order=1), GearOptions()),
+        (MeshSettings("fine"), GearOptions(whole_gears=True)),
+        (MeshSettings("fine"), GearOptions(fine_body=True)),
+    ],
+)
+def test_by_default_there_are_none_where_they_cannot_be(mesh: MeshSettings, options: GearOptions) -> None:
+    """One mesh, and no refusal."""
+    own = problem(mesh, options)
+    assert not is_two_level(own)
+
+
+def test_sizes_are_those_of_the_meshes() -> None:
+    """Exact: all nodes of the coarse sector, of its flank and cut faces, and of the flank's finest level."""
+    own = narrow()
+    for member, size in zip(Member, levelled_sizes(own)):
+        gear = meshed_gear(own, member)
+        flank, low, high = (len(np.unique(gear.mesh.facets[name])) for name in ("flank", "cut_low", "cut_high"))
+        exact = np.array([len(gear.mesh.points), flank, low + high]) * 3
+        assert [size.sector.dofs, size.sector.flank, size.sector.cuts] == exact.tolist()
+        assert size.flank == gear.flank.points.size > 2 * size.sector.flank
+        rows, layers = flank_cells(own, member)
+        assert len(gear.flank.facets) == rows * layers
+
+
+def test_the_coarse_sector_has_no_modifications() -> None:
+    """Relief and crowning are on the fine flank only: 15 µm along the normal at the tip's ends, more about the axis."""
+    sector = levelled_mesh(narrow(), Member.PINION)
+    pair = narrow().pair
+    bare = replace(narrow(), pair=replace(pair, pinion=replace(pair.pinion, modifications=Modifications())))
+    assert np.array_equal(sector.mesh.points, levelled_mesh(bare, Member.PINION).mesh.points)
+    moved = meshed_gear(narrow(), Member.PINION).flank.points - meshed_gear(bare, Member.PINION).flank.points
+    assert 15e-3 < np.linalg.norm(moved, axis=1).max() < 25e-3
+
+
+def test_one_mesh_is_its_own_flank() -> None:
+    """Without levels the flank's nodes are the mesh's."""
+    own = replace(narrow(), mesh=MeshSettings("quick", 1.0, two_level=False))
+    gear = meshed_gear(own, Member.WHEEL)
+    assert isinstance(run_mesh(own, Member.WHEEL), MeshData) and not gear.has_levels
+    assert np.array_equal(gear.flank.nodes, surface_of(gear.mesh, "flank").nodes)

@@ -1,0 +1,160 @@
+"""A whole run of a scene whose flanks have levels of their own: output, resuming, ranks, and the same on one mesh.
+
+A narrow helical pair on second-order cells, too small for levels by default: they are made to apply whatever the size.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista
+
+from evidence.benchmarks.gears.skips import differences
+from evolvent.gears.meshing import levelled_meshes
+from evolvent.results.archive.archive import Archive, ArchiveError
+from evolvent.results.run_data import read_run
+from evolvent.run.coarse_run import solve_companion
+from evolvent.run.pitch_run import pitch_of
+from evolvent.run.scene_run import run_scene
+from evolvent.run.start import checked_meshes
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene, load_scene, scene_from_text
+from evolvent.scene.skips import skip_named
+from tests.support.gear_cases import HELICAL
+from tests.support.running.processes import BROKEN_RUN, Run
+
+SMALL = (
+    "mesh.order=2", "mesh.elements_per_contact_width=0.8", "pinion.face_width_mm=4", "wheel.face_width_mm=4",
+    "contact.friction=[0.1]", "pinion.tip_relief_um=8",
+)  # fmt: skip
+EVERYTHING = ("output.deformation=true",)
+BARE = ("output.pictures=false", "output.animation=false", "output.fields=false", "output.error_bars=false")
+
+
+def small_scene(*settings: str) -> Scene:
+    return scene_from_text(HELICAL, [*SMALL, *settings])
+
+
+def summary_of(out: Path) -> dict[str, Any]:
+    read: dict[str, Any] = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    return read
+
+
+@pytest.fixture(scope="module")
+def levels() -> Any:
+    """Levels whatever the size of the mesh."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(levelled_meshes, "MOST_DOFS", 0)
+        yield
+
+
+@pytest.fixture(scope="module")
+def out(levels: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished run with everything that a scene may ask for."""
+    folder = tmp_path_factory.mktemp("levels") / "out"
+    run_scene(small_scene(*EVERYTHING), folder, quiet=True)
+    return folder
+
+
+@pytest.mark.slow
+def test_output_is_complete(out: Path) -> None:
+    """Tables, pictures, ParaView fields and error bars; the skip is named, and the fine flanks' size."""
+    summary = summary_of(out)
+    assert "two-level" in {skip["name"] for skip in summary["skipped"]}
+    bars = summary["frictions"][0]["estimated_error"]
+    assert summary["estimated_error"]["missing"] is None
+    assert bars["transmission_error_peak_to_peak_um"] > 0.0 and bars["max_pressure_MPa"] > 0.0
+    assert (out / "pictures/04_stress_of_teeth.png").stat().st_size > 10_000
+    assert not any("could not" in line for line in (out / "run.log").read_text(encoding="utf-8").splitlines())
+    run = read_run(out)
+    assert summary["flank_dofs"] == 3 * sum(len(shape.flank_nodes) for shape in run.shapes)
+    assert summary["dofs"] == 3 * sum(len(shape.points) - len(shape.flank_nodes) for shape in run.shapes)
+
+
+@pytest.mark.slow
+def test_fields_are_on_the_fine_flank(out: Path) -> None:
+    """The flanks that ParaView reads have a point for each node of the finest level, and pressures on them."""
+    run = read_run(out)
+    grid = pyvista.read(out / "fields/flanks_0000.vtp")
+    nodes = [len(shape.flank_nodes) for shape in run.shapes]
+    teeth = [len(np.unique(grid.point_data["tooth"][grid.point_data["gear"] == gear])) for gear in (0, 1)]
+    assert grid.n_points == teeth[0] * nodes[0] + teeth[1] * nodes[1]
+    name = next(name for name in grid.point_data if name.startswith("pressure_MPa"))
+    assert 100.0 < np.nanmax(grid.point_data[name]) < 5000.0
+
+
+@pytest.mark.slow
+def test_deformation_is_of_the_coarse_sector(out: Path) -> None:
+    """The thin discs bend by a tenth of a millimetre, the bore rests."""
+    grid = pyvista.get_reader(str(out / "fields/deformed.pvd")).read()[0]
+    size = np.linalg.norm(grid.point_data["displacement_mm"], axis=1)
+    assert 1e-3 < size.max() < 0.2 and size.min() == 0.0
+
+
+@pytest.mark.slow
+def test_a_finished_run_is_resumed_without_condensing(
+    out: Path, levels: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same tables; on other meshes, those of one level, the archive is refused."""
+    folder = tmp_path / "out"
+    shutil.copytree(out, folder)
+    monkeypatch.setattr("evolvent.run.start.prepare_model", lambda *_, **__: pytest.fail("condensed again"))
+    scene = load_scene(folder / "scene.toml", ["output.deformation=false", *BARE[:3]])
+    run_scene(scene, folder, resume=True, quiet=True)
+    assert summary_of(folder)["positions"] == summary_of(out)["positions"]
+    assert summary_of(folder)["dofs"] == summary_of(out)["dofs"]
+    monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 10**9)
+    with pytest.raises(ArchiveError, match="on others"):
+        checked_meshes(scene, Archive(folder, scene))
+
+
+@pytest.mark.slow
+def test_one_mesh_gives_the_same_within_the_tolerance_of_the_skip(out: Path, levels: None, tmp_path: Path) -> None:
+    """Transmission error and torques within 1 %; pressures on less than one element a contact width are worth
+    nothing."""
+    scene = small_scene(*BARE, 'skip.off=["two-level"]')
+    assert gear_problem(scene).mesh.two_level is False
+    run_scene(scene, tmp_path / "out", quiet=True)
+    summary = summary_of(tmp_path / "out")
+    assert "two-level" not in {skip["name"] for skip in summary["skipped"]} and summary["flank_dofs"] == 0
+    found = differences(summary_of(out), summary)
+    tolerance = skip_named("two-level").tolerance
+    assert max(found.transmission_error, found.torque_ratio, found.loss) < tolerance
+    assert "not skipped: two-level\n" in (tmp_path / "out/run.log").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_the_companion_is_twice_as_coarse_in_levels(out: Path, levels: None) -> None:
+    """Half of the rows and of the layers of the run's finest level, and coarser sectors."""
+    from mpi4py import MPI
+
+    scene = small_scene()
+    companion = solve_companion(scene, pitch_of(scene), MPI.COMM_SELF)
+    assert companion.run is not None, companion.failure
+    run = read_run(out)
+    for fine, coarse in zip(run.shapes, companion.run.shapes):
+        assert 2 * len(fine.facets["flank"]) / 9 < len(coarse.facets["flank"]) < 2 * len(fine.facets["flank"]) / 5
+        assert len(coarse.points) < 0.4 * len(fine.points)
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_ranks_and_resumed_runs_agree(out: Path, run_script: Run, tmp_path: Path) -> None:
+    """Killed on one rank after a position, gone on with on two ranks: as on one rank within 1e-6."""
+    scene, folder = tmp_path / "scene.toml", tmp_path / "out"
+    scene.write_text(small_scene(*BARE).resolved_toml(), encoding="utf-8")
+    killed = run_script(BROKEN_RUN, "levels-4", str(scene), "--out", str(folder), "--quiet")
+    assert killed.returncode != 0 and not (folder / "summary.json").exists()
+    done = run_script(BROKEN_RUN, "levels", str(scene), "--out", str(folder), "--quiet", "--resume", ranks=2)
+    assert done.returncode == 0, done.stderr
+    assert "resumed after 1 positions" in (folder / "run.log").read_text(encoding="utf-8")
+    found, wanted = summary_of(folder), summary_of(out)
+    assert found["ranks"] == 2
+    for one, other in zip(found["positions"], wanted["positions"], strict=True):
+        for name in ("transmission_error_um", "max_pressure_MPa", "torque_gear_Nm"):
+            assert one[name] == pytest.approx(other[name], rel=1e-6)

@@ -1,7 +1,7 @@
 """Corrections of a flank: which cells have patches, and what congruence and interpolation change.
 
-Yang's pinion, 2 mm wide, 15 × 8 coarse cells on the flank that are split in depth; Nitsche's functionals on the fine
-cells.
+Yang's pinion, 3 mm wide, 24 × 6 coarse cells on the flank, twice as long along the face as along the profile, that are
+split in depth; Nitsche's functionals on the fine cells.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ def along(sizes: list[float], reach: float, samples: int) -> Axis:
 
 def test_cells_near_the_ends_have_their_own_patches() -> None:
     """Twenty cells, two within reach of each other: three at each end; of the 14 between, the middle one stands for all
-    layers, and three, at both ends and in the middle, for all rows. Where one patch of all costs less, it is one.
+    layers, and four, closer near both ends, for all rows. Where one patch of all costs less, it is one.
     Exact."""
-    layers, rows, few = along(20 * [1.0], 1.1, 1), along(20 * [1.0], 1.1, 3), along(8 * [1.0], 1.1, 3)
+    layers, rows, few = along(20 * [1.0], 1.1, 1), along(20 * [1.0], 1.1, 4), along(8 * [1.0], 1.1, 4)
     assert layers.own == [range(3), range(17, 20)] and layers.sampled == [10]
-    assert rows.own == layers.own and rows.sampled == [3, 9, 16]
+    assert rows.own == layers.own and rows.sampled == [3, 6, 13, 16]
     assert few.own == [range(8)] and len(few.between) == 0 and few.sampled == []
     assert along(9 * [1.0], 1.1, 1).own == [range(3), range(6, 9)] and along(9 * [1.0], 1.1, 1).sampled == [4]
     assert along(7 * [1.0], 1.1, 1).own == [range(7)]
@@ -53,9 +53,9 @@ def test_cells_within_reach_are_counted_by_their_length() -> None:
 def correction() -> StripCorrection:
     """Of all patches."""
     gear, start = gear_and_start("yang pinion")
-    gear = replace(gear, face_width=2.0)
+    gear = replace(gear, face_width=3.0)
     resolution = SectorResolution(
-        profile_elements=15, face_elements=8, end_size_ratio=1.0, flank_start_diameter=start,
+        profile_elements=24, face_elements=6, end_size_ratio=1.0, flank_start_diameter=start,
         layer_depths=(0.2, 0.25, 0.285),
     )  # fmt: skip
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
@@ -64,14 +64,14 @@ def correction() -> StripCorrection:
 
 @pytest.mark.slow
 def test_shared_and_interpolated_responses_are_those_of_one_large_patch(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Against one patch that is all of the tooth: the largest difference is below 2 % of the largest correction.
+    """Against one patch that is all of the tooth: the largest difference is below 1.5 % of the largest correction.
     Patches near the edges, shared along the face and interpolated along the profile all take part."""
     found = correction()
     monkeypatch.setattr(towers, "REACH", 50.0)
     exact = correction()
     D, C = matrix(found), matrix(exact)
     assert len({strip.moved for strip in found.strips}) > 5
-    assert np.abs(D - C).max() < 0.02 * np.abs(C).max()
+    assert np.abs(D - C).max() < 0.015 * np.abs(C).max()
 
 
 def matrix(correction: StripCorrection) -> Floats:

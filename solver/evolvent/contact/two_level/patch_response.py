@@ -23,7 +23,7 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.patches import CUT, Patch, cells_near, cut_out
 
-FEW = 0.25
+FEW = 0.15
 """Of a patch's nodes: where forces act on fewer, a solution for each costs less than eliminating the patch's inside."""
 Places = Callable[[Floats], Bools]
 """Which of some points (n, d) [mm] are meant, (n,)."""

@@ -161,9 +161,10 @@ SKIPS: tuple[Skip, ...] = (
         "two-level",
         lambda scene: scene.wear is None and _would_have_levels(scene),
         _levels_sentence,
-        # both ways resolve the contact equally, on different meshes: what differs is their discretisation error. To be
-        # measured: Yang's pair at quick and standard, with the skip and without, by `evidence.benchmarks skips`
-        tolerance=1e-2,
+        # both ways resolve the contact equally, on different meshes: what differs is their discretisation error. Yang's
+        # pair at standard: transmission error, torques and loss 1e-3; the largest pressure between the tip-edge zones
+        # 0.14, as these end nearer to the edge on shorter elements, and the pressure rises towards it
+        tolerance=0.15,
     ),
     Skip("reuse", lambda scene: len(scene.contact.friction) > 1, _reuse_sentence, tolerance=ROUND_OFF),
     Skip(

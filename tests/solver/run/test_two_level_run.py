@@ -114,7 +114,7 @@ def test_a_finished_run_is_resumed_without_condensing(
 
 
 @pytest.mark.slow
-def test_one_mesh_gives_the_same_within_the_tolerance_of_the_skip(out: Path, levels: None, tmp_path: Path) -> None:
+def test_one_mesh_gives_the_same_within_a_hundredth(out: Path, levels: None, tmp_path: Path) -> None:
     """Transmission error and torques within 1 %; pressures on less than one element a contact width are worth
     nothing."""
     scene = small_scene(*BARE, 'skip.off=["two-level"]')
@@ -123,8 +123,7 @@ def test_one_mesh_gives_the_same_within_the_tolerance_of_the_skip(out: Path, lev
     summary = summary_of(tmp_path / "out")
     assert "two-level" not in {skip["name"] for skip in summary["skipped"]} and summary["flank_dofs"] == 0
     found = differences(summary_of(out), summary)
-    tolerance = skip_named("two-level").tolerance
-    assert max(found.transmission_error, found.torque_ratio, found.loss) < tolerance
+    assert max(found.transmission_error, found.torque_ratio, found.loss) < 0.01 < skip_named("two-level").tolerance
     assert "not skipped: two-level\n" in (tmp_path / "out/run.log").read_text(encoding="utf-8")
 
 

@@ -22,9 +22,9 @@ from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
 SMOOTH = ((0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (2, 0))
-"""Powers of radius and height in the normal loads under which a tooth's bending is told from the rest. GMRES iterations of
-a frictional Newton step of Yang's pair at standard with none, the first three, all six: 12, 8, 7. Tangential loads of
-the same kind save but one product in thirty."""
+"""Powers of radius and height in the normal loads under which a tooth's bending is told from the rest. GMRES iterations
+of a frictional Newton step of Yang's pair at standard with none, the first three, all six: 12, 8, 7. Tangential loads
+of the same kind save but one product in thirty."""
 COUPLED = 3e-3
 """Of the largest coupling between teeth: what is smaller is left out."""
 

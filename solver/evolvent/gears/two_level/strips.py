@@ -4,7 +4,7 @@ Displacements and forces are components in the frames of the coarse layers, whic
 patches along the face have the same matrix, so that those of one strip, the layers of one row of coarse cells, are one
 product.
 
-    C ≈ R C_0 Rᵀ + S,   S = ½ (D + Dᵀ),   D = Σ (C_fine − R C_coarse Rᵀ) of each patch, under the forces on its own cells
+    C ≈ R C_0 Rᵀ + S,   S = ½ (D + Dᵀ),   D = Σ (C_fine − R C_coarse Rᵀ) of each patch under the forces on its own cells
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ class LoadedStrips:
         loaded.reshape(len(nodes), -1)[tooth, own] = True
         found = [(strip, _first_nodes(strip, loaded, whole.per_layer)) for strip in whole.strips]
         used = [(strip, first) for strip, first in found if len(first)]
-        levels, rows = whole.numbers.shape
+        rows = whole.numbers.shape[1]
         return LoadedStrips(
             len(nodes) * whole.size, own + whole.size * tooth, whole.angle[own // rows],
             tuple(strip for strip, _ in used), tuple(len(first) for _, first in used),
@@ -126,8 +126,8 @@ class LoadedStrips:
 
 
 def _first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
-    """Of the patches of a strip with nodes that are `loaded` (teeth, levels, rows): by how many places each is away from
-    the first patch on the first tooth."""
+    """Of the patches of a strip with nodes that are `loaded` (teeth, levels, rows): by how many places each is away
+    from the first patch on the first tooth."""
     (level, row), (q, p), (teeth, levels, rows) = strip.source, strip.sources, loaded.shape
     used = np.zeros((teeth, strip.layers), dtype=bool)
     for up in range(q):

@@ -71,9 +71,14 @@ class Axis:
 
     @property
     def own(self) -> list[range]:
-        """Blocks of cells near the ends, each loaded in one patch; all cells if that costs less, by the third power of
-        the patches' extent."""
+        """Blocks of cells near the ends, each loaded in one patch: those with the end within reach, and so many that
+        the patches of all others fit; all cells if that costs less, by the third power of the patches' extent."""
         first, last = 1 + self.above[0], 1 + self.below[-1]
+        while between := range(first, self.count - last):
+            below, above = self.extent(between)
+            if below <= first and above <= last:
+                break
+            first, last = max(first, below), max(last, above)
         patch = 1 + sum(self.extent(range(self.count)))
         if self.count <= first + last or self.count**3 <= (2 + self.samples) * patch**3:
             return [range(self.count)]

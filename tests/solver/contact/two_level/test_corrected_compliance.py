@@ -103,8 +103,9 @@ def test_forces_on_some_nodes_only(upper: float) -> None:
 
 
 def test_flux_is_followed_in_the_fine_cells_about_the_loads() -> None:
-    """The further what Nitsche's functionals change is followed beyond the loaded nodes, the less is lost, and nothing in
-    all of the patch. In a plane, where responses decay slowest, one and a half fine cells leave 6 % of the correction."""
+    """The further what Nitsche's functionals change is followed beyond the loaded nodes, the less is lost, and nothing
+    in all of the patch. In a plane, where responses decay slowest, one and a half fine cells leave 6 % of the
+    correction."""
     body = block()
     patch, middle = body.near(np.array([2]), 2.1), float(np.mean(body.mesh.points[body.facets[2], 0]))
 

@@ -28,7 +28,7 @@ def test_small_displacements_at_the_rim_are_left_out() -> None:
 
 def test_patches_with_the_same_neighbours_are_alike() -> None:
     """Patches that move the levels next to theirs: of six, the first and the last lack a neighbour, and four share one
-    matrix. It is symmetric between a patch and the next, and the rows that only the forces on it move have half of D."""
+    matrix. It is symmetric between a patch and the next, and rows that only the forces on it move have half of D."""
     whole = strip(4, 4)
     first, inner, last = symmetric_strips([whole], 2)
     assert [each.layers for each in (first, inner, last)] == [1, 4, 1]
@@ -38,11 +38,8 @@ def test_patches_with_the_same_neighbours_are_alike() -> None:
     up, down = S[:, :, :, 4:, 1:3], S[:, :, :, :2, 1:3]
     assert np.allclose(up, np.transpose(down, (3, 4, 5, 0, 1, 2)), rtol=1e-6)
     assert np.allclose(S[:, :, :, 1:5, 0], 0.5 * D[:, :, :, :, 0], rtol=1e-6)
-    assert np.allclose(S[:, :, :, 2:4, 1:3], 0.5 * (D[:, :, :, 1:3, 1:3] + _transposed(D[:, :, :, 1:3, 1:3])), atol=1e-6)
-
-
-def _transposed(block: np.ndarray) -> np.ndarray:
-    return np.transpose(block, (3, 4, 5, 0, 1, 2))
+    own = D[:, :, :, 1:3, 1:3]
+    assert np.allclose(S[:, :, :, 2:4, 1:3], 0.5 * (own + np.transpose(own, (3, 4, 5, 0, 1, 2))), atol=1e-6)
 
 
 def test_a_single_patch_keeps_its_place() -> None:

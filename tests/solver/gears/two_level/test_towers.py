@@ -50,6 +50,13 @@ def test_cells_within_reach_are_counted_by_their_length() -> None:
     assert axis.extent(axis.between) == (3, 3)
 
 
+def test_patches_between_the_blocks_fit_on_the_flank() -> None:
+    """Cells of 1 mm, then of 0.3 mm: the end is within reach of three at the first end, but patches about the small
+    ones have four below. Exact."""
+    axis = along(8 * [1.0] + 12 * [0.3], 1.1, 3)
+    assert axis.extent(axis.between) == (4, 4) and axis.own == [range(4), range(15, 20)]
+
+
 def correction() -> StripCorrection:
     """Of all patches."""
     gear, start = gear_and_start("yang pinion")

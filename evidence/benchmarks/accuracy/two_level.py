@@ -1,7 +1,7 @@
 """Flanks with levels of their own: against exact condensation of the very same cells, and against Hertz.
 
 Exact condensation of Yang's pair at standard, split as its levels split it, takes a dense matrix of 14 GB for each
-gear. So the two levels of standard are compared on a pair 8 mm wide, and the whole face at quick. Random pairs are
+gear. So the two levels of standard are compared on a pair 6 mm wide, and the whole face at quick. Random pairs are
 those of the campaign of random scenes, solved without friction.
 """
 
@@ -19,7 +19,7 @@ from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.scenes import HELICAL, SPUR
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.flank_levels import levelled_sector
-from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
+from evolvent.gears.problem.gear_problem import LEVELS, GearOptions, GearProblem, MeshSettings
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.scene.gear_problem import gear_problem
@@ -27,7 +27,7 @@ from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
-WHOLE_WIDTH, NARROW = 16.9, 8.0
+WHOLE_WIDTH, NARROW = 16.9, 6.0
 """Face widths of Yang's pair [mm]; its line load is the same on both."""
 MODIFIED = ("pinion.lead_crowning_um=5", "pinion.tip_relief_um=10", "pair.misalignment_um=10")
 ERROR_BAR, SHARING_BAR = 2e-3, 1e-3
@@ -67,21 +67,24 @@ class Case:
     """With levels."""
     frictions: tuple[float, ...] = (0.0,)
     """Coefficients."""
+    positions: int = 10
+    """Of a pitch."""
 
 
 @dataclass(frozen=True)
 class Size:
-    """What is measured: cases against the same cells, numbers of positions, random pairs, Yang's pair against Hertz."""
+    """What is measured."""
 
-    compared: tuple[Case, ...]
     against_hertz: tuple[Case, ...]
-    positions: int
+    compared: tuple[Case, ...]
+    """With the same cells, condensed exactly."""
     random_pairs: int
-    random_positions: int
+    """So many more of them."""
 
 
 def yang_case(mesh: MeshSettings, width: float, frictions: tuple[float, ...], *settings: str, name: str = "") -> Case:
-    """Yang's pair of some face width [mm] under the line load of the whole one."""
+    """Yang's pair of some face width [mm] under the line load of the whole one. settings: of the scene; name: of what
+    they change."""
     widths = [f"{gear}.face_width_mm={width}" for gear in ("pinion", "wheel")]
     scene = load_scene(HELICAL, [*widths, f"load.torque_Nm={250.0 * width / WHOLE_WIDTH}", *settings])
     named = f"Yang{name}, {width:g} mm, {mesh.level}"
@@ -91,7 +94,8 @@ def yang_case(mesh: MeshSettings, width: float, frictions: tuple[float, ...], *s
 def he_case() -> Case:
     """He's spur pair, solved in space."""
     mesh, options = MeshSettings("quick", two_level=True), GearOptions(in_space=True)
-    return Case("He in space, quick", replace(gear_problem(load_scene(SPUR, [])), mesh=mesh, options=options))
+    problem = replace(gear_problem(load_scene(SPUR, [])), mesh=mesh, options=options)
+    return Case("He in space, quick", problem, positions=6)
 
 
 def random_cases(count: int) -> Iterator[Case]:
@@ -102,7 +106,7 @@ def random_cases(count: int) -> Iterator[Case]:
         problem = replace(problem, mesh=MeshSettings("quick", two_level=True))
         small = all(fine_nodes(levelled_sector(problem, member)) <= MOST_NODES for member in Member)
         if small and problem.pair.pinion.base_helix_angle > 0.0:
-            yield Case(f"random pair {seed}, quick", problem)
+            yield Case(f"random pair {seed}, quick", problem, positions=3)
             count -= 1
         seed += 1
 
@@ -111,16 +115,14 @@ def rows(size: Size) -> Iterator[AccuracyRow]:
     """Against Hertz, then against the same cells."""
     for case in size.against_hertz:
         model = two_level_model(case.problem)
-        yield from hertz_rows(case, model, solved(model, case, size.positions))
-    for case in size.compared:
-        yield from difference_rows(case, size.positions)
-    for case in random_cases(size.random_pairs):
-        yield from difference_rows(case, size.random_positions)
+        yield from hertz_rows(case, model, solved(model, case))
+    for case in (*size.compared, *random_cases(size.random_pairs)):
+        yield from difference_rows(case)
 
 
-def solved(model: GearModel, case: Case, positions: int) -> Positions:
+def solved(model: GearModel, case: Case) -> Positions:
     """A pitch without repetitions: both ways begin alike."""
-    pitch = uniform_pitch(model.pair.pinion.z, positions)
+    pitch = uniform_pitch(model.pair.pinion.z, case.positions)
     return [p.results for p in sweep_pitch(model, pitch, case.frictions, initial_state(case.frictions))]
 
 
@@ -135,12 +137,12 @@ def hertz_rows(case: Case, model: GearModel, positions: Positions) -> Iterator[A
             yield from _quantiles(case.name, f"peaks against Hertz {place}{part}", error[kept], bars)
 
 
-def difference_rows(case: Case, positions: int) -> Iterator[AccuracyRow]:
+def difference_rows(case: Case) -> Iterator[AccuracyRow]:
     """A pitch on the levels against the same pitch on the same cells, condensed exactly."""
     levels = two_level_model(case.problem)
-    found = solved(levels, case, positions)
+    found = solved(levels, case)
     exact = exact_model(case.problem, levels)
-    wanted = solved(exact, case, positions)
+    wanted = solved(exact, case)
     both = zip(case.frictions, slice_peaks(levels, found), slice_peaks(exact, wanted), zip(*found), zip(*wanted))
     for friction, peaks, exact_peaks, own, other in both:
         name = f"{case.name}, μ = {friction:g}"
@@ -189,21 +191,14 @@ def _share(result: PositionResult, tooth: int) -> float:
 
 BOTH = (0.0, 0.3)
 FULL = Size(
+    against_hertz=tuple(yang_case(MeshSettings(level), WHOLE_WIDTH, (0.0,)) for level in LEVELS),
     compared=(
         yang_case(MeshSettings("quick"), WHOLE_WIDTH, BOTH),
-        yang_case(MeshSettings("standard"), NARROW, BOTH),
-        yang_case(MeshSettings("quick"), WHOLE_WIDTH, BOTH, *MODIFIED, name=" modified and misaligned"),
+        replace(yang_case(MeshSettings("standard"), NARROW, BOTH), positions=5),
+        yang_case(MeshSettings("quick"), NARROW, BOTH, *MODIFIED, name=" modified and misaligned"),
         he_case(),
     ),
-    against_hertz=tuple(yang_case(MeshSettings(level), WHOLE_WIDTH, (0.0,)) for level in ("quick", "standard", "fine")),
-    positions=10,
     random_pairs=10,
-    random_positions=3,
 )
-SMALL = Size(
-    compared=(yang_case(MeshSettings("quick", 1.0), 2.8, (0.0, 0.3), *MODIFIED, name=" modified and misaligned"),),
-    against_hertz=(yang_case(MeshSettings("quick", 1.0), 2.8, (0.0,)),),
-    positions=2,
-    random_pairs=0,
-    random_positions=0,
-)
+TINY = replace(yang_case(MeshSettings("quick", 1.0), 2.8, (0.0,), *MODIFIED, name=" modified"), positions=2)
+SMALL = Size(against_hertz=(TINY,), compared=(TINY,), random_pairs=0)

@@ -12,7 +12,15 @@ from scipy.spatial import cKDTree
 
 from evidence.benchmarks.accuracy.same_cells import fine_nodes, split_sector
 from evidence.benchmarks.accuracy.slice_peaks import SlicePeaks, slice_peaks
-from evidence.benchmarks.accuracy.two_level import AccuracyRow, Case, difference_rows, random_cases, solved, yang_case
+from evidence.benchmarks.accuracy.two_level import (
+    TINY,
+    AccuracyRow,
+    Case,
+    difference_rows,
+    random_cases,
+    solved,
+    yang_case,
+)
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
@@ -80,7 +88,7 @@ def test_hertz_is_taken_where_the_contact_lies() -> None:
     )  # fmt: skip
     problem = GearProblem(GearPair(pinion, wheel, 93.0), 250e3, mesh=MeshSettings("fine", 12.0))
     model = prepare_model(problem, MPI.COMM_SELF).model
-    peaks = slice_peaks(model, solved(model, Case("spur", problem), 20))[0]
+    peaks = slice_peaks(model, solved(model, Case("spur", problem, positions=20)))[0]
     nominal, local = (np.abs(peaks.peak / hertz - 1.0) for hertz in (peaks.hertz, peaks.hertz_in_place))
     assert np.quantile(nominal, 0.9) > 0.012
     assert np.quantile(local, 0.9) < 0.008
@@ -90,8 +98,7 @@ def test_hertz_is_taken_where_the_contact_lies() -> None:
 def test_levels_are_compared_with_the_same_cells() -> None:
     """A narrow, coarse pair with crowning, relief and misalignment: all that is measured is there, and the peaks are
     within their bars."""
-    settings = "pinion.lead_crowning_um=5", "pinion.tip_relief_um=10", "pair.misalignment_um=10"
-    found = list(difference_rows(yang_case(MeshSettings("quick", 1.0), 2.8, (0.0,), *settings), 2))
+    found = list(difference_rows(TINY))
     named = {row.what.split(":")[0] for row in found}
     assert named == {
         "peak-to-peak transmission error", "mean transmission error", "load sharing, of the load", "peaks",

@@ -1,8 +1,8 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, all (the default), or page,
-which measures nothing. Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/. --small takes sizes
-that show that everything works; give it another --out.
+PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, two-level, all (the
+default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
+--small takes sizes that show that everything works; give it another --out.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmarks.accuracy import error_bars, spacing
+from evidence.benchmarks.accuracy import error_bars, spacing, two_level
 from evidence.benchmarks.comparison import work_precision
 from evidence.benchmarks.comparison.programs import PEERS, Program
 from evidence.benchmarks.gears import pitch_precision, plane_and_solid, position_cost, profile, scaling, skips, wear
@@ -87,6 +87,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "bars": Measurement.bars,
     "spacing": Measurement.spacing,
     "wear": Measurement.wear,
+    "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
 }
 
 

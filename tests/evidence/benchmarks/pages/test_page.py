@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
+from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
@@ -45,6 +46,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
+        "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
+                      AccuracyRow("a", "mean", 0.001, nan)],
         "wear_cost": [WearCostRow("spur", 1000, 1.0, 2.0, 8.0), WearCostRow("helical", 1000, 9.0, 1.0, 8.0)],
         "wear": [WearPrecisionRow("implicit", 0.05, 10, 0, 2.0, 0.02, -0.01),
                  WearPrecisionRow("explicit", 0.05, 30, 2, 4.0, 0.001, 0.001)],
@@ -56,7 +59,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
     for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures", "75.0", "14",
-                   "killed", "**3.00**", "8.00", "whole met, bare missed"):
+                   "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
+                   "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |"):
         assert wanted in text
     assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
     assert "Cylinder on block" not in text

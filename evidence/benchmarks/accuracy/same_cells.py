@@ -1,0 +1,67 @@
+"""Gears whose flanks have levels of their own, and exact condensation of the very same cells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.fem.surface import Surface
+from evolvent.gears.condensed_gear import GearBody, condensed_gear
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.two_level.flank_refinement import coarse_body
+from evolvent.gears.two_level_gear import levelled_mesh
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.mesh.patches import cut_out
+from evolvent_meshes.sector.flank_points import on_flank
+
+
+def two_level_model(problem: GearProblem) -> GearModel:
+    """Condensed in levels, on this rank alone. problem: with `two_level`."""
+    return prepare_model(problem, MPI.COMM_SELF).model
+
+
+def exact_model(problem: GearProblem, levels: GearModel) -> GearModel:
+    """The same cells, condensed exactly; minutes and gigabytes. levels: the same problem's `two_level_model`."""
+    pinion, wheel = (exact_gear(problem, member) for member in Member)
+    return replace(levels, bodies=(pinion, wheel))
+
+
+def exact_gear(problem: GearProblem, member: Member) -> GearBody:
+    """Condensed without flank modifications, as the levels are; its flank has them."""
+    gear, material = problem.pair.gears[member], problem.materials[member]
+    plain = replace(gear, modifications=Modifications())
+    mesh, carries = split_sector(problem, member), member is Member.PINION
+    body = condensed_gear(plain, mesh, material, problem.contact_teeth, member, carries)
+    return replace(body, gear=gear, flank=_modified(body.flank, gear))
+
+
+def split_sector(problem: GearProblem, member: Member) -> MeshData:
+    """The coarse sector, split everywhere as each level splits it near the flank, then moved onto the flank."""
+    mesh = levelled_mesh(problem, member)
+    plain = replace(problem.pair.gears[member], modifications=Modifications())
+    for level in levelled_sector(problem, member).levels:
+        body = coarse_body(plain, mesh, problem.materials[member], level)
+        split = body.split_patch(cut_out(mesh, np.arange(len(mesh.cells)))).mesh
+        mesh = replace(split, facets={name: split.facets[name] for name in mesh.facets})  # nothing was cut out
+    return mesh
+
+
+def fine_nodes(sector: LevelledSector) -> int:
+    """Nodes of the flank on the finest level."""
+    rows, layers = sector.coarse.profile_elements, sector.coarse.face_elements
+    for level in sector.levels:
+        rows, layers = rows * level.rows, layers * level.layers
+    return (2 * rows + 1) * (2 * layers + 1)
+
+
+def _modified(flank: Surface, gear: GearParameters) -> Surface:
+    if gear.modifications.is_empty:
+        return flank
+    return Surface.from_arrays(on_flank(gear, flank.points), flank.facets, flank.shape, flank.order, flank.nodes)

@@ -11,11 +11,10 @@ from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
+from evolvent.gears.meshing.levelled_meshes import levelled_mesh, unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level.flank_refinement import coarse_body
-from evolvent.gears.two_level_gear import levelled_mesh
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.patches import cut_out
@@ -36,7 +35,7 @@ def exact_model(problem: GearProblem, levels: GearModel) -> GearModel:
 def exact_gear(problem: GearProblem, member: Member) -> GearBody:
     """Condensed without flank modifications, as the levels are; its flank has them."""
     gear, material = problem.pair.gears[member], problem.materials[member]
-    plain = replace(gear, modifications=Modifications())
+    plain = unmodified(gear)
     mesh, carries = split_sector(problem, member), member is Member.PINION
     body = condensed_gear(plain, mesh, material, problem.contact_teeth, member, carries)
     return replace(body, gear=gear, flank=_modified(body.flank, gear))
@@ -44,8 +43,7 @@ def exact_gear(problem: GearProblem, member: Member) -> GearBody:
 
 def split_sector(problem: GearProblem, member: Member) -> MeshData:
     """The coarse sector, split everywhere as each level splits it near the flank, then moved onto the flank."""
-    mesh = levelled_mesh(problem, member)
-    plain = replace(problem.pair.gears[member], modifications=Modifications())
+    mesh, plain = levelled_mesh(problem, member).mesh, unmodified(problem.pair.gears[member])
     for level in levelled_sector(problem, member).levels:
         body = coarse_body(plain, mesh, problem.materials[member], level)
         split = body.split_patch(cut_out(mesh, np.arange(len(mesh.cells)))).mesh

@@ -23,9 +23,9 @@ from evidence.benchmarks.accuracy.two_level import (
 )
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.flank_levels import levelled_sector
+from evolvent.gears.meshing.levelled_meshes import is_two_level, levelled_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
 from evolvent.gears.two_level.flank_refinement import FlankRefinement
-from evolvent.gears.two_level_gear import levelled_mesh
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -38,7 +38,7 @@ def test_split_sector_has_the_cells_of_the_levels() -> None:
     problem, member = NARROW.problem, Member.PINION
     levels = levelled_sector(problem, member)
     refinement = FlankRefinement(
-        problem.pair.pinion, levelled_mesh(problem, member), problem.materials[0], levels.levels
+        problem.pair.pinion, levelled_mesh(problem, member).mesh, problem.materials[0], levels.levels
     )
     finest = list(refinement.bodies())[-1].fine
     whole = split_sector(problem, member)
@@ -51,7 +51,7 @@ def test_random_pairs_are_helical_and_small() -> None:
     first, second = list(random_cases(2)), list(random_cases(2))
     assert [case.name for case in first] == [case.name for case in second] and first[0].name != first[1].name
     for case in first:
-        assert case.problem.is_two_level and case.problem.pair.pinion.base_helix_angle > 0.0
+        assert is_two_level(case.problem) and case.problem.pair.pinion.base_helix_angle > 0.0
         assert fine_nodes(levelled_sector(case.problem, Member.WHEEL)) <= 3_000
 
 

@@ -25,7 +25,7 @@ from evolvent.run.start import ResumePoint, no_results_warning, resume_point, sc
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent.scene.skips import skipped, switched_off, wanted_output, wear_on_one_mesh
+from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_output
 
 NOTHING_LEFT = "complete: nothing to compute, tables and pictures are written again"
 """What is said of a resumed run that was finished."""
@@ -72,7 +72,7 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.info("skipped, %s: %s", skip.name, skip.sentence)
     for name in switched_off(scene):
         run.log.info("not skipped: %s", name)
-    if sentence := wear_on_one_mesh(scene):
+    if sentence := one_mesh_reason(scene):
         run.log.info("%s", sentence)
     for sentence in modification_warnings(gear_problem(scene)):
         run.log.warning(sentence)

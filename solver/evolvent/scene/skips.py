@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from evolvent.gears.meshing.levelled_meshes import is_two_level
+from evolvent.gears.meshing.levelled_meshes import LONGEST, has_long_cells, is_large, is_two_level
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -88,11 +88,20 @@ def _levels_sentence(scene: Scene) -> str:
     )
 
 
-def wear_on_one_mesh(scene: Scene) -> str:
-    """A sentence where wear is why flanks have no levels of their own; else empty."""
-    if scene.wear is None or not _would_have_levels(scene):
+def one_mesh_reason(scene: Scene) -> str:
+    """A sentence where flanks of a large mesh have no levels of their own though the scene leaves that open; else
+    empty."""
+    problem = gear_problem(scene)
+    if "two-level" in scene.skip.off or problem.is_plane or not is_large(problem):
         return ""
-    return "Flanks that wear have no levels of their own (two-level): each sector is one fine mesh."
+    if scene.wear is not None:
+        return "Flanks that wear have no levels of their own (two-level): each sector is one fine mesh."
+    if has_long_cells(problem):
+        return (
+            f"Flank cells over {LONGEST:g} times as long as high: each sector is one fine mesh, without levels of its "
+            "flank (two-level)."
+        )
+    return ""
 
 
 def _reuse_sentence(scene: Scene) -> str:

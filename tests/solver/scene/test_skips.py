@@ -27,7 +27,7 @@ from evolvent.scene.checking.check_report import overview
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.scene.schema.output import SkipName
-from evolvent.scene.skips import SKIPS, skip_named, skipped, switched_off, wear_on_one_mesh
+from evolvent.scene.skips import SKIPS, one_mesh_reason, skip_named, skipped, switched_off
 from tests.support.gear_cases import HELICAL, helical_scene, model_of
 from tests.support.running.patches import calling_first
 from tests.support.running.processes import Run
@@ -222,16 +222,18 @@ def test_resuming_wants_the_same_skips() -> None:
     assert fingerprint(scene) == fingerprint(helical_scene('skip.off=["one-pitch", "fields", "window"]'))
 
 
-def test_wear_on_one_mesh_is_said() -> None:
-    """A large pair whose flanks wear: `check` says that it has no levels, and of the same without wear, or of a small
-    one, it does not."""
+def test_why_a_large_pair_has_one_mesh_is_said() -> None:
+    """A large pair whose flanks wear, or a crowned spur pair with long cells: `check` says that it has no levels, and
+    of the former without wear, or of a small one, it does not."""
     large = load_scene("demos/yang2022.toml", ["contact.friction=0.1", *WEAR])
-    assert wear_on_one_mesh(large) in overview(large) and "two-level" in wear_on_one_mesh(large)
+    assert one_mesh_reason(large) in overview(large) and "two-level" in one_mesh_reason(large)
     assert "two-level" not in {skip.name for skip in skipped(large)}
     assert switched_off(large) == []
     bare = load_scene("demos/yang2022.toml", ["contact.friction=0.1"])
-    assert wear_on_one_mesh(bare) == "" and "two-level" in {skip.name for skip in skipped(bare)}
-    assert wear_on_one_mesh(helical_scene("contact.friction=0.1", *WEAR)) == ""
+    assert one_mesh_reason(bare) == "" and "two-level" in {skip.name for skip in skipped(bare)}
+    assert one_mesh_reason(helical_scene("contact.friction=0.1", *WEAR)) == ""
+    spur = load_scene("demos/he2022.toml", ["pinion.lead_crowning_um=8", "mesh.level='fine'"])
+    assert one_mesh_reason(spur) in overview(spur) and "as long as high" in one_mesh_reason(spur)
     off = load_scene("demos/yang2022.toml", ['skip.off=["two-level"]'])
     assert switched_off(off) == ["two-level"]
 

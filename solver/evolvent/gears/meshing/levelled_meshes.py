@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from evolvent.gears.meshing.element_sizes import sector_resolution
 from evolvent.gears.meshing.flank_levels import FlankLevel, LevelledSector, levelled_sector
 from evolvent.gears.meshing.sector_meshes import gear_mesh
@@ -19,6 +21,11 @@ from evolvent_meshes.sector.sector import sector_mesh
 MOST_DOFS = 300_000
 """Degrees of freedom of one fine mesh of both sectors together, from which on levels are used by default: below,
 condensing it takes no longer than condensing the patches of a levelled flank."""
+
+LONGEST = 5.0
+"""Length of the finest flank cells along the face, over that along the profile, up to which levels are used by default.
+Patches reach over so many of the longer edges; a crowned spur pair with cells ten times as long, 380,000 degrees of
+freedom in one mesh, had all rows in each patch, of 108,000 degrees of freedom."""
 
 
 @dataclass(frozen=True)
@@ -36,17 +43,35 @@ SectorMesh = MeshData | LevelledMesh
 
 
 def is_two_level(problem: GearProblem) -> bool:
-    """Whether the flanks have levels of their own: as the settings say or, by default, where that can be and one fine
-    mesh has more than `MOST_DOFS` degrees of freedom."""
-    wanted, options = problem.mesh.two_level, problem.options
-    if problem.is_plane or wanted is False:
+    """Whether the flanks have levels of their own: as the settings say or, by default, where that can be, one fine mesh
+    has more than `MOST_DOFS` degrees of freedom, and the flank's cells are not `LONGEST`."""
+    if problem.is_plane or problem.mesh.two_level is False:
         return False
-    if wanted:
-        return True
+    return problem.mesh.two_level is True or (is_large(problem) and not has_long_cells(problem))
+
+
+def is_large(problem: GearProblem) -> bool:
+    """Whether levels can be, and one fine mesh of both sectors is so large that they would pay."""
     can_be = (problem.mesh.shape, problem.mesh.order) == ("hexahedron", 2)
-    if not can_be or options.whole_gears or options.fine_body:
+    if not can_be or problem.options.whole_gears or problem.options.fine_body:
         return False
     return sum(size.dofs for size in one_mesh_sizes(problem)) > MOST_DOFS
+
+
+def has_long_cells(problem: GearProblem) -> bool:
+    """Whether the finest cells of a flank are too long along the face, as a spur gear's are, for small patches."""
+    return max(_cell_lengths(problem, member) for member in Member) > LONGEST
+
+
+def _cell_lengths(problem: GearProblem, member: Member) -> float:
+    """Length of the finest flank cells along the face over that along the profile, on average."""
+    sector, gear = levelled_sector(problem, member), problem.pair.gears[member]
+    rows, layers = finest_cells(sector)
+    lowest = sector.coarse.flank_start_diameter or gear.root_form_diameter
+    start, tip = gear.roll_length(lowest), gear.roll_length(gear.tip_diameter)
+    arc = (tip**2 - start**2) / (2.0 * gear.base_radius)
+    along_face = gear.face_width / np.cos(np.radians(gear.helix_angle_deg)) / layers
+    return float(along_face / (arc / rows))
 
 
 def run_mesh(problem: GearProblem, member: Member) -> SectorMesh:

@@ -26,7 +26,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.plain_text import fixed
 from evolvent.scene.scene import GEARS, Scene
 from evolvent.scene.schema.wear import WearSection
-from evolvent.scene.skips import skipped, switched_off, wear_on_one_mesh
+from evolvent.scene.skips import one_mesh_reason, skipped, switched_off
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -65,7 +65,7 @@ def _skip_lines(scene: Scene) -> str:
     column = 2 + max((len(skip.name) for skip in left_out), default=0)
     lines = ["Skipped", *(f"  {skip.name:<{column}}{skip.sentence}" for skip in left_out)]
     off = switched_off(scene)
-    long_way = [*([", ".join(off)] if off else []), *filter(None, [wear_on_one_mesh(scene)])]
+    long_way = [*([", ".join(off)] if off else []), *filter(None, [one_mesh_reason(scene)])]
     return "\n".join([*lines, *(["Computed the long way", *(f"  {line}" for line in long_way)] if long_way else [])])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,14 @@ import pytest
 from evolvent.fem.surface import surface_of
 from evolvent.gears.meshed_gear import meshed_gear
 from evolvent.gears.meshing import levelled_meshes
-from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level, levelled_mesh, run_mesh
+from evolvent.gears.meshing.levelled_meshes import (
+    flank_cells,
+    has_long_cells,
+    is_large,
+    is_two_level,
+    levelled_mesh,
+    run_mesh,
+)
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
 from evolvent_meshes.gears.gear import GearParameters
@@ -41,6 +49,20 @@ def test_levels_are_for_large_meshes() -> None:
     assert [sum(size.dofs for size in one_mesh_sizes(each)) for each in (quick, standard)] == [240_240, 572_940]
     assert 240_240 < levelled_meshes.MOST_DOFS < 572_940
     assert [is_two_level(each) for each in (quick, standard)] == [False, True]
+
+
+def test_long_cells_have_no_levels_by_default() -> None:
+    """A crowned spur pair of 380,000 degrees of freedom in one mesh, whose layers are ten times as long as its rows are
+    high: only where levels are asked for."""
+    rack: dict[str, Any] = {"normal_module": 3.0, "normal_pressure_angle_deg": 20.0, "face_width": 25.0}
+    pinion = GearParameters.from_rack(
+        z=25, bore_diameter=30.0, modifications=Modifications(lead_crowning_um=8.0), **rack
+    )  # fmt: skip
+    wheel = GearParameters.from_rack(z=60, bore_diameter=60.0, **rack)
+    spur = GearProblem(GearPair(pinion, wheel, 127.5), 150e3)
+    assert is_large(spur) and has_long_cells(spur) and not is_two_level(spur)
+    assert is_two_level(replace(spur, mesh=MeshSettings(two_level=True)))
+    assert not has_long_cells(problem(MeshSettings("standard")))
 
 
 def test_levels_can_be_asked_for_and_refused() -> None:

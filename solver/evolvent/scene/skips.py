@@ -171,8 +171,8 @@ SKIPS: tuple[Skip, ...] = (
         lambda scene: scene.wear is None and _would_have_levels(scene),
         _levels_sentence,
         # both ways resolve the contact equally, on different meshes: what differs is their discretisation error. Yang's
-        # pair at standard, μ = 0.3: transmission error 9e-4, torques 2e-4, loss 1.3e-3; the largest pressure between its
-        # tip-edge zones 0.14, at single positions 0.30: on shorter elements the zones are shorter, and the pressure
+        # pair at standard, μ = 0.3: transmission error 9e-4, torques 2e-4, loss 1.3e-3; the largest pressure between
+        # its tip-edge zones 0.14, at single positions 0.30: on shorter elements the zones are shorter, and the pressure
         # rises towards the edge. The pair bears on its tip edges at every position
         tolerance=0.35,
     ),

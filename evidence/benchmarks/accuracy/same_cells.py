@@ -7,18 +7,17 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from evolvent.fem.surface import Surface
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
 from evolvent.gears.meshing.levelled_meshes import levelled_mesh, unmodified
+from evolvent.gears.meshing.sector_sizes import finest_cells
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level.flank_refinement import coarse_body
-from evolvent_meshes.gears.gear import GearParameters
+from evolvent.gears.two_level_gear import modified_flank
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.patches import cut_out
-from evolvent_meshes.sector.flank_points import on_flank
 
 
 def two_level_model(problem: GearProblem) -> GearModel:
@@ -38,7 +37,7 @@ def exact_gear(problem: GearProblem, member: Member) -> GearBody:
     plain = unmodified(gear)
     mesh, carries = split_sector(problem, member), member is Member.PINION
     body = condensed_gear(plain, mesh, material, problem.contact_teeth, member, carries)
-    return replace(body, gear=gear, flank=_modified(body.flank, gear))
+    return replace(body, gear=gear, flank=modified_flank(body.flank, gear))
 
 
 def split_sector(problem: GearProblem, member: Member) -> MeshData:
@@ -53,13 +52,5 @@ def split_sector(problem: GearProblem, member: Member) -> MeshData:
 
 def fine_nodes(sector: LevelledSector) -> int:
     """Nodes of the flank on the finest level."""
-    rows, layers = sector.coarse.profile_elements, sector.coarse.face_elements
-    for level in sector.levels:
-        rows, layers = rows * level.rows, layers * level.layers
+    rows, layers = finest_cells(sector)
     return (2 * rows + 1) * (2 * layers + 1)
-
-
-def _modified(flank: Surface, gear: GearParameters) -> Surface:
-    if gear.modifications.is_empty:
-        return flank
-    return Surface.from_arrays(on_flank(gear, flank.points), flank.facets, flank.shape, flank.order, flank.nodes)

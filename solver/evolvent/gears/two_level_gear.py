@@ -37,7 +37,7 @@ def two_level_gear(
     traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
     assert isinstance(coarse.chain, ChainedCompliance)
     ring = TwoLevelRing(coarse.chain, coarse.flank, refined, 2.0 * np.pi / gear.z)
-    spent, flank = time.perf_counter() - begin - coarse.assemble_seconds, _modified(fine.surface, gear)
+    spent, flank = time.perf_counter() - begin - coarse.assemble_seconds, modified_flank(fine.surface, gear)
     return replace(
         coarse, gear=gear, flank=flank, traction=traction, chain=ring, condense_seconds=spent, levels=sector.levels
     )  # fmt: skip
@@ -46,7 +46,7 @@ def two_level_gear(
 def levelled_flank(problem: GearProblem, member: Member, sector: LevelledMesh) -> Surface:
     """The finest level of the flank with its modifications, as `two_level_gear` has it."""
     *_, finest = _refinement(problem, member, sector).bodies()
-    return _modified(finest.fine.surface, problem.pair.gears[member])
+    return modified_flank(finest.fine.surface, problem.pair.gears[member])
 
 
 def _refinement(problem: GearProblem, member: Member, sector: LevelledMesh) -> FlankRefinement:
@@ -54,8 +54,8 @@ def _refinement(problem: GearProblem, member: Member, sector: LevelledMesh) -> F
     return FlankRefinement(plain, sector.mesh, problem.materials[member], sector.levels)
 
 
-def _modified(flank: Surface, gear: GearParameters) -> Surface:
-    """A flank with the gear's modifications."""
+def modified_flank(flank: Surface, gear: GearParameters) -> Surface:
+    """A flank, condensed without the gear's modifications, with them."""
     if gear.modifications.is_empty:
         return flank
     return Surface.from_arrays(on_flank(gear, flank.points), flank.facets, flank.shape, flank.order, flank.nodes)

@@ -111,10 +111,11 @@ class _Condensable:
         `patch_response`."""
         K, free = self.assembled.stiffness, self.assembled.free
         P = trace_functionals(self.surface, K.shape[0])
-        graph = sp.csr_matrix((np.ones(K.nnz, dtype=np.int8), K.indices, K.indptr), shape=K.shape)
         if flux_safety is not None:
             traction = nitsche_traction(self.mesh, self.material, self.surface, flux_safety)
             K, P = K - traction.constant_term(), P - traction.flux()
         if len(columns) < FEW * P.shape[0]:
             return compliance_by_columns(Factor(K, free), P, P.tocsr()[columns])
+        plain = self.assembled.stiffness
+        graph = sp.csr_matrix((np.ones(plain.nnz, dtype=np.int8), plain.indices, plain.indptr), shape=plain.shape)
         return compliance(K, P, free, graph=graph)[:, columns]

@@ -105,7 +105,6 @@ def shared_position(
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
         normal = normal_part(system)
         smooth = frictionless(normal, _initially_pressed(contact.geometry, before))
-        before = ContactPatch.of(contact.geometry, smooth.traction[:, 0])  # for the next search
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
@@ -120,6 +119,7 @@ def shared_position(
                 return SharedPosition(contact, system, smooth, unsearched, tangent_stiffness(normal, smooth))
             half_width = np.inf
         stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
+        before = ContactPatch.of(contact.geometry, smooth.traction[:, 0])
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )

@@ -151,6 +151,7 @@ class Towers:
         self._nodes = 2 * np.array(self._fine.cells) // self._coarse.cells
         self._cells = self._coarse.place(body.surface.points[body.surface.facets[:, -1]]) // 2
         self._reach = reach_of(body)
+        self._flux_reach = REACH * float(self._fine.edges().max())
 
     @cached_property
     def axes(self) -> tuple[Axis, Axis]:
@@ -200,8 +201,7 @@ class Towers:
             at = self._fine.place(points)
             return np.asarray((at >= low).all(axis=1) & (at < high).all(axis=1))
 
-        reach = self._reach * float(self._fine.edges().max() / self._coarse.edges().max())
-        response = patch_response(self._body, patch, self._held, self._flux_safety, within, reach)
+        response = patch_response(self._body, patch, self._held, self._flux_safety, within, self._flux_reach)
         # patches between the blocks have one shape, so that they can be interpolated
         alike = (axis.between if cells[0] in axis.between else cells for axis, cells in zip(self.axes, (rows, layers)))
         below, above = self._nodes * np.transpose([axis.extent(each) for axis, each in zip(self.axes, alike)])

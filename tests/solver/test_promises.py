@@ -17,7 +17,7 @@ from demos.two_blocks import Patch
 from evidence.robustness.settings.matrix import Cylinder, patch_cell
 from evidence.robustness.settings.sheets import Cell, attempt
 from evolvent import Problem, SmallStrainExceeded, solve
-from evolvent.contact.newton import equilibrium, snes
+from evolvent.contact.newton import contact_equations, equilibrium, snes
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues, coulomb
@@ -265,6 +265,6 @@ def test_nan_is_said(broken: str, monkeypatch: pytest.MonkeyPatch) -> None:
             equilibrium, "coulomb", lambda t, μ: replace(original(t, μ), traction=np.nan * original(t, μ).traction)
         )
     else:
-        monkeypatch.setattr(equilibrium.Tangent, "solve", lambda _, right: np.full_like(right, np.nan))
+        monkeypatch.setattr(contact_equations.Tangent, "solve", lambda _, right: np.full_like(right, np.nan))
     cell: Cell = attempt(cylinder.cell)
     assert cell.refused and "not a number" in cell.refused

@@ -35,7 +35,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.cli import main
-from evolvent.contact.newton.equilibrium import CondensedSystem
+from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.gears import gear_model
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.meshing import levelled_meshes

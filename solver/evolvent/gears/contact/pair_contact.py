@@ -15,7 +15,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import CondensedSystem
+from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.fem.parallel.cores import Threads

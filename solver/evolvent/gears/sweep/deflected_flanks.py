@@ -14,11 +14,11 @@ import numpy as np
 
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
 from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
+from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.contact.tooth_contact import Displaced
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.contact_patch import ContactPatch

@@ -5,13 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from evolvent.contact.newton.equilibrium import (
-    CondensedSystem,
-    Equilibrium,
-    InitialGuess,
-    frictional,
-    with_components,
-)
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium, InitialGuess, frictional, with_components
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.friction_history import PreviousJump

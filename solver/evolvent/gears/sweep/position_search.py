@@ -13,13 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, frictionless, normal_part
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.contact.contact_geometry import ContactGeometry
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact, gear_contact
+from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.contact_patch import ContactPatch

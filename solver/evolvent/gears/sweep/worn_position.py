@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, frictionless, normal_part
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.contact.newton.tangent_stiffness import tangent_stiffness
 from evolvent.gears.contact.overlap_check import NEARLY, overlap_outside
+from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
 from evolvent_meshes.arrays import Bools

@@ -18,7 +18,8 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium, normal_part
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium, normal_part
 from evolvent.contact.newton.pressure_sensitivity import PressureSensitivity
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.ranks import together

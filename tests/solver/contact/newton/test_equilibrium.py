@@ -17,11 +17,9 @@ from evolvent import (
     condense_bodies,
     solve,
 )
+from evolvent.contact.newton.contact_equations import TOLERANCE, ContactEquations, _accuracy
 from evolvent.contact.newton.equilibrium import (
-    TOLERANCE,
-    ContactEquations,
     InitialGuess,
-    _accuracy,
     _assumed_contact,
     frictional,
     frictionless,
@@ -57,7 +55,7 @@ def test_tangent_is_the_derivative_of_the_residual(make: Callable[[], Problem], 
         x = problem.join(start.force, start.motion) * (1.0 + 1e-3 * rng.normal(size=problem.n * problem.k + problem.r))
         direction = rng.normal(size=len(x)) * np.abs(x).max() * 1e-4
         ahead, behind = x + step * direction, x - step * direction
-        if not np.array_equal(*(problem.state(y)[2].derivative != 0.0 for y in (ahead, behind))):
+        if not np.array_equal(*(problem.state(y).law.derivative != 0.0 for y in (ahead, behind))):
             continue  # a point changes its state in between: no derivative there
         compared += 1
         tangent = _tangent(problem, x)
@@ -110,7 +108,7 @@ def test_work_along_a_step_is_the_derivative_of_the_energy(make: Callable[[], Pr
 
 
 def _tangent(problem: ContactEquations, x: Floats) -> Floats:
-    M = problem.system.operator.tangent(problem.state(x)[2])
+    M = problem.system.operator.tangent(problem.state(x).law)
     H = problem.system.motion / problem.system.lever
     contact = np.hstack([np.eye(len(H)) + M @ problem.system.compliance.matrix, -(M @ H)])
     return np.vstack([contact, np.hstack([H.T, np.zeros((H.shape[1], H.shape[1]))])])

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import CondensedSystem, Equilibrium
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.coulomb import LawValues
 

@@ -1,0 +1,160 @@
+"""The equations of a condensed contact system, on the nodal contact forces and the free rigid motions.
+
+Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 without friction, else d:
+
+    f − F(J) = 0,   J = J_0 + H δ − A f              (contact)
+    Hᵀ f = F                                         (balance of the free rigid motions)
+
+The bodies are eliminated exactly (A is their compliance), so that this is the finite element system itself. The
+tangent is in tangent.py, its inverse in newton_steps.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evolvent.contact.newton.jump_compliance import JumpCompliance
+from evolvent.contact.newton.newton_steps import NewtonSteps
+from evolvent.contact.newton.tangent import Tangent
+from evolvent.contact.nitsche.contact_operator import ContactLaw, ContactOperator
+from evolvent.contact.nitsche.coulomb import LawValues
+from evolvent_meshes.arrays import Floats
+
+TOLERANCE = 1e-10  # residual force over the force in the system
+QUADRATIC = 30.0  # lower bound of a relative residual over the square of the one before (200 to 1000 were observed)
+ROUGHEST, FINEST = 1e-3, 1e-7  # limits of the accuracy to which a Newton step is solved
+LAST_STEP = 1e-2  # of the tolerance: residual that the linear solve of the last step may leave
+
+
+@dataclass(frozen=True)
+class CondensedSystem:
+    """The bodies of a contact problem in the local jumps of its contacts, k components a node.
+
+    operator: contact at q points, jumps at n nodes.
+    compliance: A (n·k, n·k).
+    motion: H (n·k, r), jumps by unit amplitudes of the r free rigid motions.
+    jump: J_0 (n·k,), jumps by external loads and prescribed motions [mm].
+    load: F (r,), loads on the free rigid motions [N, N·mm].
+    lever: (r,) largest jump by a unit amplitude of each motion [mm per unit], to compare forces with moments.
+    """
+
+    operator: ContactOperator
+    compliance: JumpCompliance
+    motion: Floats
+    jump: Floats
+    load: Floats
+    lever: Floats
+
+    @cached_property
+    def steps(self) -> NewtonSteps:
+        """Solver of the Newton steps; all friction coefficients share it."""
+        return NewtonSteps(self.compliance, self.motion / self.lever)
+
+    @property
+    def k(self) -> int:
+        """Number of local components a node: 1 (normal) or d."""
+        return len(self.jump) // len(self.operator.nodes)
+
+    def jumps(self, force: Floats, motion: Floats) -> Floats:
+        """J (n, k) [mm] from nodal forces (n, k) [N] and amplitudes of the motions (r,)."""
+        return (self.jump + self.motion @ motion - self.compliance.times(force.ravel())).reshape(-1, self.k)
+
+    @property
+    def scale(self) -> float:
+        """The force [N] that residuals are compared with."""
+        return float(np.abs(self.load / self.lever).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class _State:
+    """What the contact law makes of some x.
+
+    force: nodal forces f (n, k) [N].
+    jump: J (n, k) [mm].
+    law: its values at the points.
+    contact: F(J) (n, k) [N].
+    """
+
+    force: Floats
+    jump: Floats
+    law: LawValues
+    contact: Floats
+
+
+class ContactEquations:
+    """Residual and tangent of the contact system (a `NonlinearProblem`), over x = (f, δ·lever)."""
+
+    def __init__(self, system: CondensedSystem, law: ContactLaw, slip: Floats | None = None) -> None:
+        self.system, self.law, self.slip = system, law, slip
+        self.n, self.k, self.r = len(system.operator.nodes), system.k, len(system.load)
+        self._last: tuple[Floats, _State] | None = None
+
+    def split(self, x: Floats) -> tuple[Floats, Floats]:
+        """f (n, k) [N] and δ (r,) of x; x has δ times the lever, so that all residuals are forces."""
+        return x[: self.n * self.k].reshape(self.n, self.k), x[self.n * self.k :] / self.system.lever
+
+    def join(self, force: Floats, motion: Floats) -> Floats:
+        """x of f (n, k) and δ (r,)."""
+        return np.concatenate([force.ravel(), motion * self.system.lever])
+
+    def scale(self, x: Floats) -> float:
+        """Force with which the residual is compared: load or normal contact force, whichever is larger [N]."""
+        return max(self.system.scale, float(np.abs(self.split(x)[0][:, 0]).sum()))
+
+    def state(self, x: Floats) -> _State:
+        """At x; stored, since residual, tangent and work are needed at the same x."""
+        if self._last is None or not np.array_equal(self._last[0], x):
+            force, motion = self.split(x)
+            jump = self.system.jumps(force, motion)
+            law = self._law(jump)
+            self._last = x.copy(), _State(force.copy(), jump, law, self.system.operator.forces(law.traction))
+        return self._last[1]
+
+    def residual(self, x: Floats) -> Floats:
+        """f − F(J), then Hᵀ f − F over the lever, (n·k + r,) [N]."""
+        at = self.state(x)
+        balance = (self.system.motion.T @ at.force.ravel() - self.system.load) / self.system.lever
+        return np.concatenate([(at.force - at.contact).ravel(), balance])
+
+    def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
+        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) − Fᵀδ of bodies under any nodal forces f has the
+        derivatives A(f − F(J)) and Hᵀ F(J) − F."""
+        system, (df, dδ) = self.system, self.split(step)
+        at = self.state(x)
+        after = self.state(x - step)  # stored: the next state if the full step is taken
+        change = at.jump - after.jump
+        elastic = (system.motion @ dδ).reshape(change.shape) - change  # A df
+        known = {0.0: at.contact, 1.0: after.contact}
+
+        def along(α: float) -> float:
+            contact = known[α] if α in known else system.operator.forces(self._law(at.jump - α * change).traction)
+            balance = system.motion.T @ contact.ravel() - system.load
+            return -float(np.sum(elastic * (at.force - α * df - contact)) + dδ @ balance)
+
+        return along
+
+    def solve(self, x: Floats, right: Floats) -> Floats:
+        """T(x)⁻¹ right, as accurate as this Newton step needs."""
+        accuracy = _accuracy(float(np.linalg.norm(right)), self.scale(x))
+        return self.system.steps.solve(self.tangent(x), right, accuracy)
+
+    def tangent(self, x: Floats) -> Tangent:
+        """T(x)."""
+        steps = self.system.steps
+        return Tangent.of(self.system.operator, self.state(x).law, steps.A, steps.H)
+
+    def _law(self, jump: Floats) -> LawValues:
+        """Values at the points under jumps (n, k)."""
+        return self.law(self.system.operator.trial(jump, self.slip))
+
+
+def _accuracy(residual: float, scale: float) -> float:
+    """Fraction of the residual to which a Newton step's equations are solved: well below the residual that the
+    nonlinearity of the contact law leaves anyway, and no further below the tolerance than results show."""
+    relative = residual / scale if scale > 0.0 else 1.0
+    roughest = ROUGHEST / max(relative, 1.0)  # of the load too: a start from the right points is not to be lost
+    return max(min(QUADRATIC * relative, roughest), LAST_STEP * TOLERANCE / max(relative, TOLERANCE), FINEST)

@@ -51,6 +51,11 @@ class InitialGuess:
     force: Floats
     motion: Floats
 
+    @staticmethod
+    def of(equilibrium: Equilibrium) -> InitialGuess:
+        """A state that is near."""
+        return InitialGuess(equilibrium.force, equilibrium.motion)
+
 
 def normal_part(system: CondensedSystem) -> CondensedSystem:
     """The frictionless system: normal components only. A system that has no others is returned as it is."""
@@ -61,13 +66,19 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
 
 
-def frictionless(system: CondensedSystem, start: Bools | None = None) -> Equilibrium:
+def frictionless(
+    system: CondensedSystem, start: Bools | None = None, near: InitialGuess | None = None
+) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (q,) bool, points assumed in contact in the first, linear, solve; by default all. Raises NotConverged.
+    start: (q,) bool, points assumed in contact in the first, linear, solve; by default all.
+    near: a guess of the solution, taken instead.
+    Raises NotConverged.
     """
-    touching = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
     problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
+    if near is not None:
+        return _converged(problem, problem.join(near.force, near.motion), "contact without friction")
+    touching = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
     return _converged(problem, _assumed_contact(system, touching), "contact without friction")
 
 

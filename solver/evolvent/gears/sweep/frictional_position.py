@@ -29,19 +29,20 @@ class Solved:
 
 def solve_position(
     model: GearModel, shared: SharedPosition, friction: float, before: PreviousJump | None, span: float,
-    solved: Sequence[Solved] = (),
+    solved: Sequence[Solved] = (), near: InitialGuess | None = None,
 ) -> tuple[PositionResult, Solved]:  # fmt: skip
     """Equilibrium with friction.
 
     before: friction history at the contact's nodes, None without friction.
     span: Δφ since then [rad].
     solved: the same position at other coefficients, to start from; the nearest ones last.
+    near: a guess of the solution, taken instead of theirs.
 
     Raises NotConverged.
     """
     contact, equilibrium = shared.contact, shared.smooth
     if before is not None:
-        guess = extrapolated_guess(friction, [Solved(0.0, shared.smooth), *solved])
+        guess = near or extrapolated_guess(friction, [Solved(0.0, shared.smooth), *solved])
         equilibrium = frictional_equilibrium(
             contact.geometry, shared.system, friction, shared.smooth, before, span, guess
         )

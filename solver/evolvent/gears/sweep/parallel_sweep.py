@@ -8,7 +8,7 @@ cannot be divided: there one rank prepares the next position while another solve
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -27,22 +27,23 @@ from evolvent.fem.parallel.ranks import SharedBroadcast, together
 from evolvent.gears.contact.overlap_check import UnsearchedOverlap
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition, joined, sweep_pitch
-from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent.gears.sweep.pitch_sweep import NONE_KNOWN, Pitch, SweepState, SweptPosition, joined, sweep_pitch
+from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, shared_position
 
 PREPARING = 2  # ranks: from further away a search takes longer
 
 
 def sweep_on_ranks(
-    model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0
-) -> Generator[SweptPosition, None, None]:
+    model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, comm: MPI.Comm, begin: int = 0,
+    known: Mapping[int, KnownSolution] = NONE_KNOWN,
+) -> Generator[SweptPosition, None, None]:  # fmt: skip
     """`sweep_pitch`, the work divided; all ranks get all results. Raises NotConverged on all ranks, which must close it
     together where they leave it early."""
     if comm.size == 1:
-        yield from sweep_pitch(model, pitch, frictions, state, begin)
+        yield from sweep_pitch(model, pitch, frictions, state, begin, known=known)
         return
     broadcasts = tuple(SharedBroadcast(comm, root) for root in range(PREPARING))
-    sweep = _RankedSweep(model, pitch, frictions, comm, Cores(comm), broadcasts)
+    sweep = _RankedSweep(model, pitch, frictions, known, comm, Cores(comm), broadcasts)
     single = len(frictions) == 1 and model.has_friction_terms(frictions[0])
     # not closed where something failed: a rank alone with the failure would wait for the others
     with suppress(GeneratorExit):
@@ -67,12 +68,14 @@ def division(count: int, ranks: int) -> list[slice]:
 class _RankedSweep:
     """A sweep by several ranks.
 
+    known: number of a position -> how it was solved before.
     broadcasts: of the compliance, one for each rank that prepares a position.
     """
 
     model: GearModel
     pitch: Pitch
     frictions: Sequence[float]
+    known: Mapping[int, KnownSolution]
     comm: MPI.Comm
     cores: Cores
     broadcasts: tuple[SharedBroadcast, ...]
@@ -116,7 +119,7 @@ class _RankedSweep:
         if self.comm.rank == 1 and coming:
             return None, self._without_friction(coming.start, place)
         if self.comm.rank == 0 and k >= begin:
-            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, prepared)), None
+            return next(sweep_pitch(self.model, self.pitch, self.frictions, state, k, prepared, self.known)), None
         return None, None
 
     def _prepared(self, numbers: range, state: SweepState) -> SharedPosition | None:
@@ -128,7 +131,8 @@ class _RankedSweep:
     def _without_friction(self, number: int, state: SweepState) -> SharedPosition | None:
         try:
             angle, threads = self.pitch.angles[number], self.cores.used
-            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, threads)
+            known = self.known.get(number)
+            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, threads, known)
         except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 
@@ -140,27 +144,27 @@ class _RankedSweep:
         own = division(len(self.frictions), self.comm.size)[self.comm.rank]
         mine, swept = replace(state, histories=state.histories[own]), []
         for k, common in zip(numbers, prepared) if self.frictions[own] else ():
-            swept.append(next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common)))
+            swept.append(next(sweep_pitch(self.model, self.pitch, self.frictions[own], mine, k, common, self.known)))
             mine = swept[-1].state
         return swept
 
     def _broadcast(self, prepared: SharedPosition | None, root: int) -> SharedPosition | None:
         """Rank `root`'s position on all ranks: without the gears, which all have; its compliance through shared memory,
         only roughly where it is known by products, which all ranks can make."""
-        bare: tuple[GearContact, Equilibrium, tuple[UnsearchedOverlap, ...], float] | None = None
+        bare: tuple[GearContact, Equilibrium, tuple[UnsearchedOverlap, ...]] | None = None
         large: NearlyNormal | JumpCompliance | None = None
         if prepared is not None:
-            bare = prepared.contact.without_bodies(), prepared.smooth, prepared.unsearched, prepared.stiffness
+            bare = prepared.contact.without_bodies(), prepared.smooth, prepared.unsearched
             large = prepared.system.compliance
             large = large.rough if isinstance(large, AppliedCompliance) else large
         received = self.comm.bcast(bare, root)
         if received is None:
             return None
-        contact, smooth, unsearched, stiffness = received
+        contact, smooth, unsearched = received
         contact, load = contact.with_bodies(self.model.bodies), self.model.load
         sent = self.broadcasts[root].send(large)
         assert sent is not None
         if isinstance(sent, NearlyNormal):
             sent = contact.geometry.compliance(sent.k, rough=sent)
         system = contact.system_with(sent, load.on, load.torque)
-        return SharedPosition(contact, system, smooth, unsearched, stiffness)
+        return SharedPosition(contact, system, smooth, unsearched)

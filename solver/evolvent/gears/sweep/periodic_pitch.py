@@ -4,7 +4,7 @@ A sweep begins without a friction history, from flanks that slide everywhere. Th
 of the gears, by a third from one of Yang's 20 positions to the next at μ = 0.3, whose first is off by 0.08 of the
 peak-to-peak transmission error (by all of it, were the first history that of flanks without friction). But all teeth
 are alike: the end of a pitch is the history of its beginning. So its positions are solved again from there, in
-turn, as far as they still change.
+turn, as far as they still change; each starts from its last solution.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.parallel_sweep import positions_at_once, sweep_on_ranks
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweepState, SweptPosition
+from evolvent.gears.sweep.position_search import KnownSolution
 from evolvent_meshes.arrays import Bools, Floats
 
 TOLERANCE = 1e-2
@@ -45,6 +46,7 @@ def sweep_until_periodic(
     Raises NotConverged on all ranks, also where positions still change in the last round.
     """
     errors, whole = list(before), len(pitch.angles)
+    solutions: dict[int, KnownSolution] = {}
     rubs = np.array([model.has_friction_terms(μ) for μ in frictions])
     known = ~np.isnan(errors[-1]) if errors else np.ones_like(rubs)  # whose histories the state has
     ahead = _still_changing(errors, pitch, rubs)
@@ -52,9 +54,12 @@ def sweep_until_periodic(
         state, solved, begin = state.of(ahead[known]), ahead, len(errors) % whole
         if errors and begin == 0:
             state = state.earlier(pitch.pitches)
-        with closing(sweep_on_ranks(model, pitch, list(compress(frictions, solved)), state, comm, begin)) as swept:
+        chosen = list(compress(frictions, solved))
+        with closing(sweep_on_ranks(model, pitch, chosen, state, comm, begin, solutions)) as swept:
             for count, position in enumerate(swept, 1):
                 position, known = position.of(ahead[solved]), ahead
+                if position.known is not None:
+                    solutions[len(errors) % whole] = position.known
                 errors.append(transmission_errors(position, frictions))
                 state, ahead = position.state, _still_changing(errors, pitch, rubs)
                 yield replace(position, again=len(errors) > whole, closes=not ahead.any())

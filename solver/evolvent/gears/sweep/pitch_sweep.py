@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import compress
+from types import MappingProxyType
 
 import numpy as np
 
-from evolvent.contact.newton.equilibrium import sliding
+from evolvent.contact.newton.equilibrium import InitialGuess, sliding
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.gear_model import GearModel
@@ -23,7 +24,7 @@ from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_jumps
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
-from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, shared_position
 from evolvent.gears.sweep.slip import nominal_direction
 from evolvent_meshes.arrays import Bools
 
@@ -31,6 +32,7 @@ HALVINGS = 4
 LOG = logging.getLogger("evolvent")
 Histories = tuple[FrictionHistory | None, ...]
 """Of each friction coefficient; None before the first position, and without friction."""
+NONE_KNOWN: Mapping[int, KnownSolution] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,7 @@ class SweptPosition:
     state: to go on from.
     again: whether the angle was solved before.
     closes: whether the sweep is complete with it.
+    known: to start from where it is solved again; None where it was loaded from a file.
     """
 
     angle: float
@@ -74,6 +77,7 @@ class SweptPosition:
     state: SweepState
     again: bool = False
     closes: bool = False
+    known: KnownSolution | None = None
 
     def of(self, coefficients: Bools) -> SweptPosition:
         """The same for some of its friction coefficients, (frictions,) bool."""
@@ -84,7 +88,12 @@ def joined(parts: Sequence[SweptPosition]) -> SweptPosition:
     """A position of which each part has some friction coefficients."""
     results = tuple(result for part in parts for result in part.results)
     histories = tuple(history for part in parts for history in part.state.histories)
-    return replace(parts[0], results=results, state=replace(parts[0].state, histories=histories))
+    state = replace(parts[0].state, histories=histories)
+    known = [part.known for part in parts if part.known is not None]
+    frictional = {μ: guess for each in known for μ, guess in each.frictional.items()}
+    return replace(
+        parts[0], results=results, state=state, known=replace(known[0], frictional=frictional) if known else None
+    )
 
 
 @dataclass(frozen=True)
@@ -112,28 +121,29 @@ def initial_state(frictions: Sequence[float]) -> SweepState:
 
 def sweep_pitch(
     model: GearModel, pitch: Pitch, frictions: Sequence[float], state: SweepState, begin: int = 0,
-    common: SharedPosition | None = None,
+    common: SharedPosition | None = None, known: Mapping[int, KnownSolution] = NONE_KNOWN,
 ) -> Iterator[SweptPosition]:  # fmt: skip
     """Solves pitch.angles[begin:] in turn. A position that fails is approached by up to four halvings of the step.
 
     common: what the coefficients share of the first position, None where it is to be searched.
+    known: number of a position -> how it was solved before.
 
     Raises NotConverged, with the angle and the friction coefficient.
     """
     span = float(np.diff(pitch.angles).mean()) if len(pitch.angles) > 1 else 2.0 * np.pi / model.pair.pinion.z / 20
     for k in range(begin, len(pitch.angles)):
-        position = _advanced(model, frictions, state, pitch.angles[k], span, HALVINGS, common)
+        position = _advanced(model, frictions, state, pitch.angles[k], span, HALVINGS, common, known.get(k))
         state, common = position.state, None
         yield position
 
 
 def _advanced(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float, halvings: int,
-    common: SharedPosition | None = None,
+    common: SharedPosition | None = None, known: KnownSolution | None = None,
 ) -> SweptPosition:  # fmt: skip
     """The position at an angle, reached in up to 2^halvings steps. Raises NotConverged."""
     try:
-        return _position(model, frictions, state, angle, span, common)
+        return _position(model, frictions, state, angle, span, common, known)
     except (NotConverged, SearchError) as failure:
         last = next((history.stand.angle for history in state.histories if history is not None), angle - span)
         if halvings == 0:
@@ -147,12 +157,12 @@ def _advanced(
 
 def _position(
     model: GearModel, frictions: Sequence[float], state: SweepState, angle: float, span: float,
-    shared: SharedPosition | None,
+    shared: SharedPosition | None, known: KnownSolution | None,
 ) -> SweptPosition:  # fmt: skip
     """The position at an angle, in one step. Raises NotConverged, SearchError."""
     begin = time.perf_counter()
     if shared is None:
-        shared = shared_position(model, angle, state.extra, frictions, state.patch)
+        shared = shared_position(model, angle, state.extra, frictions, state.patch, known=known)
     histories, span = _histories(model, shared, frictions, state, span)
     jumps = _previous_jumps(shared, histories)
     spent = time.perf_counter() - begin
@@ -161,7 +171,8 @@ def _position(
     solved: list[Solved] = []
     for μ, history, jump in zip(frictions, histories, jumps, strict=True):
         begin = time.perf_counter()
-        result, state_at_μ = solve_position(model, shared, μ, jump, span, solved)
+        near = known.frictional.get(μ) if known is not None else None
+        result, state_at_μ = solve_position(model, shared, μ, jump, span, solved, near)
         solved.append(state_at_μ)
         contact, equilibrium = shared.contact, state_at_μ.equilibrium
         if model.deflected:
@@ -172,7 +183,10 @@ def _position(
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
     after = SweepState(shared.contact.stand.extra, tuple(updated), shared.patch)
-    return SweptPosition(angle, tuple(results), after)
+    guesses = {each.friction: InitialGuess.of(each.equilibrium) for each in solved}
+    return SweptPosition(
+        angle, tuple(results), after, known=KnownSolution(shared.searched, InitialGuess.of(shared.smooth), guesses)
+    )
 
 
 def _histories(

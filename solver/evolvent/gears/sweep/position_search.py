@@ -7,14 +7,15 @@ coefficients share what is found.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from evolvent.contact.newton.contact_equations import CondensedSystem
-from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
+from evolvent.contact.newton.equilibrium import Equilibrium, InitialGuess, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.fem.parallel.cores import Threads
 from evolvent.gears.contact.contact_geometry import ContactGeometry
@@ -52,6 +53,20 @@ class SearchedAt:
 
 
 @dataclass(frozen=True)
+class KnownSolution:
+    """How a position was solved: where it is solved again, with another friction history, it starts from there.
+
+    searched: where its flanks were searched.
+    smooth: the solution without friction.
+    frictional: that with each friction coefficient.
+    """
+
+    searched: SearchedAt
+    smooth: InitialGuess
+    frictional: Mapping[float, InitialGuess]
+
+
+@dataclass(frozen=True)
 class SharedPosition:
     """What all friction coefficients of a position share.
 
@@ -59,14 +74,17 @@ class SharedPosition:
     system: their condensed system.
     smooth: the frictionless equilibrium.
     unsearched: where flanks might touch outside the window.
-    stiffness: of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D].
     """
 
     contact: GearContact
     system: CondensedSystem
     smooth: Equilibrium
     unsearched: tuple[UnsearchedOverlap, ...]
-    stiffness: float
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D]."""
+        return tangent_stiffness(normal_part(self.system), self.smooth)
 
     @property
     def patch(self) -> ContactPatch:
@@ -81,7 +99,7 @@ class SharedPosition:
 
 def shared_position(
     model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: ContactPatch | None,
-    threads: Threads = nullcontext,
+    threads: Threads = nullcontext, known: KnownSolution | None = None,
 ) -> SharedPosition:  # fmt: skip
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
@@ -90,12 +108,15 @@ def shared_position(
     frictions: the coefficients to come; without one that is not 0 only normal components are condensed.
     before: the contact patch of the last position, None where there is none.
     threads: in which compliances are put together.
+    known: how it was solved before, None where it was not; it replaces extra and before.
 
     The frictionless state is exact also where it is but a start: the search is made where it leaves the gears, which
     must not depend on which other coefficients there are. Raises NotConverged, SearchError.
     """
     normal_only = not any(map(model.has_friction_terms, frictions))
     stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
+    if known is not None:
+        stand, half_width = Stand(model.pair, angle, known.searched.extra), known.searched.half_width
     for _ in range(ROUNDS):
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:
@@ -104,8 +125,8 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
-        normal = normal_part(system)
-        smooth = frictionless(normal, _initially_pressed(contact.geometry, before))
+        near = None if known is None else known.smooth
+        smooth = frictionless(normal_part(system), _initially_pressed(contact.geometry, before), near)
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(
@@ -117,10 +138,10 @@ def shared_position(
         elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
             unsearched = unsearched_overlaps(contact.geometry, model.teeth)
             if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) == 0.0:
-                return SharedPosition(contact, system, smooth, unsearched, tangent_stiffness(normal, smooth))
+                return SharedPosition(contact, system, smooth, unsearched)
             half_width = np.inf
         stand = _at_a_multiple(model, stand.turned(model.load.on, float(smooth.motion[0])))
-        before = ContactPatch.of(contact.geometry, smooth.traction[:, 0])
+        before, known = ContactPatch.of(contact.geometry, smooth.traction[:, 0]), None
     raise NotConverged(
         f"pinion at {np.degrees(angle):.3f}°: the free rotation moves {1e3 * shift:.2f} µm after {ROUNDS} searches"
     )
@@ -132,10 +153,8 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
     contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
     normal_only = not any(map(model.has_friction_terms, frictions))
     system = contact.system(model.load.on, model.load.torque, normal_only)
-    normal = normal_part(system)
-    smooth = frictionless(normal, _initially_pressed(contact.geometry, None))
-    unsearched = unsearched_overlaps(contact.geometry, model.teeth)
-    return SharedPosition(contact, system, smooth, unsearched, tangent_stiffness(normal, smooth))
+    smooth = frictionless(normal_part(system), _initially_pressed(contact.geometry, None))
+    return SharedPosition(contact, system, smooth, unsearched_overlaps(contact.geometry, model.teeth))
 
 
 def free_rotation(model: GearModel, equilibrium: Equilibrium) -> tuple[float, float]:

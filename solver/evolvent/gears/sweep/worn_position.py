@@ -9,7 +9,6 @@ from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.contact.overlap_check import NEARLY, overlap_outside
-from evolvent.gears.contact.tangent_stiffness import tangent_stiffness
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
 from evolvent_meshes.arrays import Bools
@@ -30,8 +29,7 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = No
     """
     contact = shared.contact.with_wear(model.bodies)
     system = replace(shared.system, operator=contact.operator)
-    normal = normal_part(system)
-    smooth = _first_solution(normal, [pressed, shared.smooth.traction[:, 0] > 0.0])
+    smooth = _first_solution(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
     if smooth is None:
         return None
     near = abs(free_shift(model, smooth)) <= STALE * model.pair.pinion.normal_module
@@ -39,7 +37,7 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = No
     rotation = free_rotation(model, smooth)
     if not inside or overlap_outside(contact, shared.unsearched, smooth.force, rotation) != 0.0:
         return None
-    return SharedPosition(contact, system, smooth, shared.unsearched, tangent_stiffness(normal, smooth))
+    return SharedPosition(contact, system, smooth, shared.unsearched)
 
 
 def _first_solution(system: CondensedSystem, starts: Sequence[Bools | None]) -> Equilibrium | None:

@@ -41,7 +41,7 @@ def test_a_position_that_cannot_be_prepared_is_left_to_each_rank(
     monkeypatch.setattr(parallel_sweep, "shared_position", failing)
     comm, frictions = MPI.COMM_SELF, [0.1]
     sweep = parallel_sweep._RankedSweep(
-        cast(GearModel, None), Pitch((0.0,)), frictions, comm, Cores(comm), broadcasts=()
+        cast(GearModel, None), Pitch((0.0,)), frictions, {}, comm, Cores(comm), broadcasts=()
     )
     raised: type[Exception] = error
     assert sweep._prepared(range(1), initial_state(frictions)) is None

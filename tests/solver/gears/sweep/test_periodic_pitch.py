@@ -96,6 +96,13 @@ def test_order_of_positions_solved_again(cold: list[SweptPosition]) -> None:
     assert all(a is b.results[0] for a, b in zip(renewed, cold[POSITIONS:], strict=True))
 
 
+def test_positions_solved_again_start_from_their_last_solution(cold: list[SweptPosition]) -> None:
+    """Only the friction history has changed: each takes fewer iterations than the first time, as the state without
+    friction is there already."""
+    counts = [position.results[0].iterations for position in cold]
+    assert all(after < before for before, after in zip(counts, counts[POSITIONS:]))
+
+
 def test_nothing_is_solved_again_without_friction(helical: GearModel) -> None:
     """There is no history that it depends on."""
     assert [position.closes for position in solved(helical, 0.0)] == [False] * (POSITIONS - 1) + [True]

@@ -156,14 +156,13 @@ class _Block:
 def _of_components(block: sp.csr_matrix, node: Ints, rows: Ints, columns: Ints) -> sp.csr_matrix:
     """(s, u) compliance between unknowns from that of normal components (s, nodes): none between different components,
     more between tangential ones. node: (u,); rows, columns: their components."""
-    parts = []
-    for axis in range(int(columns.max()) + 1):
-        here = sp.diags(np.where(rows == axis, TANGENTIAL if axis else 1.0, 0.0).astype(np.float32))
-        of_axis = np.flatnonzero(columns == axis)
-        place = sp.csr_matrix(
-            (np.ones(len(of_axis), dtype=np.float32), (node[of_axis], of_axis)), (block.shape[1], len(columns))
-        )
-        parts.append(here @ block @ place)
-    result = sum(parts[1:], parts[0]).tocsr()
-    result.eliminate_zeros()
-    return result
+    parts, order = [], []
+    for axis in np.unique(rows):
+        of_axis, here = np.flatnonzero(columns == axis), np.flatnonzero(rows == axis)
+        part = block[here][:, node[of_axis]]
+        values = part.data * np.float32(TANGENTIAL if axis else 1.0)
+        parts.append(sp.csr_matrix((values, of_axis[part.indices], part.indptr), (len(here), len(columns))))
+        order.append(here)
+    if len(parts) == 1:
+        return parts[0]
+    return sp.vstack(parts, format="csr")[np.argsort(np.concatenate(order))]

@@ -1,7 +1,7 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, two-level, all (the
-default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
+PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, level-sizes, two-level, all
+(the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
 
@@ -87,6 +87,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "bars": Measurement.bars,
     "spacing": Measurement.spacing,
     "wear": Measurement.wear,
+    "level-sizes": _table("level_sizes", lambda given: scaling.level_rows(given.size(scaling), given.folder)),
     "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
 }
 

@@ -2,7 +2,8 @@
 
 python -m evidence.benchmarks.gears.pitch OUT.json ELEMENTS LEVEL POSITIONS MU[,MU...] [key=value ...]
 
-POSITIONS 0: both sectors are only assembled and factored, each once, as a program without condensation begins.
+POSITIONS 0: both sectors are only assembled and factored, each once, as a program without condensation begins. One
+mesh a sector, unless levels=true is among the settings.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import resource
 import sys
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -28,6 +29,7 @@ from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.sector_sizes import one_mesh_sizes
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
 from evolvent.run.context import peak_memory_MB
@@ -36,12 +38,15 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 
+LEVELS = "levels=true"
+
 
 @dataclass(frozen=True)
 class PitchFacts:
     """What a pitch took, on the slowest rank."""
 
     dofs: int
+    """Of both sectors, of one fine mesh each: the equivalent ones where flanks have levels."""
     ranks: int
     start: float
     """CPU time of Python and its imports [s]."""
@@ -100,10 +105,12 @@ def read_facts(path: Path) -> PitchFacts:
     return PitchFacts(**values)
 
 
-def solved(scene: Scene) -> PitchFacts:
-    """The pitch of a scene, solved in this process."""
+def solved(scene: Scene, levels: bool = False) -> PitchFacts:
+    """The pitch of a scene, solved in this process. levels: of the flanks, whatever the size."""
     comm, start = MPI.COMM_WORLD, time.process_time()
-    preparation = prepare_model(gear_problem(scene), comm)
+    problem = gear_problem(scene)
+    problem = replace(problem, mesh=replace(problem.mesh, two_level=levels))
+    preparation = prepare_model(problem, comm)
     pitch, state = pitch_of(scene), initial_state(scene.contact.friction)
     seconds: list[float] = []
     swept: list[SweptPosition] = []
@@ -114,7 +121,7 @@ def solved(scene: Scene) -> PitchFacts:
         begin = time.perf_counter()
     assemble_share = preparation.assemble_seconds / (preparation.assemble_seconds + preparation.condense_seconds)
     return PitchFacts(
-        dofs=model_dofs(preparation.model),
+        dofs=sum(size.dofs for size in one_mesh_sizes(problem)) if levels else model_dofs(preparation.model),
         ranks=comm.size,
         start=start,
         mesh=preparation.mesh_seconds,
@@ -154,9 +161,10 @@ def _cpu() -> float:
 def main() -> None:
     dolfinx_compat.silence_logs()
     out, elements, level, positions, frictions, *settings = sys.argv[1:]
-    wanted = f"contact.friction=[{frictions}]", f"sweep.positions={max(2, int(positions))}"
-    scene = pair_scene(float(elements), *wanted, *settings, level=level)
-    facts = solved(scene) if int(positions) else factored(scene)
+    wanted = [f"contact.friction=[{frictions}]", f"sweep.positions={max(2, int(positions))}"]
+    wanted += [each for each in settings if each != LEVELS]
+    scene = pair_scene(float(elements), *wanted, level=level)
+    facts = solved(scene, LEVELS in settings) if int(positions) else factored(scene)
     if MPI.COMM_WORLD.rank == 0:
         Path(out).write_text(json.dumps(asdict(facts)))
 

@@ -10,7 +10,7 @@ from statistics import median
 
 import numpy as np
 
-from evidence.benchmarks.gears.pitch import PitchFacts, pitch_cost
+from evidence.benchmarks.gears.pitch import LEVELS, PitchFacts, pitch_cost
 from evidence.benchmarks.gears.three_teeth import FRICTION
 from evidence.processes import RunFailed
 from evolvent_meshes.arrays import Floats
@@ -20,11 +20,12 @@ SEVEN, STRONGEST = "0.07,0.08,0.11,0.12,0.15,0.20,0.30", "0.30"
 
 @dataclass(frozen=True)
 class SizeRow:
-    """A pitch of two positions at one friction coefficient, on one mesh of both sectors."""
+    """A pitch of two positions at one friction coefficient, on one mesh of each sector or with levels on its flank."""
 
     elements: float
     """Across the contact width 2b."""
     dofs: int
+    """Of one fine mesh of both sectors, also with levels."""
     assemble: float = nan
     """Once [s], as `condense`."""
     condense: float = nan
@@ -64,6 +65,8 @@ class ScalingSizes:
 
     sizes: tuple[float, ...]
     """Elements across 2b; the last one is the largest that 24 GB hold, and its row says so where there is less."""
+    levels: tuple[float, ...]
+    """Elements across 2b of flanks with levels."""
     ratio: float
     """Elements across 2b of the ratios."""
     positions: int
@@ -72,15 +75,24 @@ class ScalingSizes:
     ranks_elements: float
 
 
-FULL = ScalingSizes((1.0, 1.4, 2.0, 2.6, 3.2, 3.5), 1.7, 40, "standard", 3.0)
-SMALL = ScalingSizes((1.0, 1.2), 1.0, 4, "quick", 1.0)
+FULL = ScalingSizes((1.0, 1.4, 2.0, 2.6, 3.2, 3.5), (1.0, 1.7, 3.0, 4.5, 6.0), 1.7, 40, "standard", 3.0)
+SMALL = ScalingSizes((1.0, 1.2), (1.0,), 1.0, 4, "quick", 1.0)
 
 
 def size_rows(sizes: ScalingSizes, folder: Path) -> Iterator[SizeRow]:
-    """Up to the first size that fails, whose row says why."""
-    for elements in sizes.sizes:
+    """One fine mesh of each sector, up to the first size that fails, whose row says why."""
+    return _size_rows(sizes.sizes, folder)
+
+
+def level_rows(sizes: ScalingSizes, folder: Path) -> Iterator[SizeRow]:
+    """The same with levels."""
+    return _size_rows(sizes.levels, folder, LEVELS)
+
+
+def _size_rows(sizes: tuple[float, ...], folder: Path, *settings: str) -> Iterator[SizeRow]:
+    for elements in sizes:
         try:
-            _, facts = pitch_cost(folder, elements, 2)
+            _, facts = pitch_cost(folder, elements, 2, *settings)
         except RunFailed as failure:
             yield SizeRow(elements, 0, note=failure.reason)
             return

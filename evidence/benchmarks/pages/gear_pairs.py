@@ -15,6 +15,7 @@ from evidence.benchmarks.pages import figures
 from evidence.benchmarks.pages.section import PageSection, verdict
 from evidence.tables import Column, Table
 
+LEVELS_BAR = 1.2
 SPUR_BAR = 20.0
 WEAR_BAR = 5.0
 PITCHES = """Wall seconds of the whole process without meshing: for a run of one position, for the pitch, and for one
@@ -31,6 +32,13 @@ def _power_laws(rows: Sequence[SizeRow]) -> list[str]:
     names = {"memory_MB": "memory", "condense": "condensing", "position": "one more position"}
     laws = [f"{text} ~ dofs^{exponent(dofs, figures.column(solved, name)):.2f}" for name, text in names.items()]
     return ["; ".join(laws) + "."]
+
+
+def _levels_said(rows: Sequence[SizeRow]) -> list[str]:
+    return [
+        "The same with levels on the flanks; dofs are those of one fine mesh of both sectors that has the same cells "
+        f"in contact. Wanted of condensing: at most dofs^{LEVELS_BAR:g}."
+    ]
 
 
 def _profile_said(rows: Sequence[ProfileRow]) -> list[str]:
@@ -153,6 +161,10 @@ COSTS: tuple[PageSection[Any], ...] = (
     ),
     PageSection("A pitch", "ratios", RATIO_TABLE),
     PageSection("Size", "sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size", after=_power_laws),
+    PageSection(
+        "", "level_sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size, with levels", words=_levels_said,
+        after=_power_laws,
+    ),
     PageSection("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
     PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
     PageSection("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),

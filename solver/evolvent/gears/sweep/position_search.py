@@ -125,8 +125,10 @@ def shared_position(
                 "may bend the teeth further than the search looks: lower the torque"
             )
         system = contact.system(model.load.on, model.load.torque, normal_only, threads)
-        near = None if known is None else known.smooth
-        smooth = frictionless(normal_part(system), _initially_pressed(contact.geometry, before), near)
+        if known is None:
+            smooth = frictionless(normal_part(system), _initially_pressed(contact.geometry, before))
+        else:
+            smooth = frictionless(normal_part(system), near=known.smooth)
         shift = free_shift(model, smooth)
         if contact.too_deep:
             raise NotConverged(

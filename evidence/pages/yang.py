@@ -6,6 +6,7 @@ from pathlib import Path
 
 from evidence.pages.yang_figures import kept
 from evidence.tables import markdown
+from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, LEVELS_PER_WIDTH
 from evolvent.results.archive.error_bar_data import plus_minus
 
 POINTS = Path(__file__).with_name("yang_points.md")
@@ -32,12 +33,17 @@ def accuracy(docs: Path) -> str:
 
 def levels(docs: Path) -> str:
     """What to expect of each level."""
+    usual, levelled = ELEMENTS_PER_WIDTH, LEVELS_PER_WIDTH
     return markdown(
         ("level", "elements across 2b_H", "peak pressure compared with Hertz for its own line load"),
         [
-            ("quick", "1.7", f"{beside_hertz(docs, 'quick')} ([Yang's pair](yang2022.md), mid-face)"),
-            ("standard", "3", f"{beside_hertz(docs, 'standard')} (the same)"),
-            ("fine", "6", "1 % (measured on the spur pair)"),
+            ("quick", f"{usual['quick']:g}", f"{beside_hertz(docs, 'quick')} ([Yang's pair](yang2022.md), mid-face)"),
+            (
+                "standard",
+                f"{levelled['standard']:g} with [levels](two_level.md), else {usual['standard']:g}",
+                f"{beside_hertz(docs, 'standard')} (the same, with levels)",
+            ),
+            ("fine", f"{usual['fine']:g}", "1 % (measured on the spur pair)"),
         ],
     )
 

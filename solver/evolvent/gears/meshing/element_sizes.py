@@ -19,6 +19,10 @@ from evolvent_meshes.sector.section import SectorResolution
 ELEMENTS_PER_WIDTH = {"quick": 1.7, "standard": 3.0, "fine": 6.0}
 """Elements across the Hertz width 2b_H. Fitted peak against Hertz at mid-face of the Yang pair, median and nine in ten:
 quick 4 and 13 %, standard 0.3 and 2.6 %."""
+LEVELS_PER_WIDTH = {"quick": 1.7, "standard": 3.75, "fine": 6.0}
+"""The same on flanks with levels. Yang's pair with 3, 3.75 and 4.5 elements: nine in ten peaks are within 2.1, 1.4 and
+1.2 % of Hertz, the peak-to-peak transmission error lies 1.2, 0.2 and 0 % below that with 4.5, a position takes 1, 1.4
+and 1.8 times as long."""
 STIFF_PINION, STIFF_ELEMENTS = 5.0, 3.0
 """Where the pinion, which carries the pressure, is so many times as stiff as the wheel, the contact is at least so many
 elements wide. Largest pressure of a spur pair 20/40 over that of a mesh twice as fine, at 1.7 elements: ratio 4.7 1.04,
@@ -48,12 +52,16 @@ FORE_LAND = 1.2
 """The fine flank starts so many half-widths below the start of active profile, for the patch has a width."""
 
 
-def elements_per_contact_width(problem: GearProblem) -> float:
-    """Elements across 2b_H: as given, or the level's; more on a pinion much stiffer than its wheel."""
+def elements_per_contact_width(problem: GearProblem, levels: bool = False) -> float:
+    """Elements across 2b_H: as given, or the mesh level's; more on a pinion much stiffer than its wheel.
+
+    levels: whether the flanks have levels of their own.
+    """
     given = problem.mesh.elements_per_contact_width
     if given is not None:
         return given
-    return max(ELEMENTS_PER_WIDTH[problem.mesh.level], STIFF_ELEMENTS if has_stiff_pinion(problem) else 0.0)
+    usual = LEVELS_PER_WIDTH if levels else ELEMENTS_PER_WIDTH
+    return max(usual[problem.mesh.level], STIFF_ELEMENTS if has_stiff_pinion(problem) else 0.0)
 
 
 def has_stiff_pinion(problem: GearProblem) -> bool:
@@ -93,10 +101,10 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
     return _fine_everywhere(resolution) if problem.options.fine_body else resolution
 
 
-def flank_needs(problem: GearProblem, member: Member) -> FlankNeeds:
-    """What the contact of the pinion or the wheel needs of its flank's mesh."""
+def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> FlankNeeds:
+    """What the contact of the pinion or the wheel needs of its flank's mesh, with levels of its own or without."""
     estimate, gear = problem.hertz_estimate, problem.pair.gears[member]
-    count = elements_per_contact_width(problem)
+    count = elements_per_contact_width(problem, levels)
     width = ContactWidth(estimate, member)
     start = _flank_start(gear, width)
     roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)

@@ -24,7 +24,7 @@ BODY_ROWS = 13
 """Coarse rows of a flank, roughly; each level halves them."""
 BODY_LAYER = 0.45
 """Largest height of a coarse layer along the face, in normal modules."""
-SHEAR = {"quick": 0.425, "standard": 0.425, "fine": 0.425}
+SHEAR = {"quick": 0.425, "standard": 0.55, "fine": 0.425}
 """By how many elements of the finest level a layer may shear the pressure ridge, on average along the profile."""
 
 
@@ -53,7 +53,7 @@ class LevelledSector:
 def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     """The levels of the pinion's or the wheel's flank: on the finest one the elements are as long as the contact needs
     them, and the ridge is sheared by `SHEAR` elements in a layer."""
-    needs, gear, level = flank_needs(problem, member), problem.pair.gears[member], problem.mesh.level
+    needs, gear, level = flank_needs(problem, member, levels=True), problem.pair.gears[member], problem.mesh.level
     count = max(1, round(math.log2(needs.rows / BODY_ROWS)))
     rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 2**count / 3))
     wanted = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR[level]))

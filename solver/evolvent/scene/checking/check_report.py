@@ -224,15 +224,16 @@ def _wear_rows(wear: WearSection, estimate: HertzEstimate) -> list[Row]:
 def _cost_rows(scene: Scene) -> list[Row]:
     problem = gear_problem(scene)
     rows, layers = zip(*(flank_cells(problem, member) for member in Member))
+    is_levelled = is_two_level(problem)
     levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
-        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem)),
+        _one("elements across the contact width 2b_H", "", "", 1, elements_per_contact_width(problem, is_levelled)),
         Row("elements along the loaded flank", "", "", tuple(map(counted, rows))),
         Row("layers over the face width", "", "", ("plane",) * 2 if problem.is_plane else tuple(map(counted, layers))),
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
-        *(levels if is_two_level(problem) else []),
+        *(levels if is_levelled else []),
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),

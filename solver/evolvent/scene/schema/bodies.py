@@ -61,7 +61,8 @@ class MeshSection(SceneSection):
         default="standard",
     )
     elements_per_contact_width: float | None = key(
-        "elements across the Hertz width 2b_H; quick 1.7, standard 3, fine 6 by default, on a stiff pinion at least 3",
+        "elements across the Hertz width 2b_H; quick 1.7, standard 3 (3.75 on [flanks with levels](two_level.md)), "
+        "fine 6 by default, on a stiff pinion at least 3",
         f"a number from {FEWEST_ELEMENTS:g} to 24",
         "delete the key for the level's own",
         default=None,

@@ -23,7 +23,7 @@ def problem(level: Level, torque: float = 250e3) -> GearProblem:
 def test_finest_level_resolves_the_contact(level: Level, member: Member) -> None:
     """Rows at least as many as needed within a fifth, layers so that the ridge is sheared as wanted within a fifth, and
     a first cell below the flank that is as deep as wanted within a factor of 1.5."""
-    sector, needs = levelled_sector(problem(level), member), flank_needs(problem(level), member)
+    sector, needs = levelled_sector(problem(level), member), flank_needs(problem(level), member, levels=True)
     rows, layers = sector.coarse.profile_elements, sector.coarse.face_elements
     depth = sector.coarse.layer_depths[0]
     for each in sector.levels:

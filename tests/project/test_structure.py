@@ -56,7 +56,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "gears.sweep": (
         "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
     ),
-    "gears.pressure": ("meshes", "meshes.gears", "fem", "gears", "gears.sweep"),
+    "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
     "gears.solution": (
         "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
         "gears.pressure",

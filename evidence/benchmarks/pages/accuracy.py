@@ -78,10 +78,9 @@ def _levels_said(rows: Sequence[AccuracyRow]) -> list[str]:
     return [
         "`MeshSettings(two_level=True)` against exact condensation of the very same cells, and its fitted peak "
         "pressures against Hertz' for the line load of each slice; slices between the tip-edge zones, *beside face "
-        "ends* those nearer than one normal module to one. Hertz' pressure is that for the curvatures on the nominal "
-        "contact line and for those where the loaded contact lies on both flanks: teeth bend, and near the pinion's "
-        f"root that changes the curvature by several per cent. **{sum(row.met for row in barred)} of {len(barred)}** "
-        "bars are met."
+        "ends* those nearer than one normal module to one. Hertz' pressure is that for the curvatures where the loaded "
+        "contact lies on both flanks: teeth bend, and near the pinion's root that changes it by several per cent. "
+        f"**{sum(row.met for row in barred)} of {len(barred)}** bars are met."
     ]
 
 

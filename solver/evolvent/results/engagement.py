@@ -7,7 +7,7 @@ three or four pairs in contact over a pitch make one curve over the whole engage
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -167,16 +167,30 @@ def _rows(run: RunData, k: int, solved: SolvedPosition, inner: tuple[float, floa
     ]
 
 
-def with_hertz(run: RunData, at_edges: bool = False) -> RunData:
-    """The run with Hertz' peak pressure for each slice's line load in place of the fitted peak. at_edges: also where a
-    slice bears on a tip edge."""
+def with_hertz(run: RunData) -> RunData:
+    """The run with Hertz' peak pressure for each slice's line load in place of the fitted peak."""
+    return _with_cuts(run, lambda cut: replace(cut, peak=np.where(cut.edge, np.nan, cut.hertz)))
 
-    def replaced(solved: SolvedPosition) -> SolvedPosition:
-        cut = solved.cut
-        peak = cut.hertz if at_edges else np.where(cut.edge, np.nan, cut.hertz)
-        return replace(solved, cut=replace(cut, peak=peak))
 
-    return replace(run, positions=tuple(tuple(replaced(solved) for solved in each) for each in run.positions))
+def with_line_loads(run: RunData) -> RunData:
+    """The run with peak pressures that depend on the line loads alone, in slices on tip edges too: Hertz' with the
+    curvatures on the nominal contact line."""
+
+    def replaced(cut: Slices) -> Slices:
+        nominal = cut.on_nominal_lines(run.pair)
+        return replace(nominal, peak=nominal.hertz)
+
+    return _with_cuts(run, replaced)
+
+
+def _with_cuts(run: RunData, changed: Callable[[Slices], Slices]) -> RunData:
+    """The run with other slices at all positions."""
+    return replace(
+        run,
+        positions=tuple(
+            tuple(replace(solved, cut=changed(solved.cut)) for solved in each) for each in run.positions
+        ),
+    )
 
 
 def largest_peak(run: RunData, index: int) -> LinePeak:

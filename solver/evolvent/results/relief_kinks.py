@@ -22,6 +22,7 @@ from math import pi, sqrt
 import numpy as np
 
 from evolvent.fem.material import contact_modulus
+from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.engagement import EngagementPeak
 from evolvent.results.run_data import RunData
 from evolvent_meshes.gears.flank import MICROMETRE
@@ -57,14 +58,13 @@ def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
         return []
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     modulus = contact_modulus(*run.scene.materials())
-    at = np.concatenate([each[index].cut.roll_distance for each in run.positions])
-    hertz = np.concatenate([each[index].cut.hertz for each in run.positions])
+    cut = Slices.joined([each[index].cut for each in run.positions])
     kinks = []
     for ξ, angle, roll in _kinks(run.pair):
-        beside = hertz[np.abs(at - ξ) <= step]
-        p0 = float(beside.max(initial=0.0))
+        hertz = np.where(np.abs(cut.roll_distance - ξ) <= step, cut.hertz, 0.0)
+        p0 = float(hertz.max(initial=0.0))
         if run.inner_path[0] < ξ < run.inner_path[1] and p0 > 0.0:
-            radius = float(run.pair.relative_curvature_radius(ξ))
+            radius = float(cut.radius[np.argmax(hertz)])
             half_range = roll * radius * (2.0 * p0 / modulus + angle)  # Hertz' half-width, and the turn of the normal
             kinks.append(ReliefKink(ξ, half_range, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
     return kinks

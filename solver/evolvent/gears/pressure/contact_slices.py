@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from evolvent.contact.hertz import line_peak_pressure
 from evolvent.fem.material import Material, contact_modulus
+from evolvent.gears.contact.contact_points import ContactPoints
+from evolvent.gears.pressure.contact_curvature import nominal_radius, radius_in_place
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Bools, Floats, Ints
+from evolvent_meshes.gears.pair import GearPair
 
 FEWEST_POINTS = 5
 """Points under pressure that the fit of a half-ellipse needs."""
@@ -38,7 +42,10 @@ class Slices:
     half_width: Floats
     """(n,) half-width of the fitted half-ellipse across the contact line [mm]; NaN on a tip edge."""
     hertz: Floats
-    """(n,) Hertz' p0 for the slice's line load and the exact curvatures [MPa]."""
+    """(n,) Hertz' p0 for the slice's line load and `radius` [MPa]."""
+    radius: Floats
+    """(n,) relative radius of curvature across the contact line [mm], for involutes that touch where the centre of the
+    slice's pressure lies; on a tip edge, which has no curvature, that on the nominal contact line."""
     edge: Bools
     """(n,) bool, whether the slice bears on a tip edge."""
 
@@ -46,6 +53,11 @@ class Slices:
     def joined(parts: Sequence[Slices]) -> Slices:
         """The slices of several positions in one."""
         return Slices(*(np.concatenate([getattr(cut, each.name) for cut in parts]) for each in fields(Slices)))
+
+    def on_nominal_lines(self, pair: GearPair) -> Slices:
+        """With Hertz' p0 for the curvatures on the nominal contact lines, which depends on the line loads alone."""
+        radius = nominal_radius(pair, self.roll_distance)
+        return replace(self, hertz=self.hertz * np.sqrt(self.radius / radius), radius=radius)
 
 
 @dataclass(frozen=True)
@@ -66,14 +78,20 @@ class ToothSummary:
 
 def slices(result: PositionResult, heights: Floats, materials: tuple[Material, Material]) -> Slices:
     """The slices of a position. heights: (n,) z of the pinion flank's nodes [mm]; materials: (pinion, wheel)."""
-    edges = layer_edges(heights)
-    c = result.contact
-    layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, len(edges) - 2)
-    modulus = contact_modulus(*materials)
-    keys = np.unique(np.column_stack([c.tooth, layer]), axis=0)
-    rows = [_slice(result, (c.tooth == t) & (layer == k), edges[k : k + 2], modulus) for t, k in keys]
-    columns = list(zip(*rows)) if rows else [()] * 9
-    return Slices(keys[:, 0], *(np.array(column) for column in columns))
+    c, edges = result.contact, layer_edges(heights)
+    layers = len(edges) - 1
+    layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, layers - 1)
+    keys, number = np.unique(c.tooth * layers + layer, return_inverse=True)
+    tooth, layer = np.divmod(keys, layers)
+    edge = np.bincount(number, c.edge, len(keys)) > 0.0
+    width = np.diff(edges)[layer]
+    force = np.bincount(number, c.pressure * c.weights, len(keys))
+    load = force * np.cos(result.stand.pair.pinion.base_helix_angle) / width
+    ξ, radius = _places(result, number, edge)
+    hertz = line_peak_pressure(np.maximum(load, 0.0), radius, contact_modulus(*materials))
+    largest, peak, half = _fits(c, number, load, edge)
+    z = 0.5 * (edges[:-1] + edges[1:])[layer]
+    return Slices(tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge)
 
 
 def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> Bools:
@@ -90,17 +108,29 @@ def layer_edges(heights: Floats) -> Floats:
     return np.array([-0.5, 0.5]) if len(rows) == 1 else rows[::2]
 
 
-def _slice(result: PositionResult, here: Bools, ends: Floats, modulus: float) -> tuple[float | bool, ...]:
-    pair, c = result.stand.pair, result.contact
-    p, w = c.pressure[here], c.weights[here]
-    width = float(ends[1] - ends[0])
-    load = float(np.sum(p * w)) / (width / np.cos(pair.pinion.base_helix_angle))
-    ξ = float(np.average(c.roll_distance[here], weights=p * np.abs(w)))
-    edge = bool(np.any(c.edge[here]))
-    ρ = float(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
-    peak, half = (np.nan, np.nan) if edge else fitted_peak(c.across[here], p, w, load)
-    hertz = float(np.sqrt(max(load, 0.0) * modulus / (np.pi * ρ)))
-    return float(ends.mean()), ξ, width, load, peak, float(p.max()), half, hertz, edge
+def _places(result: PositionResult, number: Ints, edge: Bools) -> tuple[Floats, Floats]:
+    """`Slices.roll_distance` and `Slices.radius`, from means of the contact points weighted with their forces. number:
+    (q,) slice of each point; edge: (n,)."""
+    c, pair = result.contact, result.stand.pair
+    force = c.pressure * np.abs(c.weights)
+    whole = np.bincount(number, force, len(edge))
+    columns = (c.roll_distance, c.across, c.opposite)
+    ξ, pinion, wheel = (np.bincount(number, force * column, len(edge)) / whole for column in columns)
+    on_line, in_place = nominal_radius(pair, ξ), radius_in_place(pair, ξ, (pinion, wheel))
+    return ξ, np.where(edge | np.isnan(in_place), on_line, in_place)
+
+
+def _fits(c: ContactPoints, number: Ints, load: Floats, edge: Bools) -> Floats:
+    """(3, n), the largest pressure of each slice and, away from tip edges, its `fitted_peak`. number, edge: see
+    `_places`; load: (n,) [N/mm]."""
+    order = np.argsort(number, kind="stable")
+    points = np.split(order, np.searchsorted(number[order], np.arange(1, len(load))))
+    largest = [c.pressure[i].max() for i, _ in zip(points, load)]
+    fits = [
+        (np.nan, np.nan) if on_edge else fitted_peak(c.across[i], c.pressure[i], c.weights[i], F)
+        for i, F, on_edge in zip(points, load, edge)
+    ]
+    return np.vstack([largest, np.array(fits).reshape(-1, 2).T])
 
 
 def fitted_peak(s: Floats, p: Floats, w: Floats, load: float) -> tuple[float, float]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.gears.pressure.contact_curvature import nominal_radius
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.tip_zones import AT_LIMIT
 from evolvent_meshes.arrays import Bools, Floats, Ints
@@ -121,16 +122,18 @@ def between(ξ: Floats, inner: tuple[float, float]) -> Bools:
 
 def _hertz_at(x: Floats, pair: GearPair, cut: Slices, load: Ints) -> Floats:
     """Hertz' peak pressure [MPa] for the line load at roll distances x (m,) [mm] of a contact line. load: its slices in
-    order. Line loads are known on tip edges too, where no peak can be fitted; extrapolating the peaks themselves would
-    multiply their scatter."""
-    ξ = cut.roll_distance[load]
-    even = np.interp(x, ξ, cut.hertz[load] * _root_of_radius(pair, ξ))
-    return np.asarray(even / _root_of_radius(pair, x))
+    order, some with a fitted peak. Line loads are known on tip edges too, where no peak can be fitted; extrapolating
+    the peaks themselves would multiply their scatter. p0√R depends on the line load alone."""
+    even = np.interp(x, cut.roll_distance[load], cut.hertz[load] * np.sqrt(cut.radius[load]))
+    return np.asarray(even / np.sqrt(_radius_at(x, pair, cut, load[has_peak(cut)[load]])))
 
 
-def _root_of_radius(pair: GearPair, ξ: Floats) -> Floats:
-    """√R [√mm] at roll distances ξ, R the relative radius of curvature; p0√R depends on the line load alone."""
-    return np.sqrt(pair.relative_curvature_radius(np.clip(ξ, *pair.path_of_contact)))
+def _radius_at(x: Floats, pair: GearPair, cut: Slices, fitted: Ints) -> Floats:
+    """Relative radius of curvature [mm] where the contact lies, at roll distances x (m,) [mm] of a contact line: over
+    that on the nominal line as at the slices beside. fitted: the line's slices with a fitted peak, in order; a slice on
+    a tip edge does not tell where the contact lies."""
+    ξ = cut.roll_distance[fitted]
+    return nominal_radius(pair, x) * np.interp(x, ξ, cut.radius[fitted] / nominal_radius(pair, ξ))
 
 
 def line_mean(cut: Slices, tooth: int, inner: tuple[float, float]) -> float:

@@ -8,10 +8,10 @@ relative root mean square difference of the curves.
   the benchmark pairs. First-order cells are too stiff in bending; their rate is below 1.
 - Pressures converge erratically while the contact is a few elements wide. The error of a fitted peak for its line load
   is known without a finer mesh, by comparison with Hertz. The bar is D between fitted peaks and Hertz' peaks on the
-  run's mesh, plus the error of the loads: D of Hertz' peaks between the meshes, over 2^p − 1. It is too wide where a
-  flank departs from Hertz' assumptions, at the start of a relief or the end of a face. Both meshes are evaluated
-  between the tip-edge zones of the run's mesh, as the figure is: on the companion's larger cells these zones are wider,
-  but the loads within them are known.
+  run's mesh, plus the error of the loads: D between the meshes of Hertz' peaks on the nominal contact lines, over
+  2^p − 1. It is too wide where a flank departs from Hertz' assumptions, at the start of a relief or the end of a face.
+  Both meshes are evaluated between the tip-edge zones of the run's mesh, as the figure is: on the companion's larger
+  cells these zones are wider, but the loads within them are known.
 
 Both meshes are solved at the same positions. The error of sampling the pitch at these positions is estimated by
 `position_spacing` and added. Errors of the model, such as effects that the scene leaves out, are in neither.
@@ -33,7 +33,7 @@ from evolvent.results.archive.error_bar_data import (
     summed_errors,
     write_error_bars,
 )
-from evolvent.results.engagement import engagement, with_hertz
+from evolvent.results.engagement import engagement, with_hertz, with_line_loads
 from evolvent.results.error_bars.position_spacing import spacing_errors
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.run_data import RunData
@@ -102,7 +102,7 @@ def errors_between(run: RunData, coarse: RunData) -> tuple[FigureErrors, ...]:
 
 def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
     """Errors of the mesh at the friction coefficient with this index."""
-    runs = run, with_hertz(run), *(with_hertz(each, at_edges=True) for each in (run, coarse))
+    runs = run, with_hertz(run), with_line_loads(run), with_line_loads(coarse)
     curves = [engagement(each, index, run.inner_path) for each in runs]
     error, tangent, secant, loss = (
         [Curve(each.angles, np.array([value(each, at[index]) for at in each.positions])) for each in (run, coarse)]
@@ -122,8 +122,8 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
 
 
 def _pressure_error(figure: Reduction, factor: float, fitted: Curve, hertz: Curve, fine: Curve, coarse: Curve) -> float:
-    """Error of the fitted peaks for the computed loads, plus the error of the loads. fine, coarse: Hertz' peaks for the
-    loads on both meshes, tip edges included."""
+    """Error of the fitted peaks for the computed loads, plus the error of the loads. fine, coarse: peaks that
+    depend on the line loads alone, on both meshes, tip edges included."""
     return difference(figure, fitted, hertz) + factor * difference(figure, fine, coarse)
 
 

@@ -60,11 +60,10 @@ class NitscheTraction:
     def constant_term(self) -> sp.csr_matrix:
         """Matrix (N·d, N·d) of ∫ (γ F_n² + γ_t |F_t|²) [N/mm]; −θ times it is added to the body's stiffness."""
         F, d = self._local_flux(), self.frames.shape[1]
-        normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.eye(d), format="csr") @ F
-                              for γ in self.stabiliser.T)  # fmt: skip
-        is_normal = np.arange(F.shape[0]) % d == 0
-        weighted = sp.diags(is_normal.astype(float)) @ normal + sp.diags((~is_normal).astype(float)) @ tangential
-        return (F.T.tocsr() @ weighted).tocsr()
+        is_normal = np.arange(d) == 0
+        normal, tangential = (sp.kron(_weighted_mass(self.surface, γ), np.diag(which.astype(float)), format="csr")
+                              for γ, which in zip(self.stabiliser.T, (is_normal, ~is_normal)))  # fmt: skip
+        return (F.T.tocsr() @ ((normal + tangential) @ F)).tocsr()
 
 
 def nitsche_traction(mesh: MeshData, material: Material, surface: Surface, safety: float = SAFETY) -> NitscheTraction:

@@ -1,6 +1,6 @@
 """What all positions of a gear pair share: condensed gears, load and window.
 
-With several ranks each gear is condensed on one.
+With several ranks each gear is condensed on one; the patches of flanks in levels are divided among all.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, run_mesh
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.two_level_gear import two_level_gear
+from evolvent.gears.two_level_pair import two_level_pair
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -108,16 +108,18 @@ def prepare_model(
     after_meshing, cores = time.perf_counter(), Cores(comm)
     meshed()
 
+    levelled = {member: each for member, each in meshes.items() if isinstance(each, LevelledMesh)}
+    plain = {member: each for member, each in meshes.items() if not isinstance(each, LevelledMesh)}
+
     def condensed(member: Member) -> GearBody:
-        gear, sector, material = problem.pair.gears[member], meshes[member], problem.materials[member]
-        if isinstance(sector, LevelledMesh):
-            return two_level_gear(problem, member, sector, cores.used)
         return condensed_gear(
-            gear, sector, material, problem.contact_teeth, member, member is Member.PINION,
-            whole=problem.options.whole_gears, threads=cores.used,
+            problem.pair.gears[member], plain[member], problem.materials[member], problem.contact_teeth, member,
+            member is Member.PINION, whole=problem.options.whole_gears, threads=cores.used,
         )  # fmt: skip
 
-    built = together(comm, lambda: {member: condensed(member) for member in own}, cores.lent)
+    built = together(comm, lambda: {member: condensed(member) for member in plain}, cores.lent)
+    if comm.allreduce(len(levelled)):
+        built |= two_level_pair(problem, levelled, comm, cores)
     bodies = [shared(comm, built.pop(member, None), member % comm.size) for member in Member]
     pinion, wheel = (_charted(body, chart) for body, chart in zip(bodies, problem.flanks))
     model = GearModel(

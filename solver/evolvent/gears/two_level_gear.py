@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from contextlib import nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,32 +16,96 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.two_level.flank_refinement import FlankRefinement, refined_levels
+from evolvent.gears.two_level.flank_refinement import FlankRefinement, refined_levels, towers_of
+from evolvent.gears.two_level.towers import Block, LoadedPatch, Response, Towers
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.sector.flank_points import on_flank
 
+PatchName = tuple[int, Block]
+"""A patch's level, and the coarse cells with forces."""
+
+
+@dataclass(frozen=True)
+class TimedResponse:
+    """The response of a patch."""
+
+    response: Response
+    seconds: float
+    """Wall time that it took [s]."""
+
+
+@dataclass(frozen=True)
+class FlankPatches:
+    """The patches that a gear's flank needs, and what becomes of their responses.
+
+    towers: of each level, from the coarsest to the finest.
+    patches: of each level.
+    """
+
+    towers: tuple[Towers, ...]
+    patches: tuple[tuple[LoadedPatch, ...], ...]
+
+    @staticmethod
+    def of(problem: GearProblem, member: Member, sector: LevelledMesh) -> FlankPatches:
+        """Of the pinion's or the wheel's flank."""
+        towers = towers_of(_refinement(problem, member, sector), _flux_safety(member))
+        return FlankPatches(tuple(towers), tuple(tuple(each.patches()) for each in towers))
+
+    def named(self) -> dict[PatchName, LoadedPatch]:
+        """All patches."""
+        levels = enumerate(self.patches)
+        return {(level, patch.block): patch for level, patches in levels for patch in patches}
+
+    def response(self, name: PatchName) -> TimedResponse:
+        """Condenses a patch. Raises NotPositiveDefinite, OutOfMemory."""
+        begin = time.perf_counter()
+        response = self.towers[name[0]].response(self.named()[name])
+        return TimedResponse(response, time.perf_counter() - begin)
+
 
 def two_level_gear(
     problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads = nullcontext
 ) -> GearBody:
-    """Condenses the coarse sector and corrects its compliance on the levels of its flank.
+    """Condenses the coarse sector and corrects its compliance on the levels of its flank, all on this rank.
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
-    gear, material, begin = problem.pair.gears[member], problem.materials[member], time.perf_counter()
-    safety = SAFETY if member is Member.PINION else None
-    teeth = problem.contact_teeth
-    coarse = condensed_gear(unmodified(gear), sector.mesh, material, teeth, member, False, threads=threads)
-    fine, refined = refined_levels(_refinement(problem, member, sector), safety)
+    coarse, flank = coarse_gear(problem, member, sector, threads), FlankPatches.of(problem, member, sector)
+    return corrected_gear(problem, coarse, sector, flank, {name: flank.response(name) for name in flank.named()})
+
+
+def coarse_gear(problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads) -> GearBody:
+    """The coarse sector, condensed and closed to the ring. Raises NotPositiveDefinite, OutOfMemory."""
+    gear, material = unmodified(problem.pair.gears[member]), problem.materials[member]
+    return condensed_gear(gear, sector.mesh, material, problem.contact_teeth, member, False, threads=threads)
+
+
+def corrected_gear(
+    problem: GearProblem, coarse: GearBody, sector: LevelledMesh, flank: FlankPatches,
+    responses: Mapping[PatchName, TimedResponse],
+) -> GearBody:  # fmt: skip
+    """The gear with the levels of its flank. responses: of all patches of the flank."""
+    begin, gear, material = time.perf_counter(), problem.pair.gears[coarse.member], coarse.material
+    by_level = [
+        {block: each.response for (level, block), each in responses.items() if level == number}
+        for number in range(len(flank.towers))
+    ]
+    fine, safety = flank.towers[-1].surface, _flux_safety(coarse.member)
     traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
     assert isinstance(coarse.chain, ChainedCompliance)
-    ring = TwoLevelRing(coarse.chain, coarse.flank, refined, 2.0 * np.pi / gear.z)
-    spent, flank = time.perf_counter() - begin - coarse.assemble_seconds, modified_flank(fine.surface, gear)
+    ring = TwoLevelRing(coarse.chain, coarse.flank, refined_levels(flank.towers, by_level), 2.0 * np.pi / gear.z)
+    seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values())
     return replace(
-        coarse, gear=gear, flank=flank, traction=traction, chain=ring, condense_seconds=spent, levels=sector.levels
+        coarse, gear=gear, flank=modified_flank(fine.surface, gear), traction=traction, chain=ring,
+        condense_seconds=seconds + time.perf_counter() - begin, levels=sector.levels,
     )  # fmt: skip
+
+
+def _flux_safety(member: Member) -> float | None:
+    """See `patch_response`: the pinion has the pressure side."""
+    return SAFETY if member is Member.PINION else None
 
 
 def levelled_flank(problem: GearProblem, member: Member, sector: LevelledMesh) -> Surface:

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from evolvent.contact.nitsche.flux_recovery import nitsche_traction, trace_functionals
 from evolvent.contact.two_level.fine_surface import CoarseBody
-from evolvent.fem.body import Assembled, Body, Fixed, assemble
+from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import Factor, compliance, compliance_by_columns
 from evolvent.fem.material import Material
 from evolvent.fem.surface import Surface, surface_of
@@ -70,7 +70,7 @@ def patch_response(
     change = change.reshape(n, d, -1, d)
     if flux_safety is not None:
         part = cut_out(fine.mesh, cells_near(fine.mesh, fine.surface.nodes[loaded], flux_reach))
-        _add_flux(change, fine, part, _Condensable.of(part.mesh, body, is_held), loaded, flux_safety)
+        _add_flux(change, fine, part, fine.within(part, body.group), loaded, flux_safety)
     return PatchResponse(fine.surface.points, loaded, change)
 
 
@@ -92,30 +92,41 @@ def _add_flux(
 class _Condensable:
     """A mesh of a patch and its contact surface, held where it is cut out.
 
-    assembled: its stiffness.
+    stiffness: (n, n) between free degrees of freedom; other entries are not read [N/mm].
+    free: degrees of freedom that are not held.
     """
 
     mesh: MeshData
     material: Material
     surface: Surface
-    assembled: Assembled
+    stiffness: sp.csr_matrix
+    free: Ints
 
     @staticmethod
     def of(mesh: MeshData, body: CoarseBody, is_held: tuple[str, ...]) -> _Condensable:
         held = tuple(Fixed(name) for name in (CUT, *is_held) if len(mesh.facets.get(name, ())))
         assembled = assemble(Body(mesh, body.material, supports=held, name="patch"))
-        return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled)
+        return _Condensable(mesh, body.material, surface_of(mesh, body.group), assembled.stiffness, assembled.free)
+
+    def within(self, part: Patch, group: str) -> _Condensable:
+        """A part of it, held where that is cut out. All cells of a node that is free there are in the part."""
+        d = self.mesh.dimension
+        dofs = (d * part.nodes[:, None] + np.arange(d)).ravel()
+        is_free = np.isin(dofs, self.free)
+        is_free.reshape(-1, d)[np.unique(part.mesh.facets[CUT])] = False
+        surface = surface_of(part.mesh, group)
+        return _Condensable(part.mesh, self.material, surface, self.stiffness[dofs][:, dofs], np.flatnonzero(is_free))
 
     def columns(self, columns: Ints, flux_safety: float | None = None) -> Floats:
         """Some columns of the compliance of the contact surface, (n·d, columns) [mm/N]; flux_safety: see
         `patch_response`."""
-        K, free = self.assembled.stiffness, self.assembled.free
+        K, free = self.stiffness, self.free
         P = trace_functionals(self.surface, K.shape[0])
         if flux_safety is not None:
             traction = nitsche_traction(self.mesh, self.material, self.surface, flux_safety)
             K, P = K - traction.constant_term(), P - traction.flux()
         if len(columns) < FEW * P.shape[0]:
             return compliance_by_columns(Factor(K, free), P, P.tocsr()[columns])
-        plain = self.assembled.stiffness
+        plain = self.stiffness
         graph = sp.csr_matrix((np.ones(plain.nnz, dtype=np.int8), plain.indices, plain.indptr), shape=plain.shape)
         return compliance(K, P, free, graph=graph)[:, columns]

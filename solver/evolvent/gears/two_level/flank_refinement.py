@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
+from evolvent.contact.two_level.fine_surface import CoarseBody
 from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.two_level.refined_level import RefinedLevel
-from evolvent.gears.two_level.towers import Towers, reach_of
+from evolvent.gears.two_level.towers import Block, Response, Towers, reach_of
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -57,23 +57,24 @@ def coarse_body(gear: GearParameters, mesh: MeshData, material: Material, level:
     return CoarseBody(mesh, material, "flank", counts, partial(on_flank, gear))
 
 
-def refined_levels(refinement: FlankRefinement, flux_safety: float | None) -> tuple[FineSurface, list[RefinedLevel]]:
-    """The finest flank, and all levels. flux_safety: see `patch_response`; on the finest level only.
+def towers_of(refinement: FlankRefinement, flux_safety: float | None) -> list[Towers]:
+    """The patches of each level, from the coarsest to the finest. flux_safety: see `patch_response`; on the finest
+    level only."""
+    bodies, gear = list(refinement.bodies()), refinement.gear
+    safeties = [*(None for _ in bodies[1:]), flux_safety]
+    return [Towers(body, gear.base_radius, gear.twist, HELD, safety) for body, safety in zip(bodies, safeties)]
 
-    Raises NotPositiveDefinite, OutOfMemory.
-    """
+
+def refined_levels(towers: Sequence[Towers], responses: Sequence[Mapping[Block, Response]]) -> list[RefinedLevel]:
+    """All levels, from the responses of the patches of each."""
     levels: list[RefinedLevel] = []
-    fine: FineSurface | None = None
-    for number, body in enumerate(refinement.bodies()):
-        transfer = body.fine.transfer
-        if fine is not None:
-            transfer = transfer @ _reordered(fine.numbers(body.surface.points))
-        fine = body.fine
-        safety = flux_safety if number == len(refinement.levels) - 1 else None
-        towers = Towers(body, refinement.gear.base_radius, refinement.gear.twist, HELD, safety)
-        levels.append(RefinedLevel(transfer.tocsr(), towers.correction(), fine.surface.normals))
-    assert fine is not None
-    return fine, levels
+    for number, (each, known) in enumerate(zip(towers, responses)):
+        transfer = each.surface.transfer
+        if number > 0:
+            before = towers[number - 1].surface
+            transfer = transfer @ _reordered(before.numbers(each.coarse.points))
+        levels.append(RefinedLevel(transfer.tocsr(), each.correction(known), each.surface.surface.normals))
+    return levels
 
 
 def _reordered(numbers: Ints) -> sp.csr_matrix:

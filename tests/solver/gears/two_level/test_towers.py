@@ -66,7 +66,8 @@ def correction() -> StripCorrection:
         layer_depths=(0.2, 0.25, 0.285),
     )  # fmt: skip
     body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (2, 1, 1)))
-    return Towers(body, gear.base_radius, gear.twist, HELD, 2.0).correction()
+    flank = Towers(body, gear.base_radius, gear.twist, HELD, 2.0)
+    return flank.correction({patch.block: flank.response(patch) for patch in flank.patches()})
 
 
 @pytest.mark.slow

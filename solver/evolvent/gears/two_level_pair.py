@@ -1,0 +1,60 @@
+"""Both gears in levels: each rank condenses some of the patches of both, and a coarse sector or none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mpi4py import MPI
+
+from evolvent.fem.parallel.cores import Cores
+from evolvent.fem.parallel.division import divided, exchanged
+from evolvent.fem.parallel.ranks import together
+from evolvent.gears.condensed_gear import GearBody
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.two_level.towers import COST
+from evolvent.gears.two_level_gear import FlankPatches, PatchName, TimedResponse, coarse_gear, corrected_gear
+from evolvent_meshes.gears.member import Member
+
+SECTOR = 1.5
+"""Time of a coarse sector, closed to the ring, over that of a patch with as many cells."""
+
+NamedPatch = tuple[Member, PatchName]
+
+
+def two_level_pair(
+    problem: GearProblem, sectors: Mapping[Member, LevelledMesh], comm: MPI.Comm, cores: Cores
+) -> dict[Member, GearBody]:
+    """The gears whose sectors this rank has: see `two_level_gear`. Collective: each rank has other sectors.
+
+    Raises NotPositiveDefinite, OutOfMemory, OSError.
+    """
+    own = together(comm, lambda: {m: FlankPatches.of(problem, m, sector) for m, sector in sectors.items()}, cores.lent)
+    flanks = exchanged(comm, own)
+    names = _division(flanks, comm.allgather(sum(_cost(sector) for sector in sectors.values())))[comm.rank]
+
+    def condensed() -> tuple[dict[Member, GearBody], dict[NamedPatch, TimedResponse]]:
+        bodies = {m: coarse_gear(problem, m, sector, cores.used) for m, sector in sectors.items()}
+        return bodies, {(m, name): flanks[m].response(name) for m, name in names}
+
+    bodies, some = together(comm, condensed, cores.lent)
+    responses = exchanged(comm, some)
+    del some  # a hundred megabytes, and the ranks of a node share the others
+
+    def corrected(member: Member) -> GearBody:
+        known = {name: response for (m, name), response in responses.items() if m == member}
+        return corrected_gear(problem, bodies[member], sectors[member], flanks[member], known)
+
+    return together(comm, lambda: {member: corrected(member) for member in sectors}, cores.lent)
+
+
+def _division(flanks: Mapping[Member, FlankPatches], busy: list[float]) -> list[list[NamedPatch]]:
+    """The patches of each rank; busy: cost of the coarse sectors of each."""
+    patches = {(m, name): patch for m in sorted(flanks) for name, patch in flanks[m].named().items()}
+    names = list(patches)
+    return [[names[task] for task in own] for own in divided([patches[name].cost for name in names], busy)]
+
+
+def _cost(sector: LevelledMesh) -> float:
+    """See `LoadedPatch.cost`."""
+    return SECTOR * float(len(sector.mesh.cells)) ** COST

@@ -1,8 +1,8 @@
 """Memory of gears whose flanks have levels of their own, estimated from the numbers of cells.
 
 Three times of a run want most: a coarse sector is eliminated, a patch is condensed, a position is solved. Compared with
-runs of Yang's pair on one rank, without error bars: quick 2705 MB, standard 1670 MB, fine 3200 MB; the estimates are
-2710, 1760 and 3350. The coarse companion of standard takes 2040 MB, as all of its rows are in one patch.
+runs of Yang's pair on one rank: quick 2705 MB, standard 1840 MB, with its coarse companion or without, fine 3200 MB;
+the estimates are 2710, 2050 and 3210.
 """
 
 from __future__ import annotations

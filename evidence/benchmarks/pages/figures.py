@@ -71,7 +71,7 @@ def _plain_ticks(axes: Axes) -> None:
     """1, 2, 5 of every decade, as plain numbers."""
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter("{x:,g}")
+        axis.set_major_formatter("{x:,.7g}")
         axis.set_minor_formatter("")
 
 
@@ -113,13 +113,19 @@ def pitches(rows: Sequence[PitchRow]) -> Figure:
     return figure
 
 
-def sizes(rows: Sequence[SizeRow]) -> Figure:
-    """Memory, condensing and one more position over the size, with their exponents."""
+def level_sizes(rows: Sequence[SizeRow]) -> Figure:
+    """The same with levels on the flanks."""
+    return sizes(rows, ", with levels on its flanks", "of the equivalent fine meshes of both sectors")
+
+
+def sizes(rows: Sequence[SizeRow], which: str = "", of: str = "of both sectors") -> Figure:
+    """Memory, condensing and one more position over the size, with their exponents. which: gear pair; of: what the size
+    is counted."""
     rows = [row for row in rows if not row.note]
     dofs = column(rows, "dofs")
     with style.styled():
         see = "Left: what a pitch needs at most. Right: what is done once, and what each further position adds."
-        figure = style.sheet("A pitch of the gear pair, over its size", see, (10.4, 4.8))
+        figure = style.sheet(f"A pitch of the gear pair over its size{which}", see, (10.4, 4.8))
         memory, time = figure.subplots(1, 2)
         _line(memory, dofs, column(rows, "memory_MB") / 1024.0, "memory", "#1f5fa8")
         memory.set_ylabel("largest memory [GiB]")
@@ -127,7 +133,7 @@ def sizes(rows: Sequence[SizeRow]) -> Figure:
         _line(time, dofs, column(rows, "position"), "one more position", "#c0392b")
         time.set_ylabel("wall time [s]")
         for axes in (memory, time):
-            axes.set_xlabel("degrees of freedom of both sectors")
+            axes.set_xlabel(f"degrees of freedom {of}")
             _plain_ticks(axes)
             axes.legend()
     return figure

@@ -37,7 +37,8 @@ def _power_laws(rows: Sequence[SizeRow]) -> list[str]:
 def _levels_said(rows: Sequence[SizeRow]) -> list[str]:
     return [
         "The same with levels on the flanks; dofs are those of one fine mesh of both sectors that has the same cells "
-        f"in contact. Wanted of condensing: at most dofs^{LEVELS_BAR:g}."
+        "in contact. The two positions of such a pitch are half a pitch apart, so that each takes more searches and "
+        f"iterations than neighbours do. Wanted of condensing: at most dofs^{LEVELS_BAR:g}."
     ]
 
 
@@ -162,8 +163,8 @@ COSTS: tuple[PageSection[Any], ...] = (
     PageSection("A pitch", "ratios", RATIO_TABLE),
     PageSection("Size", "sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size", after=_power_laws),
     PageSection(
-        "", "level_sizes", SIZE_TABLE, figure=figures.sizes, caption="Cost over size, with levels", words=_levels_said,
-        after=_power_laws,
+        "", "level_sizes", SIZE_TABLE, figure=figures.level_sizes, caption="Cost over size, with levels",
+        words=_levels_said, after=_power_laws,
     ),
     PageSection("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
     PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),

@@ -34,7 +34,7 @@ def whole(spur: GearModel) -> Curves:
 
 def failing_once(angle: Callable[..., float], error: Exception, left: list[float]) -> Callable[..., None]:
     """Raises the error where it is first called for an angle [°] of `left`, which it takes out."""
-    def fail(*arguments: object) -> None:
+    def fail(*arguments: object, **_: object) -> None:
         degrees = round(float(np.degrees(angle(*arguments))), 6)
         if degrees in left:
             left.remove(degrees)
@@ -77,7 +77,7 @@ def test_a_position_that_always_fails_ends_the_sweep(
     """Four halvings, then NotConverged with the angle; nothing is yielded."""
     tried = []
 
-    def failing(model: GearModel, angle: float, *_: object) -> None:
+    def failing(model: GearModel, angle: float, *_: object, **__: object) -> None:
         tried.append(angle)
         raise error("as the test wants")
 

@@ -6,7 +6,7 @@ With several ranks each gear is condensed on one; the patches of flanks in level
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mpi4py import MPI
@@ -14,7 +14,8 @@ from mpi4py import MPI
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
-from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, run_mesh
+from evolvent.gears.meshing.flank_levels import levelled_sector
+from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level_pair import two_level_pair
@@ -88,6 +89,37 @@ class Preparation:
         """Summed over both gears."""
         return sum(body.condense_seconds for body in self.model.bodies)
 
+    def without_time(self) -> Preparation:
+        """The same where its time counts elsewhere."""
+        pinion, wheel = (replace(body, assemble_seconds=0.0, condense_seconds=0.0) for body in self.model.bodies)
+        return Preparation(replace(self.model, bodies=(pinion, wheel)), 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class CondensedGears:
+    """Both gears, condensed for one torque or several."""
+
+    finest: GearProblem
+    """Under the lightest of the torques, which wants most levels."""
+    bodies: tuple[Mapping[int, GearBody], Mapping[int, GearBody]]
+    """Pinion and wheel, by how many of the finest levels of their flanks are omitted."""
+    mesh_seconds: float
+    """Wall seconds of meshing."""
+    seconds: float
+    """Wall seconds of condensing."""
+
+    def under(self, problem: GearProblem) -> Preparation:
+        """The gears under the torque of a problem, which is one of those that they are condensed for."""
+        pinion, wheel = (
+            _charted(bodies[_omitted(problem, self.finest, member)], chart)
+            for member, bodies, chart in zip(Member, self.bodies, problem.flanks)
+        )
+        model = GearModel(
+            problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
+            problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
+        )  # fmt: skip
+        return Preparation(model, self.mesh_seconds, self.seconds)
+
 
 def prepare_model(
     problem: GearProblem,
@@ -101,13 +133,44 @@ def prepare_model(
 
     Raises MeshError, TooMuchRelief, NotPositiveDefinite, OutOfMemory.
     """
+    return condensed_gears([problem], comm, mesh, meshed).under(problem)
+
+
+def condensed_gears(
+    problems: Sequence[GearProblem],
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    mesh: Mesher = run_mesh,
+    meshed: Callable[[], None] = lambda: None,
+) -> CondensedGears:
+    """The gears of problems that differ in their torques only and have the same `mesh_torques`, condensed once; see
+    `prepare_model`."""
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]
-    meshes = together(comm, lambda: {member: mesh(problem, member) for member in own})
-    after_meshing, cores = time.perf_counter(), Cores(comm)
+    finest = min(problems, key=lambda problem: problem.torque)
+    meshes = together(comm, lambda: {member: mesh(finest, member) for member in own})
+    after_meshing = time.perf_counter()
     meshed()
+    omitted = {member: {_omitted(problem, finest, member) for problem in problems} for member in Member}
+    built = _condensed(finest, meshes, omitted, comm)
+    pinion, wheel = (shared(comm, built.pop(member, None), member % comm.size) for member in Member)
+    seconds = after_meshing - begin, time.perf_counter() - after_meshing
+    return CondensedGears(finest, (pinion, wheel), *seconds)
 
+
+def _omitted(problem: GearProblem, finest: GearProblem, member: Member) -> int:
+    """How many levels of the finest problem's flank are too fine for this one."""
+    if not is_two_level(finest):
+        return 0
+    most, own = (len(levelled_sector(each, member).levels) for each in (finest, problem))
+    return most - own
+
+
+def _condensed(
+    problem: GearProblem, meshes: Mapping[Member, SectorMesh], omitted: Mapping[Member, Collection[int]], comm: MPI.Comm
+) -> dict[Member, dict[int, GearBody]]:
+    """The gears whose meshes this rank has, by how many of the finest levels are omitted. Collective."""
+    cores = Cores(comm)
     levelled = {member: each for member, each in meshes.items() if isinstance(each, LevelledMesh)}
     plain = {member: each for member, each in meshes.items() if not isinstance(each, LevelledMesh)}
 
@@ -117,16 +180,12 @@ def prepare_model(
             member is Member.PINION, whole=problem.options.whole_gears, threads=cores.used,
         )  # fmt: skip
 
-    built = together(comm, lambda: {member: condensed(member) for member in plain}, cores.lent)
+    built = together(comm, lambda: {member: {0: condensed(member)} for member in plain}, cores.lent)
     if comm.allreduce(len(levelled)):
-        built |= two_level_pair(problem, levelled, comm, cores)
-    bodies = [shared(comm, built.pop(member, None), member % comm.size) for member in Member]
-    pinion, wheel = (_charted(body, chart) for body, chart in zip(bodies, problem.flanks))
-    model = GearModel(
-        problem.pair, (pinion, wheel), problem.contact_teeth, gear_load(problem), problem.window_half_width,
-        problem.options.friction_terms, problem.options.deflected_flanks, problem.pitches,
-    )  # fmt: skip
-    return Preparation(model, after_meshing - begin, time.perf_counter() - after_meshing)
+        counts = {m: sorted(len(each.levels) - number for number in omitted[m]) for m, each in levelled.items()}
+        for member, bodies in two_level_pair(problem, levelled, counts, comm, cores).items():
+            built[member] = {max(bodies) - count: body for count, body in bodies.items()}
+    return built
 
 
 def gear_load(problem: GearProblem) -> GearLoad:

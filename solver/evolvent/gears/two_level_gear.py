@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 
@@ -16,8 +16,9 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, unmodified
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.two_level.flank_refinement import FlankRefinement, refined_levels, towers_of
-from evolvent.gears.two_level.towers import Block, LoadedPatch, Response, Towers
+from evolvent.gears.two_level.flank_refinement import FlankRefinement, RefinedFlank, towers_of
+from evolvent.gears.two_level.refined_level import RefinedLevel
+from evolvent.gears.two_level.towers import Block, BlockResponse, LoadedPatch, Towers
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
@@ -31,7 +32,7 @@ PatchName = tuple[int, Block]
 class TimedResponse:
     """The response of a patch."""
 
-    response: Response
+    response: BlockResponse
     seconds: float
     """Wall time that it took [s]."""
 
@@ -40,18 +41,20 @@ class TimedResponse:
 class FlankPatches:
     """The patches that a gear's flank needs, and what becomes of their responses.
 
+    counts: after how many levels contact is computed; see `towers_of`.
     towers: of each level, from the coarsest to the finest.
     patches: of each level.
     """
 
+    counts: tuple[int, ...]
     towers: tuple[Towers, ...]
     patches: tuple[tuple[LoadedPatch, ...], ...]
 
     @staticmethod
-    def of(problem: GearProblem, member: Member, sector: LevelledMesh) -> FlankPatches:
+    def of(problem: GearProblem, member: Member, sector: LevelledMesh, counts: Sequence[int]) -> FlankPatches:
         """Of the pinion's or the wheel's flank."""
-        towers = towers_of(_refinement(problem, member, sector), _flux_safety(member))
-        return FlankPatches(tuple(towers), tuple(tuple(each.patches()) for each in towers))
+        towers = towers_of(_refinement(problem, member, sector), counts, _flux_safety(member))
+        return FlankPatches(tuple(counts), tuple(towers), tuple(tuple(each.patches()) for each in towers))
 
     def named(self) -> dict[PatchName, LoadedPatch]:
         """All patches."""
@@ -64,16 +67,26 @@ class FlankPatches:
         response = self.towers[name[0]].response(self.named()[name])
         return TimedResponse(response, time.perf_counter() - begin)
 
+    def refined(self, responses: Mapping[PatchName, TimedResponse]) -> dict[int, list[RefinedLevel]]:
+        """The levels, for each of the counts. responses: of all patches."""
+        by_level = [
+            {block: each.response for (level, block), each in responses.items() if level == number}
+            for number in range(len(self.towers))
+        ]
+        return RefinedFlank(self.towers, by_level).levels(self.counts)
+
 
 def two_level_gear(
     problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads = nullcontext
 ) -> GearBody:
-    """Condenses the coarse sector and corrects its compliance on the levels of its flank, all on this rank.
+    """Condenses the coarse sector and corrects its compliance on all levels of its flank, all on this rank.
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
-    coarse, flank = coarse_gear(problem, member, sector, threads), FlankPatches.of(problem, member, sector)
-    return corrected_gear(problem, coarse, sector, flank, {name: flank.response(name) for name in flank.named()})
+    count = len(sector.levels)
+    coarse, flank = coarse_gear(problem, member, sector, threads), FlankPatches.of(problem, member, sector, [count])
+    responses = {name: flank.response(name) for name in flank.named()}
+    return corrected_gears(problem, coarse, sector, flank, responses)[count]
 
 
 def coarse_gear(problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads) -> GearBody:
@@ -82,25 +95,26 @@ def coarse_gear(problem: GearProblem, member: Member, sector: LevelledMesh, thre
     return condensed_gear(gear, sector.mesh, material, problem.contact_teeth, member, False, threads=threads)
 
 
-def corrected_gear(
+def corrected_gears(
     problem: GearProblem, coarse: GearBody, sector: LevelledMesh, flank: FlankPatches,
     responses: Mapping[PatchName, TimedResponse],
-) -> GearBody:  # fmt: skip
-    """The gear with the levels of its flank. responses: of all patches of the flank."""
-    begin, gear, material = time.perf_counter(), problem.pair.gears[coarse.member], coarse.material
-    by_level = [
-        {block: each.response for (level, block), each in responses.items() if level == number}
-        for number in range(len(flank.towers))
-    ]
-    fine, safety = flank.towers[-1].surface, _flux_safety(coarse.member)
-    traction = None if safety is None else nitsche_traction(fine.mesh, material, fine.surface, safety)
+) -> dict[int, GearBody]:  # fmt: skip
+    """The gear with so many levels of its flank as each count of `flank` says. responses: of all patches."""
+    begin, refined = time.perf_counter(), flank.refined(responses)
+    pitch, safety = 2.0 * np.pi / coarse.gear.z, _flux_safety(coarse.member)
+    gear = problem.pair.gears[coarse.member]
     assert isinstance(coarse.chain, ChainedCompliance)
-    ring = TwoLevelRing(coarse.chain, coarse.flank, refined_levels(flank.towers, by_level), 2.0 * np.pi / gear.z)
-    seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values())
-    return replace(
-        coarse, gear=gear, flank=modified_flank(fine.surface, gear), traction=traction, chain=ring,
-        condense_seconds=seconds + time.perf_counter() - begin, levels=sector.levels,
-    )  # fmt: skip
+    bodies = {}
+    for count, levels in refined.items():
+        fine = flank.towers[count - 1].surface
+        traction = None if safety is None else nitsche_traction(fine.mesh, coarse.material, fine.surface, safety)
+        ring = TwoLevelRing(coarse.chain, coarse.flank, levels, pitch)
+        bodies[count] = replace(
+            coarse, gear=gear, flank=modified_flank(fine.surface, gear), traction=traction, chain=ring,
+            levels=sector.levels[:count],
+        )  # fmt: skip
+    seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values()) + time.perf_counter() - begin
+    return {count: replace(body, condense_seconds=seconds) for count, body in bodies.items()}
 
 
 def _flux_safety(member: Member) -> float | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from mpi4py import MPI
 
@@ -13,7 +13,7 @@ from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.two_level.towers import COST
-from evolvent.gears.two_level_gear import FlankPatches, PatchName, TimedResponse, coarse_gear, corrected_gear
+from evolvent.gears.two_level_gear import FlankPatches, PatchName, TimedResponse, coarse_gear, corrected_gears
 from evolvent_meshes.gears.member import Member
 
 SECTOR = 1.5
@@ -23,14 +23,19 @@ NamedPatch = tuple[Member, PatchName]
 
 
 def two_level_pair(
-    problem: GearProblem, sectors: Mapping[Member, LevelledMesh], comm: MPI.Comm, cores: Cores
-) -> dict[Member, GearBody]:
-    """The gears whose sectors this rank has: see `two_level_gear`. Collective: each rank has other sectors.
+    problem: GearProblem, sectors: Mapping[Member, LevelledMesh], counts: Mapping[Member, Sequence[int]],
+    comm: MPI.Comm, cores: Cores,
+) -> dict[Member, dict[int, GearBody]]:  # fmt: skip
+    """The gears whose sectors this rank has, with so many levels as each of the counts says: see `two_level_gear`.
+    Collective: each rank has other sectors.
 
     Raises NotPositiveDefinite, OutOfMemory, OSError.
     """
-    own = together(comm, lambda: {m: FlankPatches.of(problem, m, sector) for m, sector in sectors.items()}, cores.lent)
-    flanks = exchanged(comm, own)
+
+    def patches() -> dict[Member, FlankPatches]:
+        return {member: FlankPatches.of(problem, member, sector, counts[member]) for member, sector in sectors.items()}
+
+    flanks = exchanged(comm, together(comm, patches, cores.lent))
     names = _division(flanks, comm.allgather(sum(_cost(sector) for sector in sectors.values())))[comm.rank]
 
     def condensed() -> tuple[dict[Member, GearBody], dict[NamedPatch, TimedResponse]]:
@@ -41,9 +46,9 @@ def two_level_pair(
     responses = exchanged(comm, some)
     del some  # a hundred megabytes, and the ranks of a node share the others
 
-    def corrected(member: Member) -> GearBody:
+    def corrected(member: Member) -> dict[int, GearBody]:
         known = {name: response for (m, name), response in responses.items() if m == member}
-        return corrected_gear(problem, bodies[member], sectors[member], flanks[member], known)
+        return corrected_gears(problem, bodies[member], sectors[member], flanks[member], known)
 
     return together(comm, lambda: {member: corrected(member) for member in sectors}, cores.lent)
 

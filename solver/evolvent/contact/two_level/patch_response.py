@@ -35,12 +35,14 @@ class PatchResponse:
 
     points: (n, d) the fine nodes [mm].
     loaded: (n,) bool, those with forces.
-    change: (n, d, s, d) [mm/N].
+    change: (n, d, s, d) of the displacements of the nodes [mm/N].
+    nitsche: (n, d, s, d) of the functionals of Nitsche's pressure side, where they are asked for [mm/N].
     """
 
     points: Floats
     loaded: Bools
     change: Floats
+    nitsche: Floats | None = None
 
 
 def patch_response(
@@ -50,8 +52,8 @@ def patch_response(
     """Condenses a patch with fine and with coarse cells.
 
     is_held: facet groups of the body that are fixed.
-    flux_safety: factor on the stabilisation of Nitsche's method, where the functionals are those of its pressure side;
-        None: they are the displacements.
+    flux_safety: factor on the stabilisation of Nitsche's method, where the functionals of its pressure side are asked
+        for; None: only the displacements are.
     places: where forces act, by default at all nodes.
     flux_reach: how far what these functionals change is followed beyond the loaded nodes [mm]. They act within a cell
         of the surface and their resultants vanish. Error with 0.6, 1.1, 1.6, 2.1 fine edges, of what all of a patch
@@ -68,16 +70,19 @@ def patch_response(
     R = sp.kron(split.values[fine.surface.nodes][:, coarse.surface.nodes], np.eye(d), format="csr")
     change -= R @ (R[columns] @ coarse.columns(np.arange(R.shape[1]))).T
     change = change.reshape(n, d, -1, d)
-    if flux_safety is not None:
-        part = cut_out(fine.mesh, cells_near(fine.mesh, fine.surface.nodes[loaded], flux_reach))
-        _add_flux(change, fine, part, fine.within(part, body.group), loaded, flux_safety)
-    return PatchResponse(fine.surface.points, loaded, change)
+    if flux_safety is None:
+        return PatchResponse(fine.surface.points, loaded, change)
+    part = cut_out(fine.mesh, cells_near(fine.mesh, fine.surface.nodes[loaded], flux_reach))
+    nitsche = _with_flux(change, fine, part, fine.within(part, body.group), loaded, flux_safety)
+    return PatchResponse(fine.surface.points, loaded, change, nitsche)
 
 
-def _add_flux(
-    change: Floats, fine: _Condensable, part: Patch, inner: _Condensable, loaded: Bools, safety: float
-) -> None:
-    """Adds what Nitsche's functionals change. inner: the part of the fine patch in which that is followed."""
+def _with_flux(
+    plain: Floats, fine: _Condensable, part: Patch, inner: _Condensable, loaded: Bools, safety: float
+) -> Floats:
+    """The change with what Nitsche's functionals change. inner: the part of the fine patch in which that is
+    followed."""
+    change = plain.copy()
     number = np.full(len(fine.mesh.points), -1)
     number[fine.surface.nodes] = np.arange(len(fine.surface.nodes))
     rows, d = number[part.nodes[inner.surface.nodes]], change.shape[1]
@@ -86,6 +91,7 @@ def _add_flux(
     more = inner.columns(columns, safety) - inner.columns(columns)
     at = np.ix_(rows, np.arange(d), of_column[rows[with_force]], np.arange(d))
     change[at] += more.reshape(len(rows), d, -1, d)
+    return change
 
 
 @dataclass(frozen=True)

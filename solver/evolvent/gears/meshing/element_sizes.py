@@ -102,11 +102,12 @@ def sector_resolution(problem: GearProblem, member: Member) -> SectorResolution:
 
 
 def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> FlankNeeds:
-    """What the contact of the pinion or the wheel needs of its flank's mesh, with levels of its own or without."""
-    estimate, gear = problem.hertz_estimate, problem.pair.gears[member]
+    """What the contact of the pinion or the wheel needs of its flank's mesh, with levels of its own or without: element
+    sizes for the lightest torque that it serves, a flank that begins where the heaviest one wants it."""
+    estimate, gear = problem.lightest.hertz_estimate, problem.pair.gears[member]
     count = elements_per_contact_width(problem, levels)
     width = ContactWidth(estimate, member)
-    start = _flank_start(gear, width)
+    start = _flank_start(gear, ContactWidth(problem.heaviest.hertz_estimate, member))
     roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
     density = roll / gear.base_radius * count / width.at_roll_length(roll)
     shear = float(np.mean(density)) * math.tan(gear.base_helix_angle) * gear.face_width

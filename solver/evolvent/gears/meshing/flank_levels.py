@@ -52,7 +52,8 @@ class LevelledSector:
 
 def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     """The levels of the pinion's or the wheel's flank: on the finest one the elements are as long as the contact needs
-    them, and the ridge is sheared by `SHEAR` elements in a layer."""
+    them, and the ridge is sheared by `SHEAR` elements in a layer. Problems whose meshes serve the same torques have the
+    same coarse sector, and as many of the same levels as each needs."""
     needs, gear, level = flank_needs(problem, member, levels=True), problem.pair.gears[member], problem.mesh.level
     count = max(1, round(math.log2(needs.rows / BODY_ROWS)))
     rows = 3 * max(LEAST_ROWS, math.ceil(needs.rows / 2**count / 3))
@@ -66,7 +67,9 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
         graded_middles=True,
         layer_depths=(float(depths[0]), float(depths[1]), float(depths[2])),
     )  # fmt: skip
-    return LevelledSector(coarse, tuple(_levels(count, factor, float(depths[0]), needs)))
+    levels = _levels(count, factor, float(depths[0]), needs)
+    wanted_rows = needs.rows * math.sqrt(problem.lightest.torque / problem.torque)  # 2b_H grows with √torque
+    return LevelledSector(coarse, tuple(levels[: max(1, math.ceil(math.log2(wanted_rows / rows) - 1e-9))]))
 
 
 def _levels(count: int, factor: int, depth: float, needs: FlankNeeds) -> list[FlankLevel]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -111,6 +111,10 @@ class GearProblem:
     """Measured or worn flanks of pinion and wheel; None: as designed."""
     options: GearOptions = GearOptions()
     """What is computed in full."""
+    mesh_torques: tuple[float, float] | None = None
+    """Lightest and heaviest torque that the meshes serve, on the same gear as `torque` [N·mm]; None: `torque` alone.
+    Between them all problems have the same sectors and, on flanks with levels, so many of the same levels as each
+    needs: `evolvent.gears.gear_model.prepare_models` condenses them once."""
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, GearPair, "write GearPair(pinion, wheel, centre_distance=...)")
@@ -124,6 +128,10 @@ class GearProblem:
         remedy = "give it in N·mm and without a sign: the pinion drives"
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
+        lightest, heaviest = self._served
+        if not 0.0 < lightest <= self.torque <= heaviest:
+            remedy = "give the lightest and the heaviest torque that the meshes serve"
+            refuse("mesh_torques", f"two torques > 0 with {self.torque:g} N·mm between", self.mesh_torques, remedy)
 
     def _check_levels(self) -> None:
         """Raises InputError where flanks with levels of their own cannot be had."""
@@ -162,6 +170,21 @@ class GearProblem:
     def hertz_estimate(self) -> HertzEstimate:
         """Hertz contact on the nominal contact lines."""
         return HertzEstimate.of(self.pair, self.materials, self.pinion_torque)
+
+    @property
+    def _served(self) -> tuple[float, float]:
+        """The lightest and the heaviest torque that the meshes serve."""
+        return (self.torque, self.torque) if self.mesh_torques is None else self.mesh_torques
+
+    @property
+    def lightest(self) -> GearProblem:
+        """Under the lightest torque that the meshes serve, whose contact is the narrowest."""
+        return replace(self, torque=self._served[0])
+
+    @property
+    def heaviest(self) -> GearProblem:
+        """Under the heaviest torque that they serve, whose contact is the widest."""
+        return replace(self, torque=self._served[1])
 
     @cached_property
     def pitches(self) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,7 +14,7 @@ from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.two_level.refined_level import RefinedLevel
-from evolvent.gears.two_level.towers import Block, Response, Towers, reach_of
+from evolvent.gears.two_level.towers import Block, BlockResponse, Response, Towers, reach_of
 from evolvent_meshes.arrays import Ints
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -57,24 +57,50 @@ def coarse_body(gear: GearParameters, mesh: MeshData, material: Material, level:
     return CoarseBody(mesh, material, "flank", counts, partial(on_flank, gear))
 
 
-def towers_of(refinement: FlankRefinement, flux_safety: float | None) -> list[Towers]:
-    """The patches of each level, from the coarsest to the finest. flux_safety: see `patch_response`; on the finest
-    level only."""
-    bodies, gear = list(refinement.bodies()), refinement.gear
-    safeties = [*(None for _ in bodies[1:]), flux_safety]
-    return [Towers(body, gear.base_radius, gear.twist, HELD, safety) for body, safety in zip(bodies, safeties)]
+def towers_of(refinement: FlankRefinement, counts: Sequence[int], flux_safety: float | None) -> list[Towers]:
+    """The patches of each level, from the coarsest to the finest.
+
+    counts: after how many levels contact is computed: all, or on the same flank under heavier loads fewer.
+    flux_safety: see `patch_response`; on the levels where contact is computed.
+    """
+    gear, result = refinement.gear, []
+    for count, body in enumerate(refinement.bodies(), 1):
+        safety, is_followed = flux_safety if count in counts else None, count < max(counts)
+        result.append(Towers(body, gear.base_radius, gear.twist, HELD, safety, is_followed))
+    return result
 
 
-def refined_levels(towers: Sequence[Towers], responses: Sequence[Mapping[Block, Response]]) -> list[RefinedLevel]:
-    """All levels, from the responses of the patches of each."""
-    levels: list[RefinedLevel] = []
-    for number, (each, known) in enumerate(zip(towers, responses)):
-        transfer = each.surface.transfer
+@dataclass(frozen=True)
+class RefinedFlank:
+    """The levels of a flank, from the responses of the patches of each.
+
+    towers: of each level.
+    responses: of the patches of each.
+    """
+
+    towers: Sequence[Towers]
+    responses: Sequence[Mapping[Block, BlockResponse]]
+
+    def levels(self, counts: Sequence[int]) -> dict[int, list[RefinedLevel]]:
+        """The first levels, as many as each of the counts says, the last one with the functionals of the contact. What
+        they have in common is there once."""
+        inner = [self._level(number, lambda each: each.inner) for number in range(max(counts) - 1)]
+
+        def last(number: int) -> RefinedLevel:
+            has_inner = number < len(inner) and all(each.nitsche is None for each in self.responses[number].values())
+            return inner[number] if has_inner else self._level(number, lambda each: each.contact)
+
+        return {count: [*inner[: count - 1], last(count - 1)] for count in counts}
+
+    def _level(self, number: int, part: Callable[[BlockResponse], Response]) -> RefinedLevel:
+        """One of the levels. part: the response that it takes of each patch."""
+        here = self.towers[number]
+        transfer = here.surface.transfer
         if number > 0:
-            before = towers[number - 1].surface
-            transfer = transfer @ _reordered(before.numbers(each.coarse.points))
-        levels.append(RefinedLevel(transfer.tocsr(), each.correction(known), each.surface.surface.normals))
-    return levels
+            before = self.towers[number - 1].surface
+            transfer = transfer @ _reordered(before.numbers(here.coarse.points))
+        correction = here.correction({block: part(each) for block, each in self.responses[number].items()})
+        return RefinedLevel(transfer.tocsr(), correction, here.surface.surface.normals)
 
 
 def _reordered(numbers: Ints) -> sp.csr_matrix:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import scipy.sparse as sp
 
@@ -22,3 +23,8 @@ class RefinedLevel:
     transfer: sp.csr_matrix
     correction: StripCorrection
     normals: Floats
+
+    @cached_property
+    def normal(self) -> sp.csr_matrix:
+        """(n, n) correction between normal components [mm/N], in single precision."""
+        return self.correction.normal(self.normals)

@@ -84,8 +84,8 @@ class RoughFlanks:
         """N_l, S_l of each level and of the coarse flank: the normal compliance is Σ N_l S_l N_lᵀ. N: from the finest
         nodes."""
         parts: list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]] = []
-        for level, own in zip(reversed(self.levels), reversed(self._normal)):
-            parts.append((N.astype(np.float32), own))
+        for level in reversed(self.levels):
+            parts.append((N.astype(np.float32), level.normal))
             N = (N @ level.transfer).tocsr()
         place = np.full(N.shape[1], -1)
         place[tooth.nodes[0]] = np.arange(len(tooth.nodes[0]))
@@ -100,11 +100,6 @@ class RoughFlanks:
     def _heights(self) -> Floats:
         """Of the layers' limits in the coarse flank [mm]."""
         return np.unique(np.round(self.flank.points[:, 2], 9))[::2]
-
-    @cached_property
-    def _normal(self) -> list[sp.csr_matrix]:
-        """Of each level, (n, n) correction between normal components [mm/N]."""
-        return [level.correction.normal(level.normals) for level in self.levels]
 
 
 def _between(N: sp.csr_matrix, S: sp.csr_matrix | Singles, M: sp.csr_matrix) -> Singles:

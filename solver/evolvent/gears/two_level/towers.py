@@ -7,7 +7,7 @@ those of a few, turned with the flank's normal. Rows and layers near the edges o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -19,6 +19,7 @@ from evolvent.contact.two_level.fine_surface import CoarseBody, FineSurface
 from evolvent.contact.two_level.patch_response import patch_response
 from evolvent.fem.surface import Surface
 from evolvent.gears.ring.ring_compliance import turn_by
+from evolvent.gears.two_level.coarse_axis import Axis
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.strips import StripCorrection, turned
 from evolvent.gears.two_level.symmetric_strips import Strip
@@ -44,68 +45,6 @@ Block = tuple[range, range]
 def reach_of(body: CoarseBody) -> float:
     """How far patches extend beyond the loaded cells [mm]."""
     return REACH * float(FlankLattice.of(body.surface.points).edges().max())
-
-
-@dataclass(frozen=True)
-class Axis:
-    """The coarse cells of a flank along its profile or its face.
-
-    below: of each cell, how many lie within reach on the side of the first one.
-    above: of each, how many on the side of the last one.
-    samples: how many between those near the ends have a patch of their own.
-    """
-
-    below: tuple[int, ...]
-    above: tuple[int, ...]
-    samples: int
-
-    @staticmethod
-    def of(corners: Floats, reach: float, samples: int) -> Axis:
-        """From the cells' corners (count + 1, 3) along one line, and how far patches extend [mm]."""
-        within = np.linalg.norm(corners[:, None] - corners, axis=2) < reach
-        cells = range(len(corners) - 1)
-        below = tuple(int(within[i, 1 : i + 1].sum()) for i in cells)
-        return Axis(below, tuple(int(within[i + 1, i + 1 : -1].sum()) for i in cells), samples)
-
-    @property
-    def count(self) -> int:
-        """Number of cells."""
-        return len(self.below)
-
-    def extent(self, cells: Sequence[int]) -> tuple[int, int]:
-        """How many cells lie within reach below and above one of these, at most."""
-        return max(self.below[i] for i in cells), max(self.above[i] for i in cells)
-
-    @property
-    def own(self) -> list[range]:
-        """Blocks of cells near the ends, each loaded in one patch: those with the end within reach, and so many that
-        the patches of all others fit; all cells if that costs less, by the third power of the patches' extent."""
-        first, last = 1 + self.above[0], 1 + self.below[-1]
-        while between := range(first, self.count - last):
-            below, above = self.extent(between)
-            if below <= first and above <= last:
-                break
-            first, last = max(first, below), max(last, above)
-        patch = 1 + sum(self.extent(range(self.count)))
-        if self.count <= first + last or self.count**3 <= (2 + self.samples) * patch**3:
-            return [range(self.count)]
-        return [range(first), range(self.count - last, self.count)]
-
-    @property
-    def between(self) -> range:
-        """The cells in no block."""
-        blocks = self.own
-        return range(blocks[0].stop, blocks[-1].start)
-
-    @property
-    def sampled(self) -> list[int]:
-        """Those of them that have a patch of their own: the middle one, or several, closer towards both ends, as a
-        polynomial through them wants it (Chebyshev)."""
-        cells = self.between
-        if self.samples == 1 or len(cells) < 2:
-            return [cells[len(cells) // 2]] if cells else []
-        along = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, self.samples))
-        return sorted({cells[round(i)] for i in along * (len(cells) - 1)})
 
 
 @dataclass(frozen=True)
@@ -140,6 +79,27 @@ class Response:
 
 
 @dataclass(frozen=True)
+class BlockResponse:
+    """What changes under the loads on a block of cells, of the functionals that are wanted."""
+
+    plain: Response | None
+    """Of displacements: where a finer level follows, or contact is computed on the gear without the pressure."""
+    nitsche: Response | None
+    """Of the functionals of Nitsche's pressure side: where contact is computed on the gear that carries it."""
+
+    @property
+    def inner(self) -> Response:
+        """What a finer level takes."""
+        assert self.plain is not None
+        return self.plain
+
+    @property
+    def contact(self) -> Response:
+        """What contact on this level takes."""
+        return self.inner if self.nitsche is None else self.nitsche
+
+
+@dataclass(frozen=True)
 class LoadedPatch:
     """The patch of a block of coarse cells.
 
@@ -161,13 +121,16 @@ class Towers:
     twist: rotation of the section along the face [rad/mm].
     held: facet groups of the body that are fixed.
     flux_safety: see `patch_response`.
+    is_followed: whether a finer level follows, which takes the displacements even where there is a `flux_safety`.
     """
 
     def __init__(
-        self, body: CoarseBody, base_radius: float, twist: float, held: tuple[str, ...], flux_safety: float | None
-    ) -> None:
+        self, body: CoarseBody, base_radius: float, twist: float, held: tuple[str, ...], flux_safety: float | None,
+        is_followed: bool = False,
+    ) -> None:  # fmt: skip
         self._body, self._base_radius, self._twist = body, base_radius, twist
         self._held, self._flux_safety = held, flux_safety
+        self._is_plain = flux_safety is None or is_followed
         self._coarse, self._fine = (FlankLattice.of(each.points) for each in (body.surface, body.fine.surface))
         self._nodes = 2 * np.array(self._fine.cells) // self._coarse.cells
         self._cells = self._coarse.place(body.surface.points[body.surface.facets[:, -1]]) // 2
@@ -208,7 +171,7 @@ class Towers:
         return LoadedPatch(block, patch, twice * cells**COST)
 
     def correction(self, responses: Mapping[Block, Response]) -> StripCorrection:
-        """From the `response` of each of the `patches`."""
+        """From the `response` of each of the `patches`, all plain or all of Nitsche's functionals."""
         _, face = self.axes
         strips = []
         for block in face.own:
@@ -231,31 +194,46 @@ class Towers:
             change = np.sum([weight * each.change for weight, each in zip(weights, known)], axis=0)
             yield row, replace(known[0], change=change)
 
-    def response(self, loaded: LoadedPatch) -> Response:
+    def response(self, loaded: LoadedPatch) -> BlockResponse:
         """Of one of the `patches`. Raises NotPositiveDefinite, OutOfMemory."""
-        rows, layers = loaded.block
-        last = np.array(self._fine.nodes.shape) - 1
-        cells = np.array([[rows.start, layers.start], [rows.stop, layers.stop]])
-        low, high = cells * self._nodes
-        high += high == last  # the last nodes of the flank belong to its last cells
+        low, high = self._loaded_nodes(loaded.block)
 
         def within(points: Floats) -> Bools:
             at = self._fine.place(points)
             return np.asarray((at >= low).all(axis=1) & (at < high).all(axis=1))
 
-        response = patch_response(self._body, loaded.patch, self._held, self._flux_safety, within, self._flux_reach)
+        found = patch_response(self._body, loaded.patch, self._held, self._flux_safety, within, self._flux_reach)
+
+        def framed(change: Floats) -> Response:
+            return self._framed(loaded.block, found.points, found.loaded, change)
+
+        plain = framed(found.change) if self._is_plain else None
+        return BlockResponse(plain, None if found.nitsche is None else framed(found.nitsche))
+
+    def _framed(self, block: Block, points: Floats, loaded: Bools, change: Floats) -> Response:
+        """A change (n, 3, s, 3) at fine nodes (n, 3), some of them `loaded`, on the lattice and in the frame that turns
+        with the flank's normal."""
+        low, high = self._loaded_nodes(block)
+        last = np.array(self._fine.nodes.shape) - 1
         # patches between the blocks have one shape, so that they can be interpolated
-        alike = (axis.between if cells[0] in axis.between else cells for axis, cells in zip(self.axes, (rows, layers)))
+        alike = (axis.between if cells[0] in axis.between else cells for axis, cells in zip(self.axes, block))
         below, above = self._nodes * np.transpose([axis.extent(each) for axis, each in zip(self.axes, alike)])
         start, stop = np.maximum(0, low - below), np.minimum(last, high + above) + 1
-        at = self._fine.place(response.points)
+        at = self._fine.place(points)
         moves = (at >= start).all(axis=1) & (at < stop).all(axis=1)
-        turn = turn_by(self._angle[low[1]] - self._normal_angle(rows.start), 3)
-        change = np.einsum("ba,ibjc,ce->iaje", turn, response.change[moves], turn, optimize=True)
+        turn = turn_by(self._angle[low[1]] - self._normal_angle(block[0].start), 3)
+        turned_change = np.einsum("ba,ibjc,ce->iaje", turn, change[moves], turn, optimize=True)
         result = np.zeros((*(stop - start), 3, *(high - low), 3), dtype=np.float32)  # as strips are in the end
-        i, j = at[moves] - start, at[response.loaded] - low
-        result[i[:, 0, None], i[:, 1, None], :, j[:, 0], j[:, 1]] = np.moveaxis(change, 1, 2)
+        i, j = at[moves] - start, at[loaded] - low
+        result[i[:, 0, None], i[:, 1, None], :, j[:, 0], j[:, 1]] = np.moveaxis(turned_change, 1, 2)
         return Response(result, low - start, np.zeros(2, dtype=np.int64))
+
+    def _loaded_nodes(self, block: Block) -> tuple[Ints, Ints]:
+        """The first row and level of nodes with forces on a block of cells, and those after the last ones."""
+        rows, layers = block
+        low, high = np.array([[rows.start, layers.start], [rows.stop, layers.stop]]) * self._nodes
+        high += high == np.array(self._fine.nodes.shape) - 1  # the last nodes of the flank belong to its last cells
+        return low, high
 
     def _strip(self, response: Response, row: int, layers: range) -> Strip:
         """A response at its places: loads on cells from this row on, and from each of these layers on."""

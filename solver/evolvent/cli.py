@@ -1,17 +1,17 @@
 """The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in `run`, in
-which only rank 0 prints; a rank that fails alone prints its message and ends all ranks. Rank 0 alone does all else.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in `run` and
+`loads`, in which only rank 0 prints; a rank that fails alone prints its message and ends all ranks. Rank 0 alone does
+all else.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 from mpi4py import MPI
@@ -24,27 +24,30 @@ from evolvent.options import (
     NoSkip,
     Overrides,
     Overwrite,
+    Quiet,
     Resume,
     SceneFile,
     UsageError,
     Version,
     given_number,
     given_path,
+    given_percents,
     usage_message,
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.schema.errors import SceneError
+from evolvent.scene_argument import loaded_scene, require, require_room
 from evolvent_meshes.files import require_writable
-
-if TYPE_CHECKING:
-    from evolvent.scene.scene import Scene
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
 RESUME = "; `evolvent run ... --resume` continues"
 """Appended to the message on a signal that ends a run."""
-SHARED = "run"
-"""The command that all ranks take part in."""
+SHARED = ("run", "loads")
+"""The commands that all ranks take part in."""
+BOTH = (
+    "--overwrite: found --resume and --overwrite; allowed: one of them; remedy: --resume keeps what --overwrite removes"
+)
+"""Message on two options that exclude each other."""
 PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 """Environment variable that evolvent.fem.backend.petsc reads."""
 app = typer.Typer(
@@ -89,7 +92,7 @@ def run(
     force: Force = False,
     resume: Resume = False,
     overwrite: Overwrite = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")] = False,
+    quiet: Quiet = False,
     petsc: Annotated[
         str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
     ] = None,
@@ -100,18 +103,57 @@ def run(
     pictures go to DIR.
     """
     with reported(parallel=True, advice=RESUME):
-        loaded = _load(scene, level, settings, no_skip, MPI.COMM_WORLD)
-        both = "--overwrite: found --resume and --overwrite; allowed: one of them"
-        _require(not (resume and overwrite), f"{both}; remedy: --resume keeps what --overwrite removes")
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
         if petsc is not None:
             os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
-        _require_room(loaded, "run", force, MPI.COMM_WORLD)
+        require_room(loaded, "run", force, MPI.COMM_WORLD)
         from evolvent.run.output import last_lines
         from evolvent.run.scene_run import run_scene
 
         run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
         if not quiet:
             typer.echo(last_lines(out, loaded))
+
+
+@app.command(
+    epilog=f"""\b
+Examples:
+  evolvent loads demos/yang2022.toml --out out/loads --level quick
+  mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,100,150
+
+{STATUSES}"""
+)
+def loads(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="For a folder of each load.", parser=given_path)],
+    percent: Annotated[
+        Any,
+        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
+    ] = "5,10,25,50,75,100",
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute a scene under a list of loads.
+
+    The gears are condensed once. DIR gets the folder of a run for each load, and loads.csv and pictures/loads.png.
+    """
+    with reported(parallel=True, advice=RESUME):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
+        from evolvent.run.load_list import load_scenes, run_loads
+
+        for each in load_scenes(loaded, percent).values():
+            require_room(each, "run", force, MPI.COMM_WORLD)
+        for failure in run_loads(loaded, percent, out, resume, quiet, overwrite, scene):
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        if not quiet:
+            typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
@@ -123,7 +165,7 @@ def check(
     That is: the gear data, the Hertz estimates, what will be skipped, and an estimate of dofs and memory.
     """
     with reported():
-        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
         from evolvent.scene.checking.check_report import overview
 
         typer.echo(overview(loaded))
@@ -144,13 +186,13 @@ def mesh(
     One tooth sector of each gear, in contact at the pitch point, with named groups.
     """
     with reported():
-        loaded = _load(scene, level, settings, no_skip, MPI.COMM_SELF)
-        _require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
+        require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
         require_writable(out)
         exists = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
-        _require(overwrite or not (out.exists() or out.is_symlink()), exists)
-        _require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
-        _require_room(loaded, "mesh", force, MPI.COMM_SELF)
+        require(overwrite or not (out.exists() or out.is_symlink()), exists)
+        require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
+        require_room(loaded, "mesh", force, MPI.COMM_SELF)
         from evolvent.gears.meshing.levelled_meshes import is_two_level
         from evolvent.gears.meshing.standing_pair import standing_pair
         from evolvent.results.tables.run_warnings import WORST_CELL, bad_cells
@@ -181,7 +223,7 @@ def plot(
         begun = " --resume" if (directory / "results/state.npz").exists() else ""
         remedy = f"run `evolvent run SCENE.toml --out {directory}{begun}` first"
         wanted = f"{directory}: found {missing}; allowed: the --out of a finished run; remedy: {remedy}"
-        _require((directory / "summary.json").is_file(), wanted)
+        require((directory / "summary.json").is_file(), wanted)
         from evolvent.run.redraw import plot_folder
 
         drawn = plot_folder(directory)
@@ -235,7 +277,7 @@ def info() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit status. arguments: by default sys.argv[1:]."""
     given = sys.argv[1:] if arguments is None else list(arguments)
-    if MPI.COMM_WORLD.rank > 0 and given[:1] != [SHARED]:
+    if MPI.COMM_WORLD.rank > 0 and given[:1] not in ([name] for name in SHARED):
         return Exit.DONE
     if arguments is None:
         tolerate_terminal_encoding()
@@ -252,41 +294,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not given:
         return Exit.BAD_INPUT  # nothing was asked for; versions of click disagree on the status of the help then
     return status if isinstance(status, int) else Exit.DONE
-
-
-def _load(
-    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
-) -> Scene:
-    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks."""
-    from evolvent.scene.scene import load_scene
-
-    result: Scene | SceneError | None = None
-    if comm.rank == 0:
-        try:
-            overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
-            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
-            result = load_scene(path, overrides)
-        except SceneError as error:
-            result = error
-    result = comm.bcast(result)
-    assert result is not None
-    if isinstance(result, SceneError):
-        raise result
-    return result
-
-
-def _require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
-    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective."""
-    from evolvent.scene.checking.problem_size import memory_megabytes, mesh_megabytes, require_room
-
-    if not force:
-        require_room(scene, memory_megabytes if command == "run" else mesh_megabytes, comm)
-
-
-def _require(holds: bool, message: str) -> None:
-    """Raises a usage error unless `holds`. message: with key, found, allowed and remedy."""
-    if not holds:
-        raise typer.BadParameter(message)
 
 
 if __name__ == "__main__":

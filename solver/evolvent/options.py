@@ -88,6 +88,16 @@ def given_number(text: str) -> float:
         raise typer.BadParameter(f"{shown(text)}, no number") from None
 
 
+def given_percents(text: str) -> tuple[float, ...]:
+    """Percentages from the command line, "5,10,100". Raises typer.BadParameter."""
+    percents = tuple(given_number(part.strip()) for part in text.split(","))
+    wrong = [each for each in percents if not 0.0 < each <= MOST_PERCENT]
+    if wrong or len(set(percents)) < len(percents):
+        raise typer.BadParameter(f"{text}; allowed: different numbers above 0 up to {MOST_PERCENT:g}")
+    return percents
+
+
+MOST_PERCENT = 1000.0
 SceneFile = Annotated[
     Path,
     typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.", parser=given_path),
@@ -119,6 +129,8 @@ Resume = Annotated[
 Overwrite = Annotated[
     bool, typer.Option("--overwrite", help="Remove an earlier run from DIR, once the gears are condensed.")
 ]
+
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings only; the log file is written.")]
 
 
 def _print_version(wanted: bool) -> None:

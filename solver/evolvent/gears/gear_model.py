@@ -24,6 +24,8 @@ from evolvent_meshes.gears.pair import GearPair
 
 Mesher = Callable[[GearProblem, Member], SectorMesh]
 """Makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
+Preparer = Callable[..., "Preparation"]
+"""A function with the parameters of `prepare_model`."""
 
 
 @dataclass(frozen=True)

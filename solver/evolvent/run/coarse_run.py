@@ -16,7 +16,7 @@ import time
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
-from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.gear_model import Mesher, Preparation, Preparer, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
@@ -36,33 +36,37 @@ def companion_of(run: RunContext, scene: Scene) -> Companion | None:
     """The solved companion, None where its error bars are in the archive already. Collective."""
     if run.on_first(lambda: read_error_bars(run.archive(scene))) is not None:
         return None
-    companion = solve_companion(scene, pitch_of(scene), run.comm)
+    companion = solve_companion(scene, pitch_of(scene), run.comm, run.prepare)
     if companion.failure:
         run.log.info("%s", companion.failure)
     run.log.info("coarse companion for the error bars in %.1f s", companion.seconds)
     return companion
 
 
-def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm) -> Companion:
-    """Meshes, condenses and sweeps the companion. Collective.
+def solve_companion(scene: Scene, pitch: Pitch, comm: MPI.Comm, prepare: Preparer | None = None) -> Companion:
+    """Meshes, condenses and sweeps the companion. Collective. prepare: see `RunContext`.
 
     An error of meshing or solving becomes `Companion.failure`: a run is not lost for its error bars. Every other
     exception is a bug and is raised.
     """
     begin, run, failure = time.perf_counter(), None, ""
     try:
-        run = solved_run(scene, pitch, comm, companion_mesh)
+        run = solved_run(scene, pitch, comm, companion_mesh, prepare)
     except EvolventError as error:  # the same on all ranks: `solved_run` fails on all together
         failure = f"The coarse companion that error bars come from could not be solved: {error}"
     return Companion(run, failure, time.perf_counter() - begin)
 
 
-def solved_run(scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher) -> RunData | None:
+def solved_run(
+    scene: Scene, pitch: Pitch, comm: MPI.Comm, mesh: Mesher, prepare: Preparer | None = None
+) -> RunData | None:
     """A scene solved on the sectors that `mesh` makes, without writing anything: the run on rank 0, None on the others.
 
-    Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite, OutOfMemory, on all ranks.
+    prepare: see `RunContext`. Collective. Raises NotConverged, SearchError, MeshError, NotPositiveDefinite and
+    OutOfMemory, on all ranks.
     """
-    model, frictions = prepare_model(gear_problem(scene), comm, mesh).model, scene.contact.friction
+    preparation: Preparation = (prepare or prepare_model)(gear_problem(scene), comm, mesh)
+    model, frictions = preparation.model, scene.contact.friction
     swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
 
     def assembled() -> RunData:

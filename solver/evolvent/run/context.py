@@ -12,6 +12,7 @@ from typing import TypeVar
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.gear_model import Preparer
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_cost import Cost, Timings, read_cost
 from evolvent.results.archive.run_folder import RunFolder
@@ -40,6 +41,8 @@ class RunContext:
     """Cost of everything that was computed before."""
     begin: float
     """When this part of the run began, by time.perf_counter() [s]."""
+    prepare: Preparer | None = None
+    """Prepares gears that other runs share; None: this run has its own."""
 
     def archive(self, scene: Scene) -> Archive:
         """The archive of a scene in the folder of the run."""
@@ -64,14 +67,16 @@ class RunContext:
 
 
 @contextmanager
-def run_context(folder: RunFolder, comm: MPI.Comm, resume: bool, quiet: bool, begin: float) -> Iterator[RunContext]:
+def run_context(
+    folder: RunFolder, comm: MPI.Comm, resume: bool, quiet: bool, begin: float, prepare: Preparer | None = None
+) -> Iterator[RunContext]:
     """The context of a run, with its log and its progress display open. quiet: no progress is displayed.
 
     Collective. Raises ArchiveError where the cost of earlier parts cannot be read.
     """
     earlier = on_first(comm, lambda: read_cost(folder) if resume else Cost())
     with logged(folder, comm, resume) as log, Progress(hidden=quiet or comm.rank > 0) as progress:
-        yield RunContext(comm, folder, log, progress, resume, earlier, begin)
+        yield RunContext(comm, folder, log, progress, resume, earlier, begin, prepare)
 
 
 def peak_memory_MB() -> float:

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.gear_model import Preparer
 from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
@@ -38,13 +39,14 @@ def run_scene(
     quiet: bool = False,
     overwrite: bool = False,
     source: Path | None = None,
+    prepare: Preparer | None = None,
 ) -> None:
     """Computes a scene and writes everything to `out`. Collective; the results do not depend on the number of ranks.
 
     resume: continue after the positions, or the blocks of wear, in `out`; where there are none, begin with a warning.
     overwrite: once the gears are condensed, with wear once the unworn pair is solved, remove the files of an earlier
     run that nobody has changed since. With neither, `out` must not hold results. quiet: no progress is displayed.
-    source: the scene's file, which is never overwritten.
+    source: the scene's file, which is never overwritten. prepare: prepares gears that other runs share.
 
     A pitch whose energy does not balance is solved again on deflected flanks. Unconverged positions are never written.
     Raises FolderError before any file is touched; NotConverged, SearchError, BalanceError, MeshError, ArchiveError,
@@ -57,7 +59,7 @@ def run_scene(
         dolfinx_compat.silence_logs()
         solved = on_first(comm, lambda: scene_to_solve(scene, Archive(out, scene), resume))
         completed = on_first(comm, lambda: resume_point(solved, Archive(out, solved), resume))
-        with run_context(folder, comm, resume, quiet, begin) as run:  # no file has been touched yet
+        with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
             _log_beginning(run, solved)
             _compute(run, solved, completed)
 

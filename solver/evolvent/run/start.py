@@ -70,7 +70,8 @@ def prepare_gears(run: RunContext, scene: Scene) -> Preparation:
         run.progress.stage(CONDENSING)
 
     run.progress.stage(MESHING)
-    preparation = prepare_model(gear_problem(scene), run.comm, meshed=meshed)
+    prepare = run.prepare or prepare_model
+    preparation: Preparation = prepare(gear_problem(scene), run.comm, meshed=meshed)
     run.log.info("meshed in %.1f s, condensed in %.1f s", preparation.mesh_seconds, preparation.seconds)
     return preparation
 

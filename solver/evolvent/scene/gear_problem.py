@@ -9,7 +9,7 @@ from evolvent_meshes.gears.member import Member
 
 def gear_problem(scene: Scene) -> GearProblem:
     """The gears of a scene under its load, and how they are computed."""
-    mesh = scene.mesh
+    mesh, served = scene.mesh, scene.load.mesh_torques_Nm
     pinion, wheel = (scene.flank_chart(member.label) for member in Member)
     return GearProblem(
         pair=scene.gear_pair(),
@@ -19,6 +19,7 @@ def gear_problem(scene: Scene) -> GearProblem:
         mesh=MeshSettings(mesh.level, mesh.elements_per_contact_width, mesh.shape, mesh.order, two_levels(scene)),
         flanks=(pinion, wheel),
         options=gear_options(scene),
+        mesh_torques=None if served is None else (1e3 * served[0], 1e3 * served[1]),
     )
 
 

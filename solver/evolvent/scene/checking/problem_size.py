@@ -140,7 +140,7 @@ def _counted_dofs(scene: Scene) -> str:
     return f"{counted(sum(size.dofs for size in sector_sizes(scene)))} degrees of freedom{flanks}"
 
 
-def require_room(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:
+def require_memory(scene: Scene, needed: MemoryEstimate, comm: MPI.Comm) -> None:
     """Raises SceneError on all ranks where one of their machines has too little memory. Collective."""
     node = comm.Split_type(MPI.COMM_TYPE_SHARED)
     processes = node.size

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, field_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
@@ -57,6 +57,26 @@ class LoadSection(SceneSection):
         '"pinion" or "wheel" (or "gear", which is the wheel)',
         default="pinion",
     )
+
+    mesh_torques_Nm: tuple[float, float] | None = key(
+        "lightest and heaviest torque that the meshes serve; scenes under torques between them have meshes in common",
+        "two numbers above 0, load.torque_Nm between them",
+        "give the lightest and the heaviest torque, or delete the key: the mesh is then that of load.torque_Nm alone",
+        default=None,
+    )
+
+    @field_validator("mesh_torques_Nm", mode="before")
+    @classmethod
+    def _list_is_pair(cls, value: Any) -> Any:
+        return tuple(value) if isinstance(value, list) else value
+
+    @model_validator(mode="after")
+    def _meshes_serve_the_torque(self) -> Self:
+        if (served := self.mesh_torques_Nm) and not 0.0 < served[0] <= self.torque_Nm <= served[1]:
+            allowed = f"two numbers above 0 with load.torque_Nm, which is {shown(self.torque_Nm)}, between them"
+            remedy = "give the lightest and the heaviest torque, or delete the key"
+            raise validation_error(InputProblem("mesh_torques_Nm", shown(served), allowed, remedy))
+        return self
 
     @field_validator("on", mode="before")
     @classmethod

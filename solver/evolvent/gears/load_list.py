@@ -1,0 +1,43 @@
+"""Gears under a list of torques: condensed once, for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from mpi4py import MPI
+
+from evolvent.gears.gear_model import CondensedGears, Mesher, Preparation, condensed_gears
+from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
+
+
+def under_torques(problem: GearProblem, torques: Sequence[float]) -> list[GearProblem]:
+    """The problem under each of some torques [N·mm], on meshes that serve all of them."""
+    served = min(torques), max(torques)
+    return [replace(problem, torque=torque, mesh_torques=served) for torque in torques]
+
+
+class LoadList:
+    """Prepares each of some problems, condensing their gears when the first one is asked for.
+
+    problems: alike but for their torques, see `under_torques`.
+    """
+
+    def __init__(self, problems: Sequence[GearProblem]) -> None:
+        self._problems = list(problems)
+        self._gears: dict[Mesher, CondensedGears] = {}
+
+    def prepare(
+        self,
+        problem: GearProblem,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+        mesh: Mesher = run_mesh,
+        meshed: Callable[[], None] = lambda: None,
+    ) -> Preparation:
+        """See `prepare_model`. problem: one of the list. The time of condensing counts where it happens."""
+        if (known := self._gears.get(mesh)) is not None:
+            meshed()
+            return known.under(problem).without_time()
+        self._gears[mesh] = condensed_gears(self._problems, comm, mesh, meshed)
+        return self._gears[mesh].under(problem)

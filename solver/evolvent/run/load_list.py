@@ -1,0 +1,83 @@
+"""A scene under a list of torques: a run for each, on gears that are condensed once. `evolvent loads` calls only
+this."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.load_list import LoadList
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.run_lock import locked
+from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.tables.load_table import LOADS, load_results, write_loads
+from evolvent.run.folder_checks import check_folder
+from evolvent.run.scene_run import run_scene
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene, scene_from_values
+from evolvent.scene.schema.errors import InputProblem, SceneError
+
+PICTURE = "loads.png"
+
+
+def run_loads(
+    scene: Scene,
+    percents: Sequence[float],
+    out: Path,
+    resume: bool = False,
+    quiet: bool = False,
+    overwrite: bool = False,
+    source: Path | None = None,
+) -> list[str]:
+    """Computes a scene under some parts of its torque, the heaviest first, and writes everything to `out`: the folder
+    of a run for each, a table and a picture of all. Returns a sentence for each picture that could not be drawn.
+
+    percents: of the scene's torque, different ones. Other parameters: see `run_scene`, whose errors are raised; results
+    of torques that are complete stay. Collective.
+    """
+    scenes = load_scenes(scene, percents)
+    comm = MPI.COMM_WORLD
+
+    def check() -> None:
+        RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
+        for name, each in scenes.items():
+            check_folder(each, out / name, resume, overwrite, source)
+
+    on_first(comm, check)
+    gears = LoadList([gear_problem(each) for each in scenes.values()])
+    for name, each in scenes.items():
+        run_scene(each, out / name, resume, quiet, overwrite, source, gears.prepare)
+    return on_first(comm, lambda: _written(out, list(scenes)))
+
+
+def load_scenes(scene: Scene, percents: Sequence[float]) -> Mapping[str, Scene]:
+    """Name of its folder -> the scene under each part of its torque, on meshes that serve all of them; the heaviest
+    first. Raises SceneError where the gears wear, or where one of the torques is refused."""
+    if scene.wear is not None:
+        found, allowed = "a load list of gears that wear", "a scene without [wear]"
+        raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
+    torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(percents, reverse=True)}
+    served, values = (min(torques.values()), max(torques.values())), scene.model_dump(exclude_none=True)
+    return {
+        f"load_{percent:05.1f}_percent": scene_from_values(
+            {**values, "load": {**values["load"], "torque_Nm": torque, "mesh_torques_Nm": served}}
+        )
+        for percent, torque in torques.items()
+    }
+
+
+def _written(out: Path, names: Sequence[str]) -> list[str]:
+    """Writes the table and the picture. On rank 0 alone. Raises WriteError, FolderError."""
+    with locked(out):
+        results, folder = load_results([out / name for name in names]), RunFolder(out)
+        write_loads(folder, results)
+
+        def drawn() -> bytes:
+            from evolvent.results.figures.load_list import loads_picture  # matplotlib takes a second to import
+
+            return loads_picture(results)
+
+        return list(draw([Picture(PICTURE, drawn)], folder).failures)

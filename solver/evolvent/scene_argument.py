@@ -1,0 +1,51 @@
+"""The scene that a command is given: read and checked on all ranks alike."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from mpi4py import MPI
+
+from evolvent.scene.schema.errors import SceneError
+
+if TYPE_CHECKING:
+    from evolvent.scene.scene import Scene
+
+
+def loaded_scene(
+    path: Path, level: str | None, settings: Sequence[str] | None, no_skip: Sequence[str] | None, comm: MPI.Comm
+) -> Scene:
+    """The scene, read on rank 0 and broadcast. Collective; raises SceneError on all ranks."""
+    from evolvent.scene.scene import load_scene
+
+    result: Scene | SceneError | None = None
+    if comm.rank == 0:
+        try:
+            overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
+            overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
+            result = load_scene(path, overrides)
+        except SceneError as error:
+            result = error
+    result = comm.bcast(result)
+    assert result is not None
+    if isinstance(result, SceneError):
+        raise result
+    return result
+
+
+def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
+    """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective."""
+    from evolvent.scene.checking.problem_size import memory_megabytes, mesh_megabytes, require_memory
+
+    if not force:
+        require_memory(scene, memory_megabytes if command == "run" else mesh_megabytes, comm)
+
+
+def require(holds: bool, message: str) -> None:
+    """Raises a usage error unless `holds`. message: with key, found, allowed and remedy."""
+    if not holds:
+        raise typer.BadParameter(message)

@@ -13,6 +13,8 @@ from evolvent import __version__
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.output import SKIP_NAMES
 
+MOST_PERCENT = 1000.0
+"""Largest part of a scene's torque in a load list."""
 UsageError: type[Exception] = cast(type[Exception], typer.BadParameter.__base__)
 """What typer raises for an option or argument that it cannot use. Typer has no public name for this class."""
 EXAMPLES = {"DIR": "out/mine", "FILE.msh": "pair.msh"}
@@ -91,13 +93,13 @@ def given_number(text: str) -> float:
 def given_percents(text: str) -> tuple[float, ...]:
     """Percentages from the command line, "5,10,100". Raises typer.BadParameter."""
     percents = tuple(given_number(part.strip()) for part in text.split(","))
-    wrong = [each for each in percents if not 0.0 < each <= MOST_PERCENT]
+    wrong = [each for each in percents if not 0.0 < each <= MOST_PERCENT]  # NaN among them
     if wrong or len(set(percents)) < len(percents):
-        raise typer.BadParameter(f"{text}; allowed: different numbers above 0 up to {MOST_PERCENT:g}")
+        allowed = f"different numbers above 0 up to {MOST_PERCENT:g}"
+        raise typer.BadParameter(f"--percent: found {text}; allowed: {allowed}; remedy: write --percent 25,50,100")
     return percents
 
 
-MOST_PERCENT = 1000.0
 SceneFile = Annotated[
     Path,
     typer.Argument(metavar="SCENE.toml", help="The scene file; docs/scene.md lists its keys.", parser=given_path),

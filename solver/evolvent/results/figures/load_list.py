@@ -60,8 +60,9 @@ def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
     """Transmission error over the pitch, less its mean, under each torque."""
     ordered = sorted(results, key=lambda each: each.torque)
     for rank, each in enumerate(ordered):
-        colour, varying = FRICTION_MAP(rank / max(1, len(ordered) - 1)), each.transmission_error
+        colour, varying = FRICTION_MAP(rank / max(1, len(ordered) - 1)), np.array(each.transmission_error)
         axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.torque:.4g} N·m")
     axes.set_xlabel("pinion rotation [°]")
-    axes.set_ylabel(f"transmission error less its mean [µm], μ = {ordered[0].friction:g}")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
+    axes.set_ylabel("transmission error less its mean [µm]")
+    title = f"μ = {ordered[0].friction:g}"
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0, title=title, title_fontsize=8.0)

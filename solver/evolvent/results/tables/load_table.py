@@ -6,13 +6,11 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 from typing import Any
-
-import numpy as np
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
-from evolvent_meshes.arrays import Floats
 
 LOADS = "loads.csv"
 FIGURES = (
@@ -35,10 +33,10 @@ class LoadResult:
     """Each of `FIGURES`; NaN where the run has none."""
     errors: Mapping[str, float]
     """Their estimated errors; NaN where none are known."""
-    angle: Floats
-    """(n,) of the pinion at each position [°]."""
-    transmission_error: Floats
-    """(n,) [µm]."""
+    angle: tuple[float, ...]
+    """Of the pinion at each position [°]."""
+    transmission_error: tuple[float, ...]
+    """At each position [µm]."""
 
 
 def load_results(folders: Sequence[Path]) -> list[LoadResult]:
@@ -51,7 +49,7 @@ def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
     """One of the friction coefficients of a run."""
     positions = [each for each in summary["positions"] if each["friction"] == row["friction"]]
     keys = "pinion_angle_deg", "transmission_error_um"
-    angle, error = (np.array([each[key] for each in positions], dtype=float) for key in keys)
+    angle, error = (tuple(float(each[key]) for each in positions) for key in keys)
     bars = row["estimated_error"] or {}
     return LoadResult(
         torque=summary["scene"]["load"]["torque_Nm"],
@@ -77,7 +75,7 @@ def _row(result: LoadResult) -> dict[str, float]:
     row = {
         "torque_Nm": result.torque,
         "friction": result.friction,
-        "transmission_error_mean_um": float(result.transmission_error.mean()),
+        "transmission_error_mean_um": fmean(result.transmission_error),
     }
     for key in FIGURES:
         row |= {key: result.figures[key], key + BAR: result.errors[key]}

@@ -1,0 +1,77 @@
+"""A scene under a list of loads: folders, table and picture, resuming, refusals. He's spur pair, three positions."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from evolvent.cli import Exit, main
+from evolvent.gears import load_list as gear_loads
+from evolvent.run.load_list import load_scenes, run_loads
+from evolvent.run.scene_run import run_scene
+from evolvent.scene.scene import SceneError, load_scene
+from tests.support.gear_cases import spur_scene
+
+SHORT = (
+    "mesh.level=quick", "sweep.positions=3", "contact.friction=[0.0]", "output.pictures=false", "output.fields=false",
+    "output.animation=false", "output.error_bars=true",
+)  # fmt: skip
+
+
+def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half and all of the torque: two folders with the torque in their summaries, a line each in the table that repeats
+    their figures; the gears and their coarse companion are condensed once each. Resumed, nothing is condensed. The
+    scene that a run leaves gives the same figures alone."""
+    calls, condensed = [], gear_loads.condensed_gears
+
+    def counted(*given: object, **named: object) -> object:
+        calls.append(given)
+        return condensed(*given, **named)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(gear_loads, "condensed_gears", counted)
+    scene = spur_scene(*SHORT)
+    assert run_loads(scene, [50.0, 100.0], tmp_path, quiet=True) == []
+    assert len(calls) == 2
+    with open(tmp_path / "loads.csv", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    folders = [tmp_path / name for name in ("load_100.0_percent", "load_050.0_percent")]
+    torque = scene.load.torque_Nm
+    assert [float(row["torque_Nm"]) for row in rows] == [torque, 0.5 * torque]
+    for row, folder in zip(rows, folders):
+        (figures,) = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["frictions"]
+        for key in ("transmission_error_peak_to_peak_um", "max_pressure_MPa"):
+            assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
+            assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
+    assert (tmp_path / "pictures" / "loads.png").stat().st_size > 10_000
+    run_loads(scene, [50.0, 100.0], tmp_path, resume=True, quiet=True)
+    assert len(calls) == 2
+    run_scene(load_scene(folders[1] / "scene.toml"), tmp_path / "alone", quiet=True)
+    alone, found = (
+        json.loads((folder / "summary.json").read_text(encoding="utf-8"))["frictions"][0]
+        for folder in (tmp_path / "alone", folders[1])
+    )
+    assert alone["max_pressure_MPa"] == pytest.approx(found["max_pressure_MPa"], rel=1e-6)
+
+
+def test_gears_that_wear_have_no_load_list() -> None:
+    """The remedy is named."""
+    wearing = ("wear.cycles=1e5", "wear.pinion_mm2_per_N=1e-12", "wear.wheel_mm2_per_N=1e-12")
+    with pytest.raises(SceneError, match="without \\[wear\\]"):
+        load_scenes(spur_scene(*SHORT, *wearing), [50.0, 100.0])
+
+
+@pytest.mark.parametrize("percents", ["0,50", "50,50", "fifty", "2000"])
+def test_impossible_percentages_are_refused(percents: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Status 2 before anything is written."""
+    status = main(["loads", "demos/first_pair.toml", "--out", str(tmp_path / "out"), "--percent", percents])
+    assert status == Exit.BAD_INPUT and "--percent" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_torque_beyond_those_of_the_meshes_is_refused() -> None:
+    """A scene whose meshes serve 1 to 2 N·m only."""
+    with pytest.raises(SceneError, match="mesh_torques_Nm"):
+        spur_scene(*SHORT, "load.mesh_torques_Nm=[1.0,2.0]")

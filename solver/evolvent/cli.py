@@ -1,8 +1,7 @@
 """The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
 
 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in `run` and
-`loads`, in which only rank 0 prints; a rank that fails alone prints its message and ends all ranks. Rank 0 alone does
-all else.
+`loads`; only rank 0 prints, but a rank that fails alone does, and ends all. Rank 0 alone does all else.
 """
 
 from __future__ import annotations
@@ -40,8 +39,8 @@ from evolvent_meshes.files import require_writable
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-RESUME = "; `evolvent run ... --resume` continues"
-"""Appended to the message on a signal that ends a run."""
+RESUME = "; `evolvent {} ... --resume` continues"
+"""Appended to the message on a signal that ends a command."""
 SHARED = ("run", "loads")
 """The commands that all ranks take part in."""
 BOTH = (
@@ -102,7 +101,7 @@ def run(
     The positions of one angular pitch 2π/z_1 (one mesh cycle) for every friction coefficient; tables, fields and
     pictures go to DIR.
     """
-    with reported(parallel=True, advice=RESUME):
+    with reported(parallel=True, advice=RESUME.format("run")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
         if petsc is not None:
@@ -143,14 +142,15 @@ def loads(
 
     The gears are condensed once. DIR gets the folder of a run for each load, and loads.csv and pictures/loads.png.
     """
-    with reported(parallel=True, advice=RESUME):
+    with reported(parallel=True, advice=RESUME.format("loads")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
         from evolvent.run.load_list import load_scenes, run_loads
 
-        for each in load_scenes(loaded, percent).values():
+        scenes = load_scenes(loaded, percent)
+        for each in scenes.values():
             require_room(each, "run", force, MPI.COMM_WORLD)
-        for failure in run_loads(loaded, percent, out, resume, quiet, overwrite, scene):
+        for failure in run_loads(scenes, out, resume, quiet, overwrite, scene):
             typer.echo(f"evolvent: warning: {failure}", err=True)
         if not quiet:
             typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")

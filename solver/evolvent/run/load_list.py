@@ -24,21 +24,19 @@ PICTURE = "loads.png"
 
 
 def run_loads(
-    scene: Scene,
-    percents: Sequence[float],
+    scenes: Mapping[str, Scene],
     out: Path,
     resume: bool = False,
     quiet: bool = False,
     overwrite: bool = False,
     source: Path | None = None,
 ) -> list[str]:
-    """Computes a scene under some parts of its torque, the heaviest first, and writes everything to `out`: the folder
-    of a run for each, a table and a picture of all. Returns a sentence for each picture that could not be drawn.
+    """Computes a scene under some torques, one after the other, and writes everything to `out`: the folder of a run for
+    each, a table and a picture of all. Returns a sentence for each picture that could not be drawn.
 
-    percents: of the scene's torque, different ones. Other parameters: see `run_scene`, whose errors are raised; results
-    of torques that are complete stay. Collective.
+    scenes: see `load_scenes`. Other parameters: see `run_scene`, whose errors are raised; results of torques that are
+    complete stay. Collective.
     """
-    scenes = load_scenes(scene, percents)
     comm = MPI.COMM_WORLD
 
     def check() -> None:
@@ -55,18 +53,24 @@ def run_loads(
 
 def load_scenes(scene: Scene, percents: Sequence[float]) -> Mapping[str, Scene]:
     """Name of its folder -> the scene under each part of its torque, on meshes that serve all of them; the heaviest
-    first. Raises SceneError where the gears wear, or where one of the torques is refused."""
+    first. percents: different ones. Raises SceneError where the gears wear, or where one of the torques is refused."""
     if scene.wear is not None:
         found, allowed = "a load list of gears that wear", "a scene without [wear]"
         raise SceneError([InputProblem("wear", found, allowed, "delete the section, or take `evolvent run`")])
     torques = {percent: scene.load.torque_Nm * percent / 100.0 for percent in sorted(percents, reverse=True)}
     served, values = (min(torques.values()), max(torques.values())), scene.model_dump(exclude_none=True)
     return {
-        f"load_{percent:05.1f}_percent": scene_from_values(
+        _folder(percent): scene_from_values(
             {**values, "load": {**values["load"], "torque_Nm": torque, "mesh_torques_Nm": served}}
         )
         for percent, torque in torques.items()
     }
+
+
+def _folder(percent: float) -> str:
+    """Its name, another one for each percentage."""
+    whole, point, decimals = str(float(percent)).partition(".")
+    return f"load_{whole:0>3}{point}{decimals}_percent"
 
 
 def _written(out: Path, names: Sequence[str]) -> list[str]:

@@ -33,7 +33,7 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(gear_loads, "condensed_gears", counted)
     scene = spur_scene(*SHORT)
-    assert run_loads(scene, [50.0, 100.0], tmp_path, quiet=True) == []
+    assert run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, quiet=True) == []
     assert len(calls) == 2
     with open(tmp_path / "loads.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
@@ -46,7 +46,7 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
             assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
             assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
     assert (tmp_path / "pictures" / "loads.png").stat().st_size > 10_000
-    run_loads(scene, [50.0, 100.0], tmp_path, resume=True, quiet=True)
+    run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, resume=True, quiet=True)
     assert len(calls) == 2
     run_scene(load_scene(folders[1] / "scene.toml"), tmp_path / "alone", quiet=True)
     alone, found = (
@@ -54,6 +54,13 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
         for folder in (tmp_path / "alone", folders[1])
     )
     assert alone["max_pressure_MPa"] == pytest.approx(found["max_pressure_MPa"], rel=1e-6)
+
+
+def test_each_load_has_a_folder_of_its_own() -> None:
+    """Loads that differ by less than a tenth of a percent, the heaviest first. Exact."""
+    scenes = load_scenes(spur_scene(*SHORT), [5.0, 12.51, 12.54, 100.0])
+    names = ["load_100.0_percent", "load_012.54_percent", "load_012.51_percent", "load_005.0_percent"]
+    assert list(scenes) == names
 
 
 def test_gears_that_wear_have_no_load_list() -> None:

@@ -176,15 +176,19 @@ class GearProblem:
         """The lightest and the heaviest torque that the meshes serve."""
         return (self.torque, self.torque) if self.mesh_torques is None else self.mesh_torques
 
-    @property
+    @cached_property
     def lightest(self) -> GearProblem:
         """Under the lightest torque that the meshes serve, whose contact is the narrowest."""
-        return replace(self, torque=self._served[0])
+        return self._under(self._served[0])
 
-    @property
+    @cached_property
     def heaviest(self) -> GearProblem:
         """Under the heaviest torque that they serve, whose contact is the widest."""
-        return replace(self, torque=self._served[1])
+        return self._under(self._served[1])
+
+    def _under(self, torque: float) -> GearProblem:
+        """Itself, with what it has computed, where the torque is its own."""
+        return self if torque == self.torque else replace(self, torque=torque)
 
     @cached_property
     def pitches(self) -> int:

@@ -26,7 +26,7 @@ export OMPI_MCA_btl ?= self,vader
 export OMPI_MCA_btl_vader_single_copy_mechanism ?= none
 
 demo: $(ready)
-	.venv/bin/evolvent run demos/yang2022.toml --level quick --set sweep.positions=12 --out out/yang2022 --overwrite
+	.venv/bin/evolvent run demos/yang2022.toml --level quick --out out/yang2022 --overwrite
 
 test: $(ready)
 	.venv/bin/python -m pytest $(ON_ALL_CORES) $(PYTEST_ARGS)

@@ -1,7 +1,8 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, level-sizes, two-level, all
-(the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
+PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, level-sizes, two-level,
+runs, all (the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in
+docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
 
@@ -17,7 +18,16 @@ from typing import Any
 from evidence.benchmarks.accuracy import error_bars, spacing, two_level
 from evidence.benchmarks.comparison import work_precision
 from evidence.benchmarks.comparison.programs import PEERS, Program
-from evidence.benchmarks.gears import pitch_precision, plane_and_solid, position_cost, profile, scaling, skips, wear
+from evidence.benchmarks.gears import (
+    pitch_precision,
+    plane_and_solid,
+    position_cost,
+    profile,
+    scaling,
+    skips,
+    wear,
+    whole_runs,
+)
 from evidence.benchmarks.pages.page import write_page
 from evidence.checkout import DOCS
 from evidence.tables import write_rows
@@ -89,6 +99,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "wear": Measurement.wear,
     "level-sizes": _table("level_sizes", lambda given: scaling.level_rows(given.size(scaling), given.folder)),
     "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
+    "runs": _table("runs", lambda given: whole_runs.rows(given.size(whole_runs), given.folder)),
 }
 
 

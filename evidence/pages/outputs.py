@@ -18,6 +18,7 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
+from evolvent.results.tables.load_table import LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from evolvent.scene.skips import Skipped
 from evolvent.wear.gears.gear_study import BlockRow
@@ -53,6 +54,9 @@ FILES = (
     ("wear.json", "a wear study: the values at each report"),
     ("worn_*", "a wear study: the pair after so many cycles, a folder with its tables, its scene, both flanks as "
       "charts and `results/`; pictures once `evolvent plot` draws them, no run.log, no fields"),
+    ("load_*", "`evolvent loads`: the run under one torque, a folder with all of the above"),
+    ("loads.csv", "`evolvent loads`: one line per load and friction coefficient"),
+    ("pictures/loads.png", "`evolvent loads`: transmission error, largest pressure and mesh stiffness over the torque"),
 )
 ARRAYS = (
     ("gear", "0 on the pinion, 1 on the wheel"),
@@ -90,6 +94,7 @@ SECTIONS = (
     ("`frictions`, `estimated_error` and `spacing_error` of an entry", FigureErrors, ""),
     ("`positions`, each entry; the columns of `positions.csv`", PositionRow, ""),
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
+    ("`loads.csv`", LoadRow, "Of `evolvent loads`."),
     ("`wear.csv`", BlockRow, ""),
     ("`wear.json`", WearReport, ""),
     ("`wear.json`, `reports`, each entry", PairReport, ""),

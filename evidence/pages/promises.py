@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
+from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.position_cost import GearRow
 from evidence.benchmarks.gears.scaling import RatioRow
 from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow
+from evidence.benchmarks.gears.whole_runs import RunRow
 from evidence.benchmarks.pages.comparison import FROM, GEAR_BARS, TITLES, advantage, anew, large, unmatched
 from evidence.benchmarks.pages.gear_pairs import SPUR_BAR, WEAR_BAR, least_ratio
 from evidence.tables import Column, Table, read_csv, read_rows
@@ -99,12 +101,29 @@ def _speed(tables: Path) -> Iterator[Promise]:
     for ratio_row in read_rows(tables / "ratios.csv", RatioRow):
         compared = _at_least if ratio_row.is_least else _at_most
         yield compared(f"{ratio_row.what}, {ratio_row.dofs:,} dofs", ratio_row.ratio, ratio_row.bar)
+    for run in read_rows(tables / "runs.csv", RunRow):
+        yield from _run(run)
+    levels = [row for row in read_rows(tables / "two_level.csv", AccuracyRow) if not isnan(row.bar)]
+    met = sum(row.met for row in levels)
+    what = "bars of flanks in levels, against exact condensation and against Hertz (docs/benchmark.md)"
+    yield Promise(what, "all", f"{met} of {len(levels)}", met == len(levels))
     spur = "spur pair, seconds in 3D over 2D at equal error, least of three meshes"
     yield _at_least(spur, least_ratio(read_rows(tables / "spur.csv", SpurRow)), SPUR_BAR)
     for cost in read_rows(tables / "wear_cost.csv", WearCostRow):
         what = f"wear study of {BLOCKS} blocks over a sweep, {cost.case}"
         yield _at_most(f"{what}, preparing counted", cost.whole, WEAR_BAR)
         yield _at_most(f"{what}, preparing not counted", cost.bare, WEAR_BAR)
+
+
+def _run(run: RunRow) -> Iterator[Promise]:
+    """Its bars, if it came to its end."""
+    name = f"{run.case}, `{run.level}`, two ranks"
+    if not (isnan(run.seconds_bar) or run.note):
+        bar, found = (f"{value:.0f} s" for value in (run.seconds_bar, run.seconds))
+        yield Promise(f"{name}: time", bar, found, run.seconds <= run.seconds_bar)
+    if not (isnan(run.memory_bar_MB) or run.note):
+        bar, found = (f"{value / 1000:.1f} GB" for value in (run.memory_bar_MB, run.memory_MB))
+        yield Promise(f"{name}: memory", bar, found, run.memory_MB <= run.memory_bar_MB)
 
 
 def _error_bars(tables: Path) -> Iterator[Promise]:
@@ -116,9 +135,11 @@ def _error_bars(tables: Path) -> Iterator[Promise]:
 
 
 def _scenes(robustness: Path) -> Iterator[Promise]:
-    verdicts, worn = ([line["verdict"] for line in read_csv(robustness / name)] for name in ("scenes.csv", "wear.csv"))
-    good = verdicts.count("converged")
-    yield Promise("random scenes that converge, balanced", "all", f"{good} of {len(verdicts)}", good == len(verdicts))
+    names = ("scenes.csv", "levels.csv", "wear.csv")
+    every, levelled, worn = ([line["verdict"] for line in read_csv(robustness / name)] for name in names)
+    for what, verdicts in (("random scenes", every), ("random scenes, flanks in levels,", levelled)):
+        good, count = verdicts.count("converged"), len(verdicts)
+        yield Promise(f"{what} that converge, balanced", "all", f"{good} of {count}", good == count)
     wrong = sum(verdict in ("wrong", "crashed", "hung") for verdict in worn)
     yield Promise("random wear studies that are wrong, crash or hang", "0", f"{wrong} of {len(worn)}", not wrong)
 
@@ -126,10 +147,10 @@ def _scenes(robustness: Path) -> Iterator[Promise]:
 def _parameters(robustness: Path) -> Iterator[Promise]:
     claims = measured(robustness / "independence.md")
     for what, start in OVER_PARAMETERS:
-        solved = [each for each in claims if each.quantity.startswith(start) and not math.isnan(each.found)]
+        solved = [each for each in claims if each.quantity.startswith(start) and not isnan(each.found)]
         worst = max(each.off for each in solved)
         yield Promise(what, "0.5 %", f"{100 * worst:.2g} %", all(each.held for each in solved))
-    refused = {each.quantity.split(", ")[2] for each in claims if math.isnan(each.found)}
+    refused = {each.quantity.split(", ")[2] for each in claims if isnan(each.found)}
     yield Promise("γ = 1.1 C, spur pair", "a result", f"refused, {' and '.join(sorted(refused))}", not refused)
     newton = max(each.found for each in claims if each.quantity.startswith("Newton iterations"))
     yield _at_most("Newton iterations per position with friction, mean", newton, 8.0)

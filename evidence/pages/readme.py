@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from evidence.benchmarks.gears.scaling import RatioRow, SizeRow
+from evidence.benchmarks.gears.whole_runs import RunRow
 from evidence.pages.promises import Measured, measured
-from evidence.tables import Column, Table, markdown, read_rows
+from evidence.tables import Column, Table, markdown
 
 SHOWN = (
     ("non-matching meshes, uniform pressure (patch test)", "Patch test",
@@ -34,34 +35,21 @@ SHOWN = (
 """What README.md calls a claim, the title of its problem, and what docs/verification.md calls it."""
 
 
-RUNS = (
-    ("`quick`, 40 positions, one friction coefficient", "a pitch of 40", ("above",)),
-    ("`quick`, 40 positions, seven coefficients", "seven friction coefficients over one, 0.11", ("above",)),
-    ("`standard`, 20 positions, seven coefficients", "one rank", ("above", "below")),
-)
-"""A run, how the ratio that it was measured for begins, and which seconds of it: on one rank, on two."""
-SIZES = Table(
-    SizeRow,
+SPEED = Table(
+    RunRow,
     (
-        Column("dofs of both sectors", "dofs", ","),
+        Column("run, 20 positions", "case", words=True), Column("level", "level", words=True),
+        Column("friction coefficients", "frictions"), Column("gears ready after", lambda row: f"{row.prepare:.0f} s"),
+        Column("whole run", lambda row: f"{row.seconds:.0f} s"),
         Column("memory", lambda row: f"{row.memory_MB / 1000:.1f} GB"),
-        Column("assemble and condense, once", lambda row: f"{row.assemble + row.condense:.0f} s"),
-        Column("one more position", lambda row: f"{row.position:.2g} s"),
     ),
-)
+)  # fmt: skip
 
 
 def speed(docs: Path) -> str:
-    """What a run of the helical pair costs."""
-    ratios = read_rows(docs / "benchmark" / "ratios.csv", RatioRow)
-    lines = []
-    for run, start, names in RUNS:
-        row = next(row for row in ratios if row.what.startswith(start))
-        seconds = [f"{getattr(row, name):.0f} s" for name in names]
-        lines.append((run, f"{row.dofs:,}", *seconds, *[""] * (2 - len(seconds))))
-    head = ("a pitch of the helical pair (Yang)", "dofs", "one rank", "two ranks")
-    sizes = SIZES.markdown(row for row in SIZES.read(docs / "benchmark" / "sizes.csv") if not row.note)
-    return f"{markdown(head, lines, right=(1, 2, 3))}\n\n{sizes}"
+    """What runs from the command line cost."""
+    rows = [row for row in SPEED.read(docs / "benchmark" / "runs.csv") if not row.note]
+    return SPEED.markdown(replace(row, case=row.case.replace(", 20 positions", "")) for row in rows)
 
 
 def verification(docs: Path) -> str:

@@ -1,8 +1,8 @@
 """`python -m evidence.robustness [PART] [--out docs]`: measures a part, writes OUT/stress.md.
 
-PART: matrix, scenes, wear, independence, faults, or all, the default. Each keeps its piece of the page in
-OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT` and `wear-seeds FIRST COUNT` are the
-processes that `scenes` and `wear` start.
+PART: matrix, scenes, levels, wear, independence, faults, or all, the default. Each keeps its piece of the page in
+OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...` and `wear-seeds
+...` are the processes that `scenes`, `levels` and `wear` start.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from evidence import report
 from evidence.checkout import DOCS
 from evidence.claims import Claim
 from evidence.robustness.campaigns import summaries
-from evidence.robustness.campaigns.campaign import SCENES, WEAR, Trial, campaign, solve_seeds
+from evidence.robustness.campaigns.campaign import LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
 from evidence.robustness.faults import fault_claims
 from evidence.robustness.settings.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
 from evidence.robustness.settings.matrix import SHEETS
@@ -31,7 +31,7 @@ INTRODUCTION = """What happens at the edge of what can be asked: every setting o
 sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
 message and no result; what was refused is listed below its figure."""
 PICTURES = "pictures/stress"
-COUNTS = {SCENES.command: 500, WEAR.command: 100}
+COUNTS = {SCENES.command: 500, LEVELS.command: 40, WEAR.command: 100}
 CLAIMS = Table(
     Claim,
     (
@@ -66,6 +66,13 @@ def scenes(out: Path) -> list[str]:
     return ["## Random scenes", summaries.scene_summary(outcomes)]
 
 
+def levels(out: Path) -> list[str]:
+    """Random scenes on flanks in levels of their own, counted."""
+    outcomes = _outcomes(LEVELS)
+    summaries.SCENES.write(out / "stress/levels.csv", outcomes)
+    return ["## Random scenes, flanks in levels", summaries.level_summary(outcomes)]
+
+
 def wear(out: Path) -> list[str]:
     """Random wear studies, counted, and the messages of those that were stopped."""
     outcomes = _outcomes(WEAR)
@@ -98,9 +105,9 @@ def faults(_: Path) -> list[str]:
 
 
 PARTS: Mapping[str, Callable[[Path], list[str]]] = {
-    "matrix": matrix, "scenes": scenes, "wear": wear, "independence": independence, "faults": faults,
+    "matrix": matrix, "scenes": scenes, "levels": levels, "wear": wear, "independence": independence, "faults": faults,
 }  # fmt: skip
-TRIALS = {trial.command: trial for trial in (SCENES, WEAR)}
+TRIALS = {trial.command: trial for trial in (SCENES, LEVELS, WEAR)}
 
 
 def main(arguments: list[str]) -> None:

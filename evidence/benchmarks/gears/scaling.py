@@ -112,8 +112,10 @@ def ratio_rows(sizes: ScalingSizes, folder: Path) -> Iterator[RatioRow]:
     over, several = "over assembling and factoring both gears", "seven friction coefficients"
     _, once = pitch_cost(folder, sizes.ratio, 0)
     _, whole = pitch_cost(folder, sizes.ratio, sizes.positions)
-    for what, above in ((f"a pitch of {sizes.positions} positions", _seconds(whole)),
-                        (f"{sizes.positions} positions alone", sum(whole.positions))):  # fmt: skip
+    _, levels = pitch_cost(folder, sizes.ratio, sizes.positions, LEVELS)
+    pitch = f"a pitch of {sizes.positions} positions"
+    for what, above in ((pitch, _seconds(whole)), (f"{sizes.positions} positions alone", sum(whole.positions)),
+                        (f"{pitch}, flanks in levels,", _seconds(levels))):  # fmt: skip
         yield _ratio(f"{what} {over}", whole.dofs, above, once.factoring, 3.0, 1.5)
     _, seven = pitch_cost(folder, sizes.ratio, sizes.positions, frictions=SEVEN)
     _, strong = pitch_cost(folder, sizes.ratio, sizes.positions, frictions=STRONGEST)  # where more is solved again

@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator
 
 from evidence.benchmarks.comparison.programs import EVOLVENT
 from evidence.benchmarks.comparison.work_precision import Row
-from evidence.benchmarks.gears.pitch_precision import PitchRow
+from evidence.benchmarks.gears.pitch_precision import IN_LEVELS, ONE_MESH, PitchRow
 from evidence.benchmarks.gears.position_cost import GearRow
 from evidence.benchmarks.gears.scaling import SizeRow, exponent
 from evidence.benchmarks.gears.wear import WearPrecisionRow
@@ -27,8 +27,9 @@ BLOCK_COLOURS = {"implicit": "#c0392b", "explicit": "#1f5fa8"}
 PLURAL = {"quadrilateral": "quadrilaterals", "triangle": "triangles", "hexahedron": "hexahedra",
           "tetrahedron": "tetrahedra"}  # fmt: skip
 FAMILIES = {
-    ("hexahedron", 1, 1): "o--", ("tetrahedron", 1, 1): "^--", ("hexahedron", 2, 1): "s-", ("tetrahedron", 2, 1): "v-",
-    ("hexahedron", 2, 2): "D:",
+    ("hexahedron", 1, 1, ONE_MESH): "o--", ("tetrahedron", 1, 1, ONE_MESH): "^--",
+    ("hexahedron", 2, 1, ONE_MESH): "s-", ("tetrahedron", 2, 1, ONE_MESH): "v-",
+    ("hexahedron", 2, 2, ONE_MESH): "D:", ("hexahedron", 2, 1, IN_LEVELS): "P-",
 }  # fmt: skip
 WRONG = 0.5  # an error of the profile that would squeeze all others into a corner of the figure
 SIMPLICES = ("triangle", "tetrahedron")
@@ -101,9 +102,11 @@ def pitches(rows: Sequence[PitchRow]) -> Figure:
         figure = style.sheet("The gear pair: run time against error", see, (11.0, 5.2))
         axes = figure.subplots(1, 2, sharex=True, sharey=True)
         for panel, name, title in zip(axes, ("one", "pitch"), ("one position", f"a pitch of {kept[0].positions}")):
-            for (shape, order, ranks), marks in FAMILIES.items():
-                shown = [r for r in kept if (r.shape, r.order, r.ranks) == (shape, order, ranks)]
+            for family, marks in FAMILIES.items():
+                shown = [r for r in kept if (r.shape, r.order, r.ranks, r.flanks) == family]
+                shape, order, ranks, flanks = family
                 label = f"{PLURAL[shape]}, order {order}" + (", two ranks" if ranks > 1 else "")
+                label += ", flanks in levels" if flanks == IN_LEVELS else ""
                 panel.loglog(100 * np.abs(column(shown, "error")), column(shown, name), marks, ms=5, label=label)
             panel.set_xlabel("error of the mean transmission error [%]")
             panel.set_title(title, fontsize=10)

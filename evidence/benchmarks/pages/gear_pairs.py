@@ -11,6 +11,7 @@ from evidence.benchmarks.gears.profile import ProfileRow
 from evidence.benchmarks.gears.scaling import RatioRow, SizeRow, exponent
 from evidence.benchmarks.gears.skips import SkipRow
 from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow, WearPrecisionRow
+from evidence.benchmarks.gears.whole_runs import RANKS, RunRow
 from evidence.benchmarks.pages import figures
 from evidence.benchmarks.pages.section import PageSection, verdict
 from evidence.tables import Column, Table
@@ -21,7 +22,8 @@ WEAR_BAR = 5.0
 PITCHES = """Wall seconds of the whole process without meshing: for a run of one position, for the pitch, and for one
 position with an empty cache of compiled forms (*cold*). Error: of the pitch's mean transmission error, against the
 overkill pitch. *Elements* are those across the contact width; the body keeps what its level has, and with order 1 the
-error of that remains."""
+error of that remains. Flanks in *levels* are finer than their body ([two_level.md](two_level.md)): dofs are then those
+of one fine mesh with the same cells in contact."""
 
 
 def _power_laws(rows: Sequence[SizeRow]) -> list[str]:
@@ -71,6 +73,15 @@ def _spur_said(rows: Sequence[SpurRow]) -> list[str]:
     ]
 
 
+def _runs_said(rows: Sequence[RunRow]) -> list[str]:
+    return [
+        f"`evolvent run` on {RANKS} ranks, from the scene file to its last output: wall seconds, memory of all ranks "
+        "together, iterations of Newton's method a position. *Plain*: without error bars, pictures and fields. "
+        "Degrees of freedom are those of one sector of both gears, and of the finest flanks where they have levels. "
+        "The scenes are in `evidence/benchmarks/gears/whole_runs.py`."
+    ]
+
+
 def _wear_said(rows: Sequence[WearCostRow]) -> list[str]:
     whole, bare = (
         "met" if all(ratio <= WEAR_BAR for ratio in ratios) else "missed"
@@ -87,7 +98,8 @@ PITCH_TABLE = Table(
     PitchRow,
     (
         Column("cells", "shape", words=True), Column("order", "order"), Column("ranks", "ranks"),
-        Column("elements", "elements", "g"), Column("dofs", "dofs", ","), Column("one position s", "one", ".3g"),
+        Column("flanks", "flanks", words=True), Column("elements", "elements", "g"), Column("dofs", "dofs", ","),
+        Column("one position s", "one", ".3g"),
         Column("cold s", "cold", ".3g"), Column("pitch s", "pitch", ".3g"), Column("MB", "memory_MB", ".0f"),
         Column("error %", "error", "+.2%"), Column("overkill's own %", "reference_error", ".2%"),
     ),
@@ -139,6 +151,17 @@ SPUR_TABLE = Table(
         Column("3D over 2D", lambda row: f"**{row.volume_seconds / row.seconds:.1f}**"),
     ),
 )  # fmt: skip
+RUN_TABLE = Table(
+    RunRow,
+    (
+        Column("run", "case", words=True), Column("level", "level", words=True), Column("coefficients", "frictions"),
+        Column("dofs", lambda row: row.dofs + row.flank_dofs, ","), Column("prepare s", "prepare", ".3g"),
+        Column("positions s", "positions", ".3g"), Column("error bars s", "error_bars", ".3g"),
+        Column("output s", "output", ".3g"), Column("all s", "seconds", ".0f"), Column("bar", "seconds_bar", ".0f"),
+        Column("MB", "memory_MB", ".0f"), Column("bar", "memory_bar_MB", ".0f"), Column("Newton", "iterations", ".1f"),
+        Column("", lambda row: verdict(row.met) if row.has_bar and not row.note else "", words=True),
+    ),
+)  # fmt: skip
 WEAR_COST_TABLE = Table(
     WearCostRow,
     (
@@ -156,6 +179,7 @@ WEAR_TABLE = Table(
     ),
 )  # fmt: skip
 COSTS: tuple[PageSection[Any], ...] = (
+    PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
     PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],

@@ -39,6 +39,9 @@ class Trial:
 
 
 SCENES = Trial("seeds", lambda seed: outcome_of(random_scene(seed), seed), Outcome, Verdict)
+LEVELS = Trial(
+    "level-seeds", lambda seed: outcome_of(random_scene(seed, plane=False), seed, in_levels=True), Outcome, Verdict
+)
 WEAR = Trial("wear-seeds", lambda seed: wear_outcome_of(random_study(seed), seed), WearOutcome, WearVerdict)
 
 

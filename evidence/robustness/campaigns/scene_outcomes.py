@@ -62,11 +62,13 @@ def some_positions(scene: Scene, seed: int) -> Pitch:
     return Pitch(tuple(step * (begin + k) for k in range(POSITIONS)))
 
 
-def outcome_of(scene: Scene, seed: int) -> Outcome:
-    """Prepares and sweeps the scene, and applies the balance certificate. Raises nothing but what ends Python."""
+def outcome_of(scene: Scene, seed: int, in_levels: bool = False) -> Outcome:
+    """Prepares and sweeps the scene, and applies the balance certificate. Raises nothing but what ends Python.
+
+    in_levels: on second-order hexahedra and on flanks in levels of their own, whatever the scene and its size say."""
     begin = time.process_time()
     try:
-        outcome = _solved(scene, seed)
+        outcome = _solved(scene, seed, in_levels)
     except EvolventError as error:
         outcome = Outcome(seed, Verdict.REFUSED, f"{type(error).__name__}: {error}")
     except Exception:
@@ -79,9 +81,12 @@ def last_line(message: str) -> str:
     return message.strip().rpartition("\n")[2]
 
 
-def _solved(scene: Scene, seed: int) -> Outcome:
+def _solved(scene: Scene, seed: int, in_levels: bool) -> Outcome:
     """Again on deflected flanks where the pitch alone is out of balance."""
-    model = prepare_model(gear_problem(scene), MPI.COMM_SELF).model
+    problem = gear_problem(scene)
+    if in_levels:
+        problem = replace(problem, mesh=replace(problem.mesh, order=2, shape="hexahedron", two_level=True))
+    model = prepare_model(problem, MPI.COMM_SELF).model
     outcome, pitch_refused = _swept(model, scene, seed)
     return _swept(replace(model, deflected=True), scene, seed)[0] if pitch_refused else outcome
 

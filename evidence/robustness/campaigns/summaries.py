@@ -40,18 +40,36 @@ BAD_STUDIES = Table(WearOutcome, (BAD_COLUMNS[0], Column("kind", "kind", words=T
 
 def scene_summary(outcomes: Sequence[Outcome]) -> str:
     """Counts, the numbers of those that converged, and every other message, as Markdown."""
-    counts = Counter(outcome.verdict for outcome in outcomes)
-    solved = [outcome for outcome in outcomes if outcome.verdict is Verdict.CONVERGED]
+    solved = _converged(outcomes)
+    plane = [outcome for outcome in solved if gear_problem(random_scene(outcome.seed)).is_plane]
+    more = f"{len(plane)} of those that converged are plane"
+    more += f", with {_mean_iterations(plane):.1f} iterations." if plane else "."
+    return _counted(outcomes, more)
+
+
+def level_summary(outcomes: Sequence[Outcome]) -> str:
+    """The same of scenes in space on flanks in levels."""
+    return _counted(outcomes, "All are in space, on second-order hexahedra, with flanks in levels (two_level.md).")
+
+
+def _converged(outcomes: Sequence[Outcome]) -> list[Outcome]:
+    return [outcome for outcome in outcomes if outcome.verdict is Verdict.CONVERGED]
+
+
+def _mean_iterations(outcomes: Sequence[Outcome]) -> float:
+    return float(np.mean([outcome.iterations for outcome in outcomes]))
+
+
+def _counted(outcomes: Sequence[Outcome], more: str) -> str:
+    """more: a sentence behind the numbers of those that converged."""
+    counts, solved = Counter(outcome.verdict for outcome in outcomes), _converged(outcomes)
     words = f"{len(outcomes)} scenes, seeds {outcomes[0].seed} to {outcomes[-1].seed}."
     if solved:
-        plane = [outcome for outcome in solved if gear_problem(random_scene(outcome.seed)).is_plane]
-        means = [float(np.mean([o.iterations for o in some])) if some else 0.0 for some in (solved, plane)]
         balances = [outcome.balance for outcome in solved]
         words += (
-            f" Of those that converged {len(plane)} are plane and {len(solved) - len(plane)} are not; the balance "
-            f"error is at most {max(balances):.1e} (median {np.median(balances):.1e}), and Newton's method took "
-            f"{means[0]:.1f} iterations a position on average (plane ones {means[1]:.1f}), the frictionless start "
-            "included."
+            f" Of those that converged the balance error is at most {max(balances):.1e} (median "
+            f"{np.median(balances):.1e}), and Newton's method took {_mean_iterations(solved):.1f} iterations a "
+            f"position on average, the frictionless start included. {more}"
         )
     rows = [[verdict.value, str(counts[verdict])] for verdict in Verdict]
     bad = [outcome for outcome in outcomes if outcome not in solved]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
 from evolvent.cli import Exit, main
 from evolvent.gears import load_list as gear_loads
+from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.load_list import load_scenes, run_loads
 from evolvent.run.scene_run import run_scene
 from evolvent.scene.scene import SceneError, load_scene
@@ -37,21 +39,28 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
     assert len(calls) == 2
     with open(tmp_path / "loads.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    folders = [tmp_path / name for name in ("load_100.0_percent", "load_050.0_percent")]
+    folders = [tmp_path / name for name in ("load_050.0_percent", "load_100.0_percent")]
     torque = scene.load.torque_Nm
-    assert [float(row["torque_Nm"]) for row in rows] == [torque, 0.5 * torque]
+    assert list(rows[0]) == [field.name for field in fields(LoadRow)]
+    assert [float(row["torque_Nm"]) for row in rows] == [0.5 * torque, torque]
     for row, folder in zip(rows, folders):
-        (figures,) = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["frictions"]
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        (figures,) = summary["frictions"]
+        assert int(row["tip_edge_positions"]) == sum(each["tip_edge"] for each in summary["positions"])
+        assert int(row["warnings"]) == len(summary["warnings"]) > 0
+        assert row["max_pressure_at_zone_end"] == str(figures["max_pressure_at_zone_end"])
+        cells = summary["mesh"]["cells_across_contact_width"]
+        assert float(row["cells_across_contact_width"]) == pytest.approx(cells, rel=1e-8)
         for key in ("transmission_error_peak_to_peak_um", "max_pressure_MPa"):
             assert float(row[key]) == pytest.approx(figures[key], rel=1e-8)
             assert float(row[key + "_error"]) == pytest.approx(figures["estimated_error"][key], rel=1e-8)
     assert (tmp_path / "pictures" / "loads.png").stat().st_size > 10_000
     run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, resume=True, quiet=True)
     assert len(calls) == 2
-    run_scene(load_scene(folders[1] / "scene.toml"), tmp_path / "alone", quiet=True)
+    run_scene(load_scene(folders[0] / "scene.toml"), tmp_path / "alone", quiet=True)
     alone, found = (
         json.loads((folder / "summary.json").read_text(encoding="utf-8"))["frictions"][0]
-        for folder in (tmp_path / "alone", folders[1])
+        for folder in (tmp_path / "alone", folders[0])
     )
     assert alone["max_pressure_MPa"] == pytest.approx(found["max_pressure_MPa"], rel=1e-6)
 

@@ -45,7 +45,7 @@ class FlankRefinement:
         for level in self.levels:
             body = coarse_body(self.gear, mesh, self.material, level)
             yield body
-            near = body.near(np.arange(len(body.facets)), reach_of(body))
+            near = body.near(np.arange(len(body.facets)), reach_of(body, self.gear.twist * self.gear.base_radius))
             mesh = body.split_patch(near).mesh
 
 

@@ -1,22 +1,25 @@
-"""Transmission error, contact pressure and mesh stiffness over the torque."""
+"""Transmission error, contact pressure and mesh stiffness against the torque."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import FRICTION_MAP, foot, friction_colours, png, sheet, styled
-from evolvent.results.tables.load_table import LoadResult
+from evolvent.results.drawing.style import foot, friction_colours, png, sheet, styled
+from evolvent.results.tables.load_table import ERROR, LoadResult
 
 PANELS = (
     ("transmission_error_peak_to_peak_um", "peak-to-peak transmission error [µm]"),
     ("max_pressure_MPa", "largest contact pressure [MPa]"),
-    ("mesh_stiffness_N_per_mm_um", "mesh stiffness [N/(mm·µm)]"),
+    ("mesh_stiffness_N_per_mm_um", "mean tangent mesh stiffness [N/(mm·µm)]"),
 )
 """Key of the figure and label of its axis."""
+TORQUE_MAP = matplotlib.colormaps["YlGnBu"]
+"""Colours of torques, the darker the heavier; its lightest third has too little contrast on white."""
 
 
 def loads_picture(results: Sequence[LoadResult]) -> bytes:
@@ -28,41 +31,44 @@ def loads_picture(results: Sequence[LoadResult]) -> bytes:
 def loads_figure(results: Sequence[LoadResult]) -> Figure:
     """Figure of the transmission error over the pitch under each torque, and of three figures over the torque, a line
     per friction coefficient."""
-    frictions = sorted({each.friction for each in results})
-    torques = sorted({each.torque for each in results})
+    frictions = sorted({each.row.friction for each in results})
+    torques = sorted({each.row.torque_Nm for each in results})
     figure = sheet(
-        "Transmission error, contact pressure and mesh stiffness over the load",
-        f"{len(torques)} torques from {torques[0]:.4g} to {torques[-1]:.4g} N·m on the same condensed gears.",
+        "Transmission error, contact pressure and mesh stiffness against the torque",
+        f"{len(torques)} torques from {torques[0]:.4g} to {torques[-1]:.4g} N·m on the same condensed gears; where the "
+        "flanks have levels, each torque takes as many as it needs.",
         (11.0, 7.6),
     )
     grid = figure.subplots(2, 2)
-    _draw_curves(grid[0, 0], [each for each in results if each.friction == frictions[0]])
+    _draw_curves(grid[0, 0], [each for each in results if each.row.friction == frictions[0]])
     for axes, (key, label) in zip((grid[0, 1], grid[1, 0], grid[1, 1]), PANELS):
         for friction, colour in zip(frictions, friction_colours(frictions)):
-            own = sorted((each for each in results if each.friction == friction), key=lambda each: each.torque)
-            bars = np.nan_to_num([each.errors[key] for each in own])
-            values = [each.figures[key] for each in own]
-            axes.errorbar(
-                [each.torque for each in own], values, bars, color=colour, marker="o", markersize=4.0, capsize=3.0,
-                label=f"μ = {friction:g}",
-            )  # fmt: skip
+            own = sorted((e.row for e in results if e.row.friction == friction), key=lambda row: row.torque_Nm)
+            torque, values, bars = ([getattr(row, name) for row in own] for name in ("torque_Nm", key, key + ERROR))
+            axes.errorbar(torque, values, bars, color=colour, capsize=3.0, label=f"μ = {friction:g}")
+            fills = ["white" if row.tip_edge_positions else colour for row in own]
+            axes.scatter(torque, values, 20.0, color=fills, edgecolors=[colour] * len(own), zorder=3)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(0.0, 1.05 * torques[-1])
         axes.set_xlabel("torque [N·m]")
         axes.set_ylabel(label)
     if len(frictions) > 1:
         grid[0, 1].legend(loc="best")
-    foot(figure, "Bars: estimated error of the mesh, where the runs have one.")
+    foot(
+        figure,
+        "Bars: estimated error of the mesh and of the spacing of positions, where the runs have one. Hollow: a tip "
+        "edge bears at some positions; the pressure is that between the tip-edge zones, which depend on the mesh.",
+    )
     return figure
 
 
 def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
-    """Transmission error over the pitch, less its mean, under each torque."""
-    ordered = sorted(results, key=lambda each: each.torque)
+    """Transmission error over the pitch, minus its mean, under each torque."""
+    ordered = sorted(results, key=lambda each: each.row.torque_Nm)
     for rank, each in enumerate(ordered):
-        colour, varying = FRICTION_MAP(rank / max(1, len(ordered) - 1)), np.array(each.transmission_error)
-        axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.torque:.4g} N·m")
+        colour, varying = TORQUE_MAP(0.35 + 0.65 * rank / max(1, len(ordered) - 1)), np.array(each.transmission_error)
+        axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.row.torque_Nm:.4g} N·m")
     axes.set_xlabel("pinion rotation [°]")
-    axes.set_ylabel("transmission error less its mean [µm]")
-    title = f"μ = {ordered[0].friction:g}"
+    axes.set_ylabel("transmission error minus its mean [µm]")
+    title = f"μ = {ordered[0].row.friction:g}"
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0, title=title, title_fontsize=8.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -13,26 +13,58 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
 
 LOADS = "loads.csv"
-FIGURES = (
-    "transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent",
-)  # fmt: skip
-"""Keys of a friction coefficient in summary.json."""
-BAR = "_error"
+ERROR = "_error"
 """Behind the name of a figure: its estimated error."""
+
+
+@dataclass(frozen=True)
+class LoadRow:
+    """A line of loads.csv: a torque and a friction coefficient."""
+
+    torque_Nm: float
+    """Torque on the gear that the scene names."""
+    friction: float
+    """Friction coefficient μ."""
+    transmission_error_mean_um: float
+    """Mean of the transmission error at the positions of the pitch."""
+    transmission_error_peak_to_peak_um: float
+    """As in summary.json, `frictions`, like the figures below."""
+    transmission_error_peak_to_peak_um_error: float
+    """Its estimated error, as in summary.json; NaN where the run has none."""
+    max_pressure_MPa: float
+    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones."""
+    max_pressure_MPa_error: float
+    """Its estimated error."""
+    max_pressure_at_zone_end: bool
+    """As in summary.json: its value depends on where a tip-edge zone ends, and so on the mesh."""
+    max_pressure_at_relief_start: bool
+    """As in summary.json: its value depends on how sharp the kink of the flank is."""
+    mesh_stiffness_N_per_mm_um: float
+    """Tangent stiffness, mean over the pitch."""
+    mesh_stiffness_N_per_mm_um_error: float
+    """Its estimated error."""
+    secant_stiffness_N_per_mm_um: float
+    """Secant stiffness, mean over the pitch; NaN where a flank has a chart."""
+    secant_stiffness_N_per_mm_um_error: float
+    """Its estimated error."""
+    loss_percent: float
+    """Friction work over input work of the pitch."""
+    loss_percent_error: float
+    """Its estimated error."""
+    tip_edge_positions: int
+    """Number of positions at which a tooth bears on a tip edge."""
+    cells_across_contact_width: float
+    """Elements across the contact width, median: flanks with levels take another number of them at each torque."""
+    warnings: int
+    """Number of warnings in the run's summary.json: read them before the figures are compared."""
 
 
 @dataclass(frozen=True)
 class LoadResult:
     """A run under one torque at one friction coefficient."""
 
-    torque: float
-    """On the gear that the scene names [N·m]."""
-    friction: float
-    """Coefficient μ."""
-    figures: Mapping[str, float]
-    """Each of `FIGURES`; NaN where the run has none."""
-    errors: Mapping[str, float]
-    """Their estimated errors; NaN where none are known."""
+    row: LoadRow
+    """Of the table."""
     angle: tuple[float, ...]
     """Of the pinion at each position [°]."""
     transmission_error: tuple[float, ...]
@@ -40,8 +72,9 @@ class LoadResult:
 
 
 def load_results(folders: Sequence[Path]) -> list[LoadResult]:
-    """Of finished runs, from their summary.json. Raises OSError."""
+    """Of finished runs, from their summary.json, the lightest torque first. Raises OSError."""
     read = [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
+    read.sort(key=lambda summary: float(summary["scene"]["load"]["torque_Nm"]))
     return [_result(summary, row) for summary in read for row in summary["frictions"]]
 
 
@@ -51,14 +84,20 @@ def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
     keys = "pinion_angle_deg", "transmission_error_um"
     angle, error = (tuple(float(each[key]) for each in positions) for key in keys)
     bars = row["estimated_error"] or {}
-    return LoadResult(
-        torque=summary["scene"]["load"]["torque_Nm"],
-        friction=row["friction"],
-        figures={key: _number(row[key]) for key in FIGURES},
-        errors={key: _number(bars.get(key)) for key in FIGURES},
-        angle=angle,
-        transmission_error=error,
-    )
+    known = {
+        "torque_Nm": summary["scene"]["load"]["torque_Nm"],
+        "friction": row["friction"],
+        "transmission_error_mean_um": fmean(error),
+        "max_pressure_at_zone_end": row["max_pressure_at_zone_end"],
+        "max_pressure_at_relief_start": row["max_pressure_at_relief_start"],
+        "tip_edge_positions": sum(each["tip_edge"] for each in positions),
+        "cells_across_contact_width": _number(summary["mesh"]["cells_across_contact_width"]),
+        "warnings": len(summary["warnings"]),
+    }
+    for name in [each.name for each in fields(LoadRow) if each.name not in known]:
+        figure = name.removesuffix(ERROR)
+        known[name] = _number(row[name] if name == figure else bars.get(figure))
+    return LoadResult(LoadRow(**known), angle, error)
 
 
 def _number(value: float | None) -> float:
@@ -66,17 +105,5 @@ def _number(value: float | None) -> float:
 
 
 def write_loads(folder: RunFolder, results: Sequence[LoadResult]) -> None:
-    """Writes the table: torque, friction, mean transmission error, and each figure with its error. Raises WriteError,
-    FolderError."""
-    folder.write_text(LOADS, csv_text([_row(each) for each in results]))
-
-
-def _row(result: LoadResult) -> dict[str, float]:
-    row = {
-        "torque_Nm": result.torque,
-        "friction": result.friction,
-        "transmission_error_mean_um": fmean(result.transmission_error),
-    }
-    for key in FIGURES:
-        row |= {key: result.figures[key], key + BAR: result.errors[key]}
-    return row
+    """Writes the table. Raises WriteError, FolderError."""
+    folder.write_text(LOADS, csv_text([asdict(each.row) for each in results]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -11,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from evidence.benchmarks.gears.pitch import PitchFacts
 from evidence.benchmarks.gears.profile import PARTS
 from evidence.benchmarks.gears.three_teeth import three_teeth
+from evidence.benchmarks.gears.whole_runs import RunCase, failed, row_of
 from tests.support.checkout import ROOT
 
 
@@ -39,3 +41,21 @@ def test_profiled_functions_are_there() -> None:
     for _, file, function in PARTS:
         tree = ast.parse((solver / file).read_text(encoding="utf-8"))
         assert function in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}, (file, function)
+
+
+def test_a_run_is_told_by_its_summary() -> None:
+    """100 s of which positions took 40, error bars 10 and output 5: the gears took 45. Newton's method took 6 and 10
+    iterations: 8 in the mean. A bar of 90 s is missed, one of 110 s is met; a run that failed has no figures."""
+    case = RunCase("a", "scene", "quick", (), seconds_bar=90.0)
+    timings = {"mesh": 1.0, "assemble": 60.0, "factor": 60.0, "positions": 40.0, "error_bars": 10.0, "output": 5.0}
+    summary = {
+        "timings_s": {**timings, "total": 100.0}, "positions": [{"newton_iterations": n} for n in (6, 10)],
+        "frictions": [{}], "dofs": 10, "flank_dofs": 20, "peak_memory_MB": 300.0,
+    }  # fmt: skip
+    row = row_of(case, summary)
+    assert row.prepare == 45.0
+    assert row.iterations == 8.0
+    assert not row.met
+    assert row_of(replace(case, seconds_bar=110.0), summary).met
+    assert failed(case, "killed").note == "killed"
+    assert np.isnan(failed(case, "killed").seconds)

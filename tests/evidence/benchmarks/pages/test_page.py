@@ -14,6 +14,7 @@ from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
 from evidence.benchmarks.gears.skips import SkipRow
 from evidence.benchmarks.gears.wear import WearCostRow, WearPrecisionRow
+from evidence.benchmarks.gears.whole_runs import RunCase, RunRow, failed
 from evidence.benchmarks.pages.comparison import advantage, unmatched
 from evidence.benchmarks.pages.page import write_page
 from evidence.tables import read_rows, write_rows
@@ -48,19 +49,22 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
         "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
                       AccuracyRow("a", "mean", 0.001, nan)],
+        "runs": [RunRow("long", "fine", 1, 10, 20, 5.0, 6.0, 0.0, 1.0, 12.0, 10.0, 300.0, nan, 8.0),
+                 failed(RunCase("hung", "b.toml", "quick", ()), "ended after 9 s")],
         "wear_cost": [WearCostRow("spur", 1000, 1.0, 2.0, 8.0), WearCostRow("helical", 1000, 9.0, 1.0, 8.0)],
         "wear": [WearPrecisionRow("implicit", 0.05, 10, 0, 2.0, 0.02, -0.01),
                  WearPrecisionRow("explicit", 0.05, 30, 2, 4.0, 0.001, 0.001)],
         "profile": [ProfileRow("search", 1000, 4, 2.0, 0.25, 4), ProfileRow("everything else", 1000, 4, 6.0, 0.75, 1)],
-        "pitches": [PitchRow("hexahedron", 2, 1, 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
-                    PitchRow("hexahedron", 1, 1, 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
+        "pitches": [PitchRow("hexahedron", 2, 1, "one mesh", 0.5, 1000, 4, 5.0, 9.0, 14.0, 300.0, 0.01, 0.001),
+                    PitchRow("hexahedron", 1, 1, "levels", 0.7, 0, 0, nan, nan, nan, nan, nan, nan, "killed")],
     }  # fmt: skip
     for name, own in rows.items():
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
     for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures", "75.0", "14",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
-                   "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |"):
+                   "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |",
+                   "| long | fine | 1 | 30 | 5 | 6 | 0 | 1 | 12 | 10 | 300 |  | 8.0 | MISSED |", "ended after 9 s"):
         assert wanted in text
     assert (tmp_path / "pictures/benchmark/pitches.png").stat().st_size > 10_000
     assert "Cylinder on block" not in text

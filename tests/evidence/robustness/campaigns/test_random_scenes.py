@@ -7,14 +7,19 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
+from mpi4py import MPI
 
 from evidence.robustness.campaigns import campaign, scene_outcomes
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.robustness.campaigns.scene_outcomes import Verdict, outcome_of
 from evidence.robustness.campaigns.summaries import scene_summary
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
+from evolvent.gears.meshing.levelled_meshes import is_two_level
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.periodic_pitch import sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition
+from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import SceneError, scene_from_text
 from tests.support.checkout import ROOT
 from tests.support.running.patches import with_result
@@ -26,6 +31,8 @@ HARD = (102, 450)
 """102: μ = 0.73 and moduli as 200 to 1, on which lengths of steps chosen by the residual cycled. 450: near the pitch
 point, slip of a hundred times the flanks' displacements, which taken for stuck at first tears them apart."""
 
+SMALL_IN_LEVELS = 9
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("plane", "seeds"), [(True, PLANE), (True, CYCLED), (False, SOLID), (None, HARD)])
@@ -34,6 +41,24 @@ def test_random_scenes_converge(plane: bool | None, seeds: range | tuple[int, ..
     outcomes = [outcome_of(random_scene(seed, plane), seed) for seed in seeds]
     wrong = [o for o in outcomes if o.verdict is not Verdict.CONVERGED]
     assert not wrong, wrong
+
+
+@pytest.mark.slow
+def test_a_random_scene_converges_on_flanks_in_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A scene in space that asks for one mesh of order 1: its gears have levels, and it converges and balances."""
+    models: list[GearModel] = []
+
+    def kept(problem: GearProblem, comm: MPI.Comm) -> Preparation:
+        preparation = prepare_model(problem, comm)
+        models.append(preparation.model)
+        return preparation
+
+    monkeypatch.setattr(scene_outcomes, "prepare_model", kept)
+    scene = random_scene(SMALL_IN_LEVELS, plane=False)
+    assert not is_two_level(gear_problem(scene))
+    outcome = outcome_of(scene, SMALL_IN_LEVELS, in_levels=True)
+    assert outcome.verdict is Verdict.CONVERGED, outcome
+    assert all(body.has_levels for model in models for body in model.bodies) and models
 
 
 def test_a_seed_is_one_scene() -> None:

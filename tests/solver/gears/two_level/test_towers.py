@@ -14,9 +14,10 @@ import pytest
 from evolvent.fem.material import STEEL
 from evolvent.gears.meshing.flank_levels import FlankLevel
 from evolvent.gears.two_level import towers
+from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.flank_refinement import HELD, coarse_body
 from evolvent.gears.two_level.strips import StripCorrection
-from evolvent.gears.two_level.towers import Towers
+from evolvent.gears.two_level.towers import REACH, STEEP_REACH, Towers, reach_of
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
@@ -52,3 +53,17 @@ def matrix(correction: StripCorrection) -> Floats:
     """Columns under unit forces."""
     whole = correction.among([np.arange(correction.size)])
     return np.array([whole.times(f.reshape(-1, 3)).ravel() for f in np.eye(3 * correction.size)])
+
+
+@pytest.mark.parametrize("hand", [1.0, -1.0])
+def test_patches_of_steep_helices_reach_further(hand: float) -> None:
+    """Base helix angles of 29° and 31°, either hand: half as far again, in edges and on the flank of Yang's pinion."""
+    gear, start = gear_and_start("yang pinion")
+    resolution = SectorResolution(
+        profile_elements=6, face_elements=2, end_size_ratio=1.0, flank_start_diameter=start,
+        layer_depths=(0.3, 0.3, 0.3),
+    )
+    body = coarse_body(gear, sector_mesh(gear, resolution), STEEL, FlankLevel(1, 1, (1,)))
+    less, more = (reach_of(body, hand * float(np.tan(np.radians(angle)))) for angle in (29.0, 31.0))
+    assert more / less == pytest.approx(STEEP_REACH / REACH)
+    assert less == pytest.approx(REACH * FlankLattice.of(body.surface.points).edges().max())

@@ -1,0 +1,127 @@
+"""What `evolvent run` takes from the scene file to its last output, on two ranks, on flanks in levels of their own.
+
+Each run is a process of its own, as a user starts it. *Plain* runs leave out error bars and pictures.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isnan, nan
+from pathlib import Path
+from typing import Any
+
+from evidence.checkout import ROOT
+from evidence.processes import Command, RunFailed, module_run, run, run_arguments
+from evidence.scenes import QUIET
+
+RANKS = 2
+TIME_LIMIT = 2400.0  # s
+HELICAL, FIRST = "demos/yang2022.toml", "demos/first_pair.toml"
+PLAIN = (*QUIET, "output.error_bars=false")
+ONE = "contact.friction=0.11"
+SLENDER = (
+    'title="23/81"', "pair.normal_module_mm=2", "pair.helix_angle_deg=20", "pinion.teeth=23", "wheel.teeth=81",
+    *(f"{gear}.{key}" for gear in ("pinion", "wheel") for key in ("face_width_mm=20", "tip_relief_um=0")),
+    "pinion.bore_diameter_mm=25", "wheel.bore_diameter_mm=60",
+)  # fmt: skip
+"""An ordinary pair that changes demos/first_pair.toml: 23 and 81 teeth, m_n = 2 mm, β = 20°, b = 20 mm."""
+
+
+@dataclass(frozen=True)
+class RunCase:
+    """A scene to run, and what the run may take."""
+
+    name: str
+    scene: str
+    level: str
+    settings: tuple[str, ...]
+    options: tuple[str, ...] = ()
+    seconds_bar: float = nan
+    """NaN where there is none, as for memory."""
+    memory_bar_MB: float = nan
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """What a run took, by its summary.json."""
+
+    case: str
+    level: str
+    frictions: int
+    dofs: int
+    """Of one sector of each gear."""
+    flank_dofs: int
+    """Of the finest flanks; 0 in one mesh with the body."""
+    prepare: float
+    """Meshing, assembling, condensing [s]: wall time, as of the parts below."""
+    positions: float
+    error_bars: float
+    output: float
+    seconds: float
+    """Of the whole run."""
+    seconds_bar: float
+    memory_MB: float
+    """Of all ranks together."""
+    memory_bar_MB: float
+    iterations: float
+    """Of Newton's method, mean of all positions and friction coefficients."""
+    note: str = ""
+
+    @property
+    def met(self) -> bool:
+        """Whether time and memory are within their bars."""
+        return not (self.seconds > self.seconds_bar or self.memory_MB > self.memory_bar_MB)
+
+    @property
+    def has_bar(self) -> bool:
+        """Whether there is one."""
+        return not (isnan(self.seconds_bar) and isnan(self.memory_bar_MB))
+
+
+YANG = "Yang, 20 positions"
+LIGHT = "23/81, 20 positions"
+FULL = (
+    RunCase(f"{YANG}, plain", HELICAL, "quick", (*PLAIN, ONE)),
+    RunCase(f"{YANG}, plain", HELICAL, "standard", (*PLAIN, ONE), memory_bar_MB=3e3),
+    RunCase(f"{YANG}, plain, one mesh", HELICAL, "standard", (*PLAIN, ONE), ("--no-skip=two-level",)),
+    RunCase(f"{YANG}, plain", HELICAL, "fine", (*PLAIN, ONE), (), 240.0, 6e3),
+    RunCase(f"{YANG}, error bars, pictures", HELICAL, "quick", (), (), 300.0),
+    RunCase(f"{YANG}, error bars, pictures", HELICAL, "standard", (), (), 300.0),
+    RunCase(f"{LIGHT}, 50 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=50"), (), 180.0, 4e3),
+    RunCase(f"{LIGHT}, 10 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=10"), (), 360.0, 6e3),
+)
+SMALL = (RunCase("He, plain", "demos/he2022.toml", "quick", (*PLAIN, "contact.friction=0", "sweep.positions=4")),)
+
+
+def rows(cases: Sequence[RunCase], folder: Path) -> Iterator[RunRow]:
+    """Runs each case; the row of one that fails says why."""
+    for number, case in enumerate(cases):
+        out = folder / f"run_{number}"
+        arguments = run_arguments(case.scene, out, (f"mesh.level={case.level}", *case.settings), *case.options)
+        words = module_run("evolvent", "run", *arguments)
+        try:
+            run(Command(words, ROOT, folder / f"run_{number}.log", ranks=RANKS, time_limit=TIME_LIMIT))
+        except RunFailed as failure:
+            yield failed(case, failure.reason)
+            continue
+        yield row_of(case, json.loads((out / "summary.json").read_text(encoding="utf-8")))
+
+
+def row_of(case: RunCase, summary: dict[str, Any]) -> RunRow:
+    """From a run's summary.json."""
+    spent, positions = summary["timings_s"], summary["positions"]
+    later = spent["positions"], spent["error_bars"], spent["output"]
+    return RunRow(
+        case.name, case.level, len(summary["frictions"]), summary["dofs"], summary["flank_dofs"],
+        spent["total"] - sum(later), *later, spent["total"], case.seconds_bar, summary["peak_memory_MB"],
+        case.memory_bar_MB, sum(position["newton_iterations"] for position in positions) / len(positions),
+    )  # fmt: skip
+
+
+def failed(case: RunCase, reason: str) -> RunRow:
+    """Of a run that came to no end."""
+    return RunRow(
+        case.name, case.level, 0, 0, 0, nan, nan, nan, nan, nan, case.seconds_bar, nan, case.memory_bar_MB, nan, reason,
+    )  # fmt: skip

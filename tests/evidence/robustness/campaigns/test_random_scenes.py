@@ -58,7 +58,7 @@ def test_a_random_scene_converges_on_flanks_in_levels(monkeypatch: pytest.Monkey
     assert not is_two_level(gear_problem(scene))
     outcome = outcome_of(scene, SMALL_IN_LEVELS, in_levels=True)
     assert outcome.verdict is Verdict.CONVERGED, outcome
-    assert all(body.has_levels for model in models for body in model.bodies) and models
+    assert models and all(body.levels for model in models for body in model.bodies)
 
 
 def test_a_seed_is_one_scene() -> None:

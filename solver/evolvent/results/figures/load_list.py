@@ -56,8 +56,8 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
         grid[0, 1].legend(loc="best")
     foot(
         figure,
-        "Bars: estimated error of the mesh and of the spacing of positions, where the runs have one. Hollow: a tip "
-        "edge bears at some positions; the pressure is that between the tip-edge zones, which depend on the mesh.",
+        "Bars: estimated error, of mesh and spacing of positions. Hollow: a tip edge bears at some positions; the "
+        "pressure is that between tip-edge zones.",
     )
     return figure
 

@@ -7,6 +7,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.scene.scene import Scene, load_scene
 
 QUIET = ("output.pictures=false", "output.animation=false", "output.fields=false")
+PLAIN = (*QUIET, "output.error_bars=false")
 SPUR, HELICAL = DEMOS / "he2022.toml", DEMOS / "yang2022.toml"
 
 

@@ -15,12 +15,12 @@ from typing import Any
 
 from evidence.checkout import ROOT
 from evidence.processes import environment, module_run, run_arguments
-from evidence.scenes import QUIET
+from evidence.scenes import PLAIN
 from evolvent.scene.schema.output import SkipName
 from evolvent.scene.skips import skip_named
 
 SPUR, HELICAL = "demos/he2022.toml", "demos/yang2022.toml"
-QUICK = ("mesh.level=quick", *QUIET, "output.error_bars=false")
+QUICK = ("mesh.level=quick", *PLAIN)
 SMOOTH, ROUGH = "contact.friction=0", "contact.friction=[0, 0.1, 0.3]"
 FOUR = "sweep.positions=4"
 Summary = dict[str, Any]
@@ -44,7 +44,7 @@ CASES = (
     Case("window", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("deflected-flanks", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("coarse-body", HELICAL, (*QUICK, SMOOTH, FOUR)),
-    Case("two-level", HELICAL, ("mesh.level=standard", *QUIET, "output.error_bars=false", SMOOTH, FOUR)),
+    Case("two-level", HELICAL, ("mesh.level=standard", *PLAIN, SMOOTH, FOUR)),
     Case("reuse", HELICAL, (*QUICK, ROUGH, FOUR)),
     Case("error-bars", HELICAL, (*QUICK, SMOOTH, FOUR)),
     Case("fields", SPUR, (*QUICK, SMOOTH)),

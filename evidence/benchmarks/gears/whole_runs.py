@@ -1,4 +1,4 @@
-"""What `evolvent run` takes from the scene file to its last output, on two ranks, on flanks in levels of their own.
+"""What `evolvent run` takes from the scene file to its last output, on two ranks.
 
 Each run is a process of its own, as a user starts it. *Plain* runs leave out error bars and pictures.
 """
@@ -14,12 +14,11 @@ from typing import Any
 
 from evidence.checkout import ROOT
 from evidence.processes import Command, RunFailed, module_run, run, run_arguments
-from evidence.scenes import QUIET
+from evidence.scenes import PLAIN
 
 RANKS = 2
 TIME_LIMIT = 2400.0  # s
 HELICAL, FIRST = "demos/yang2022.toml", "demos/first_pair.toml"
-PLAIN = (*QUIET, "output.error_bars=false")
 ONE = "contact.friction=0.11"
 SLENDER = (
     'title="23/81"', "pair.normal_module_mm=2", "pair.helix_angle_deg=20", "pinion.teeth=23", "wheel.teeth=81",

@@ -13,6 +13,7 @@ from evolvent.contact.two_level.fine_surface import CoarseBody
 from evolvent.contact.two_level.split_counts import split_counts
 from evolvent.fem.material import Material
 from evolvent.gears.meshing.flank_levels import FlankLevel
+from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.refined_level import RefinedLevel
 from evolvent.gears.two_level.towers import Block, BlockResponse, Response, Towers, reach_of
 from evolvent_meshes.arrays import Ints
@@ -45,7 +46,8 @@ class FlankRefinement:
         for level in self.levels:
             body = coarse_body(self.gear, mesh, self.material, level)
             yield body
-            near = body.near(np.arange(len(body.facets)), reach_of(body, self.gear.twist * self.gear.base_radius))
+            reach = reach_of(FlankLattice.of(body.surface.points), self.gear.base_helix_angle)
+            near = body.near(np.arange(len(body.facets)), reach)
             mesh = body.split_patch(near).mesh
 
 

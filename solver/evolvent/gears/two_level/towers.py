@@ -45,14 +45,10 @@ Block = tuple[range, range]
 """Rows and layers of coarse cells that are loaded in one patch."""
 
 
-def reach_of(body: CoarseBody, base_slope: float) -> float:
-    """How far patches extend beyond the loaded cells [mm]. base_slope: tangent of the base helix angle."""
-    return edges_within_reach(base_slope) * float(FlankLattice.of(body.surface.points).edges().max())
-
-
-def edges_within_reach(base_slope: float) -> float:
-    """The same in longest edges."""
-    return STEEP_REACH if np.arctan(abs(base_slope)) >= STEEP else REACH
+def reach_of(flank: FlankLattice, base_helix_angle: float) -> float:
+    """How far patches extend beyond the loaded cells of a flank [mm]. base_helix_angle: of either sign [rad]."""
+    edges = STEEP_REACH if abs(base_helix_angle) >= STEEP else REACH
+    return edges * float(flank.edges().max())
 
 
 @dataclass(frozen=True)
@@ -142,9 +138,8 @@ class Towers:
         self._coarse, self._fine = (FlankLattice.of(each.points) for each in (body.surface, body.fine.surface))
         self._nodes = 2 * np.array(self._fine.cells) // self._coarse.cells
         self._cells = self._coarse.place(body.surface.points[body.surface.facets[:, -1]]) // 2
-        base_slope = twist * base_radius
-        self._reach = reach_of(body, base_slope)
-        self._flux_reach = edges_within_reach(base_slope) * float(self._fine.edges().max())
+        base_helix_angle = float(np.arctan(twist * base_radius))
+        self._reach, self._flux_reach = (reach_of(each, base_helix_angle) for each in (self._coarse, self._fine))
 
     @cached_property
     def axes(self) -> tuple[Axis, Axis]:

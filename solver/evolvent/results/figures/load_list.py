@@ -30,7 +30,7 @@ def loads_picture(results: Sequence[LoadResult]) -> bytes:
 
 def loads_figure(results: Sequence[LoadResult]) -> Figure:
     """Figure of the transmission error over the pitch under each torque, and of three figures over the torque, a line
-    per friction coefficient."""
+    per friction coefficient. results: the lightest torque first, as of `load_results`."""
     frictions = sorted({each.row.friction for each in results})
     torques = sorted({each.row.torque_Nm for each in results})
     figure = sheet(
@@ -43,7 +43,7 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
     _draw_curves(grid[0, 0], [each for each in results if each.row.friction == frictions[0]])
     for axes, (key, label) in zip((grid[0, 1], grid[1, 0], grid[1, 1]), PANELS):
         for friction, colour in zip(frictions, friction_colours(frictions)):
-            own = sorted((e.row for e in results if e.row.friction == friction), key=lambda row: row.torque_Nm)
+            own = [each.row for each in results if each.row.friction == friction]
             torque, values, bars = ([getattr(row, name) for row in own] for name in ("torque_Nm", key, key + ERROR))
             axes.errorbar(torque, values, bars, color=colour, capsize=3.0, label=f"μ = {friction:g}")
             fills = ["white" if row.tip_edge_positions else colour for row in own]
@@ -64,11 +64,10 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
 
 def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
     """Transmission error over the pitch, minus its mean, under each torque."""
-    ordered = sorted(results, key=lambda each: each.row.torque_Nm)
-    for rank, each in enumerate(ordered):
-        colour, varying = TORQUE_MAP(0.35 + 0.65 * rank / max(1, len(ordered) - 1)), np.array(each.transmission_error)
+    for rank, each in enumerate(results):
+        colour, varying = TORQUE_MAP(0.35 + 0.65 * rank / max(1, len(results) - 1)), np.array(each.transmission_error)
         axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.row.torque_Nm:.4g} N·m")
     axes.set_xlabel("pinion rotation [°]")
     axes.set_ylabel("transmission error minus its mean [µm]")
-    title = f"μ = {ordered[0].row.friction:g}"
+    title = f"μ = {results[0].row.friction:g}"
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0, title=title, title_fontsize=8.0)

@@ -1,8 +1,8 @@
 """What stands in the pages' shell lines, done in seconds: page_commands.py NAME [ARGUMENT ...] is run as NAME.
 
-`evolvent run` runs as it is typed, on narrow gears with a coarse mesh. `docker run` runs the program of this
-checkout with the folders that it mounts; what needs an engine is run by .ci/run. `make` says what it would do; of a
-module of the evidence it is looked up that it is there, for it writes into the checkout.
+`evolvent run` and `evolvent loads` run as they are typed, on narrow gears with a coarse mesh. `docker run` runs the
+program of this checkout with the folders that it mounts; what needs an engine is run by .ci/run. `make` says what it
+would do; of a module of the evidence it is looked up that it is there, for it writes into the checkout.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NAMES = ("docker", "evolvent", "git", "make", "paraview", "python")
 
 def evolvent(words: list[str]) -> None:
     """The command line of this checkout."""
-    settings = [word for setting in CHEAP for word in ("--set", setting)] if words[:1] == ["run"] else []
+    settings = [word for setting in CHEAP for word in ("--set", setting)] if words[:1] in (["run"], ["loads"]) else []
     os.execv(sys.executable, [sys.executable, "-m", "evolvent", *words, *settings])
 
 

@@ -21,6 +21,7 @@ from evidence.robustness.campaigns import summaries
 from evidence.robustness.campaigns.campaign import LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
 from evidence.robustness.faults import fault_claims
 from evidence.robustness.settings.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
+from evidence.robustness.settings.level_independence import level_claims
 from evidence.robustness.settings.matrix import SHEETS
 from evidence.robustness.settings.sheets import draw, write_sheet
 from evidence.tables import Column, Table
@@ -95,7 +96,7 @@ def _outcomes(trial: Trial) -> list[Any]:
 
 def independence(_: Path) -> list[str]:
     """Claims on γ, θ and iterations."""
-    claims = [*gear_claims(), *theta_claims(), *cylinder_claims(), *iteration_claims()]
+    claims = [*gear_claims(), *theta_claims(), *level_claims(), *cylinder_claims(), *iteration_claims()]
     return ["## Independence of γ and θ; iterations", CLAIMS.markdown(claims)]
 
 

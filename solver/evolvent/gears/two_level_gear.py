@@ -44,17 +44,23 @@ class FlankPatches:
     counts: after how many levels contact is computed; see `towers_of`.
     towers: of each level, from the coarsest to the finest.
     patches: of each level.
+    flux_safety: factor on the stabilisation of Nitsche's method, of the pinion, which has the pressure side; else None.
     """
 
     counts: tuple[int, ...]
     towers: tuple[Towers, ...]
     patches: tuple[tuple[LoadedPatch, ...], ...]
+    flux_safety: float | None
 
     @staticmethod
-    def of(problem: GearProblem, member: Member, sector: LevelledMesh, counts: Sequence[int]) -> FlankPatches:
-        """Of the pinion's or the wheel's flank."""
-        towers = towers_of(_refinement(problem, member, sector), counts, _flux_safety(member))
-        return FlankPatches(tuple(counts), tuple(towers), tuple(tuple(each.patches()) for each in towers))
+    def of(
+        problem: GearProblem, member: Member, sector: LevelledMesh, counts: Sequence[int], safety: float = SAFETY
+    ) -> FlankPatches:
+        """Of the pinion's or the wheel's flank. safety: factor on the stabilisation of Nitsche's method."""
+        flux_safety = safety if member is Member.PINION else None
+        towers = towers_of(_refinement(problem, member, sector), counts, flux_safety)
+        patches = tuple(tuple(each.patches()) for each in towers)
+        return FlankPatches(tuple(counts), tuple(towers), patches, flux_safety)
 
     def named(self) -> dict[PatchName, LoadedPatch]:
         """All patches."""
@@ -77,14 +83,16 @@ class FlankPatches:
 
 
 def two_level_gear(
-    problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads = nullcontext
+    problem: GearProblem, member: Member, sector: LevelledMesh, threads: Threads = nullcontext, safety: float = SAFETY
 ) -> GearBody:
-    """Condenses the coarse sector and corrects its compliance on all levels of its flank, all on this rank.
+    """Condenses the coarse sector and corrects its compliance on all levels of its flank, all on this rank. safety: see
+    `FlankPatches.of`.
 
     Raises NotPositiveDefinite, OutOfMemory.
     """
     count = len(sector.levels)
-    coarse, flank = coarse_gear(problem, member, sector, threads), FlankPatches.of(problem, member, sector, [count])
+    coarse = coarse_gear(problem, member, sector, threads)
+    flank = FlankPatches.of(problem, member, sector, [count], safety)
     responses = {name: flank.response(name) for name in flank.named()}
     return corrected_gears(problem, coarse, sector, flank, responses)[count]
 
@@ -101,7 +109,7 @@ def corrected_gears(
 ) -> dict[int, GearBody]:  # fmt: skip
     """The gear with so many levels of its flank as each count of `flank` says. responses: of all patches."""
     begin, refined = time.perf_counter(), flank.refined(responses)
-    pitch, safety = 2.0 * np.pi / coarse.gear.z, _flux_safety(coarse.member)
+    pitch, safety = 2.0 * np.pi / coarse.gear.z, flank.flux_safety
     gear = problem.pair.gears[coarse.member]
     assert isinstance(coarse.chain, ChainedCompliance)
     bodies = {}
@@ -115,11 +123,6 @@ def corrected_gears(
         )  # fmt: skip
     seconds = coarse.condense_seconds + sum(each.seconds for each in responses.values()) + time.perf_counter() - begin
     return {count: replace(body, condense_seconds=seconds) for count, body in bodies.items()}
-
-
-def _flux_safety(member: Member) -> float | None:
-    """See `patch_response`: the pinion has the pressure side."""
-    return SAFETY if member is Member.PINION else None
 
 
 def levelled_flank(problem: GearProblem, member: Member, sector: LevelledMesh) -> Surface:

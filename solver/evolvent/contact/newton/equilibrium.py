@@ -67,19 +67,21 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
 
 
 def frictionless(
-    system: CondensedSystem, start: Bools | None = None, near: InitialGuess | None = None
+    system: CondensedSystem, start: Bools | None = None, near: InitialGuess | None = None, tolerance: float = TOLERANCE
 ) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
     start: (q,) bool, points assumed in contact in the first, linear, solve; by default all.
     near: a guess of the solution, taken instead.
+    tolerance: residual force over the load.
     Raises NotConverged.
     """
     problem = ContactEquations(system, lambda t: coulomb(t, 0.0))
     if near is not None:
-        return _converged(problem, problem.join(near.force, near.motion), "contact without friction")
-    touching = np.ones(len(system.operator.weights), dtype=bool) if start is None else start
-    return _converged(problem, _assumed_contact(system, touching), "contact without friction")
+        x = problem.join(near.force, near.motion)
+    else:
+        x = _assumed_contact(system, np.ones(len(system.operator.weights), dtype=bool) if start is None else start)
+    return _converged(problem, x, "contact without friction", tolerance)
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:
@@ -170,8 +172,8 @@ def _assumed_contact(system: CondensedSystem, touching: Bools, slip: Floats | No
     return -problem.solve(zero, problem.residual(zero))
 
 
-def _converged(problem: ContactEquations, start: Floats, stage: str) -> Equilibrium:
-    root = snes.solve(problem, start, stage, ITERATIONS, TOLERANCE)
+def _converged(problem: ContactEquations, start: Floats, stage: str, tolerance: float = TOLERANCE) -> Equilibrium:
+    root = snes.solve(problem, start, stage, ITERATIONS, tolerance)
     if not root.converged:
         relative = root.residual / problem.scale(root.x)
         raise NotConverged(

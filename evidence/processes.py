@@ -55,7 +55,7 @@ class Cost:
     cpu: float
     """Of all of them together [s]."""
     memory_MB: float
-    """Largest resident memory of one process."""
+    """Largest resident memory: of one process, or of all ranks at once with what they share counted once."""
 
     @staticmethod
     def median(costs: Sequence[Cost]) -> Cost:
@@ -105,7 +105,7 @@ def run(command: Command) -> Cost:
     """Runs a command to its end. Raises RunFailed."""
     words = [*(["mpirun", "-n", str(command.ranks)] if command.ranks > 1 else []), *command.words]
     out = command.log.with_suffix(".cost.json")
-    launcher = [sys.executable, "-S", str(Path(__file__).with_name("launch.py")), str(out)]
+    launcher = [sys.executable, "-S", str(Path(__file__).with_name("launch.py")), str(out), str(command.ranks)]
     with open(command.log, "wb") as log:
         process = subprocess.Popen(
             [*launcher, *words], cwd=command.folder, env={**environment(), **command.variables}, stdout=log, stderr=log,

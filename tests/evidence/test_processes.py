@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from evidence.processes import Command, RunFailed, run
+from tests.support.running.processes import one_at_a_time
 
 
 def test_a_run_costs_what_its_process_takes(tmp_path: Path) -> None:
@@ -24,3 +25,24 @@ def test_a_run_costs_what_its_process_takes(tmp_path: Path) -> None:
     sleeping = Command(words, tmp_path, tmp_path / "long.log", time_limit=0.5)
     with pytest.raises(RunFailed, match="ended after"):
         run(sleeping)
+
+
+@pytest.mark.mpi
+def test_shared_memory_of_ranks_counts_once(tmp_path: Path) -> None:
+    """Two ranks that map the same 200 MB and have 50 MB each of their own for five seconds: 300 MB at once, with 15 to
+    60 MB each for Python."""
+    code = """
+import mmap, sys, time
+with open(sys.argv[1], "r+b") as file:
+    common = mmap.mmap(file.fileno(), 200_000_000)
+common[::4096] = bytes(len(common[::4096]))
+own = bytearray(50_000_000)
+time.sleep(5.0)
+"""
+    held = tmp_path / "held"
+    with open(held, "wb") as file:
+        file.truncate(200_000_000)
+    words = sys.executable, "-c", code, str(held)
+    with one_at_a_time(2):
+        cost = run(Command(words, tmp_path, tmp_path / "two.log", ranks=2))
+    assert 300 < cost.memory_MB < 420

@@ -75,8 +75,8 @@ def _spur_said(rows: Sequence[SpurRow]) -> list[str]:
 
 def _runs_said(rows: Sequence[RunRow]) -> list[str]:
     return [
-        f"`evolvent run` on {RANKS} ranks, from the scene file to its last output: wall seconds, memory of all ranks "
-        "together, iterations of Newton's method a position. *Plain*: without error bars, pictures and fields. "
+        f"`evolvent run` on {RANKS} ranks, from the scene file to its last output: wall seconds, memory of all "
+        "ranks at once, iterations of Newton's method a position. *Plain*: without error bars, pictures and fields. "
         "Degrees of freedom are those of one sector of both gears, and of the finest flanks where they have levels. "
         "The scenes are in `evidence/benchmarks/gears/whole_runs.py`."
     ]
@@ -159,6 +159,7 @@ RUN_TABLE = Table(
         Column("positions s", "positions", ".3g"), Column("error bars s", "error_bars", ".3g"),
         Column("output s", "output", ".3g"), Column("all s", "seconds", ".0f"), Column("bar", "seconds_bar", ".0f"),
         Column("MB", "memory_MB", ".0f"), Column("bar", "memory_bar_MB", ".0f"), Column("Newton", "iterations", ".1f"),
+        Column("bar", "iterations_bar", ".0f"),
         Column("", lambda row: verdict(row.met) if row.has_bar and not row.note else "", words=True),
     ),
 )  # fmt: skip

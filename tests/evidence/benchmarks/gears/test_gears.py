@@ -50,12 +50,13 @@ def test_a_run_is_told_by_its_summary() -> None:
     timings = {"mesh": 1.0, "assemble": 60.0, "factor": 60.0, "positions": 40.0, "error_bars": 10.0, "output": 5.0}
     summary = {
         "timings_s": {**timings, "total": 100.0}, "positions": [{"newton_iterations": n} for n in (6, 10)],
-        "frictions": [{}], "dofs": 10, "flank_dofs": 20, "peak_memory_MB": 300.0,
+        "frictions": [{}], "dofs": 10, "flank_dofs": 20,
     }  # fmt: skip
-    row = row_of(case, summary)
+    row = row_of(case, summary, 300.0)
     assert row.prepare == 45.0
     assert row.iterations == 8.0
     assert not row.met
-    assert row_of(replace(case, seconds_bar=110.0), summary).met
+    assert row_of(replace(case, seconds_bar=110.0, iterations_bar=8.0), summary, 300.0).met
+    assert not row_of(replace(case, seconds_bar=110.0, iterations_bar=7.9), summary, 300.0).met
     assert failed(case, "killed").note == "killed"
     assert np.isnan(failed(case, "killed").seconds)

@@ -28,7 +28,7 @@ from evolvent.gears.contact.overlap_check import UnsearchedOverlap
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import NONE_KNOWN, Pitch, SweepState, SweptPosition, joined, sweep_pitch
-from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, shared_position
+from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, course_after, shared_position
 
 PREPARING = 2  # ranks: from further away a search takes longer
 
@@ -107,7 +107,8 @@ class _RankedSweep:
             prepared = self._broadcast(mine, 1) if coming else None
             del mine  # a matrix is in the shared memory
             if prepared is not None:
-                place = replace(place, extra=prepared.contact.stand.extra, patch=prepared.patch)
+                course = course_after(self.model, prepared, place.course)
+                place = replace(place, extra=prepared.contact.stand.extra, patch=prepared.patch, course=course)
             if solved is not None:
                 state = solved.state
                 yield solved
@@ -132,7 +133,8 @@ class _RankedSweep:
         try:
             angle, threads = self.pitch.angles[number], self.cores.used
             known = self.known.get(number)
-            return shared_position(self.model, angle, state.extra, self.frictions, state.patch, threads, known)
+            extra = state.predicted(angle)
+            return shared_position(self.model, angle, extra, self.frictions, state.patch, threads, known)
         except (NotConverged, SearchError):  # smaller steps may lead there
             return None
 

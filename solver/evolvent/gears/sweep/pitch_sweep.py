@@ -24,7 +24,13 @@ from evolvent.gears.sweep.deflected_flanks import deflected_equilibrium
 from evolvent.gears.sweep.friction_history import FrictionHistory, PreviousJump, previous_jumps
 from evolvent.gears.sweep.frictional_position import Solved, solve_position
 from evolvent.gears.sweep.position_result import PositionResult, position_result
-from evolvent.gears.sweep.position_search import KnownSolution, SharedPosition, shared_position
+from evolvent.gears.sweep.position_search import (
+    KnownSolution,
+    RotationCourse,
+    SharedPosition,
+    course_after,
+    shared_position,
+)
 from evolvent.gears.sweep.slip import nominal_direction
 from evolvent_meshes.arrays import Bools
 
@@ -39,16 +45,22 @@ NONE_KNOWN: Mapping[int, KnownSolution] = MappingProxyType({})
 class SweepState:
     """What the next position of a sweep depends on.
 
-    extra: rotations of pinion and wheel beyond the nominal ones, from which the next search starts [rad].
+    extra: rotations of pinion and wheel beyond the nominal ones, where the last search was [rad].
     histories: friction history of each coefficient that was solved with.
     patch: the last contact patch, None where it is not known.
+    course: of the free rotation, None where it is not known.
 
-    Without extra and patch the next position is the same, but takes more searches and iterations.
+    Without extra, patch and course the next position is the same, but takes more searches and iterations.
     """
 
     extra: tuple[float, float]
     histories: Histories
     patch: ContactPatch | None = None
+    course: RotationCourse | None = None
+
+    def predicted(self, angle: float) -> tuple[float, float]:
+        """Rotations beyond the nominal ones from which the search at a pinion angle starts [rad]."""
+        return self.extra if self.course is None else self.course.at(angle)
 
     def of(self, coefficients: Bools) -> SweepState:
         """The same for some of its friction coefficients, (frictions,) bool."""
@@ -162,7 +174,7 @@ def _position(
     """The position at an angle, in one step. Raises NotConverged, SearchError."""
     begin = time.perf_counter()
     if shared is None:
-        shared = shared_position(model, angle, state.extra, frictions, state.patch, known=known)
+        shared = shared_position(model, angle, state.predicted(angle), frictions, state.patch, known=known)
     histories, span = _histories(model, shared, frictions, state, span)
     jumps = _previous_jumps(shared, histories)
     spent = time.perf_counter() - begin
@@ -182,7 +194,8 @@ def _position(
         updated.append(FrictionHistory.of(model, contact, equilibrium) if history is not None else None)
         seconds = spent / len(frictions) + time.perf_counter() - begin
         results.append(replace(result, seconds=seconds))
-    after = SweepState(shared.contact.stand.extra, tuple(updated), shared.patch)
+    course = course_after(model, shared, state.course)
+    after = SweepState(shared.contact.stand.extra, tuple(updated), shared.patch, course)
     guesses = {each.friction: InitialGuess.of(each.equilibrium) for each in solved}
     return SweptPosition(
         angle, tuple(results), after, known=KnownSolution(shared.searched, InitialGuess.of(shared.smooth), guesses)

@@ -57,6 +57,32 @@ class SearchedAt:
 
 
 @dataclass(frozen=True)
+class RotationCourse:
+    """How the free rotation of the equilibrium goes on from position to position, so that a search starts near it.
+
+    angle: of the pinion at the last position [rad].
+    extra: rotations of pinion and wheel there beyond the nominal ones, in equilibrium without friction [rad].
+    rate: their change per rotation of the pinion; 0 where there is no position before.
+    """
+
+    angle: float
+    extra: tuple[float, float]
+    rate: tuple[float, float] = (0.0, 0.0)
+
+    def at(self, angle: float) -> tuple[float, float]:
+        """On a straight line through the last two positions [rad]."""
+        pinion, wheel = (value + rate * (angle - self.angle) for value, rate in zip(self.extra, self.rate))
+        return pinion, wheel
+
+    def followed_by(self, angle: float, extra: tuple[float, float]) -> RotationCourse:
+        """After one more position."""
+        if angle == self.angle:
+            return RotationCourse(angle, extra, self.rate)
+        pinion, wheel = ((new - old) / (angle - self.angle) for new, old in zip(extra, self.extra))
+        return RotationCourse(angle, extra, (pinion, wheel))
+
+
+@dataclass(frozen=True)
 class KnownSolution:
     """How a position was solved: where it is solved again, with another friction history, it starts from there.
 
@@ -174,6 +200,13 @@ def free_rotation(model: GearModel, equilibrium: Equilibrium) -> tuple[float, fl
     """Rotations of pinion and wheel [rad] from the search to the equilibrium."""
     free = float(equilibrium.motion[0])
     return (free, 0.0) if model.load.on == Member.PINION else (0.0, free)
+
+
+def course_after(model: GearModel, shared: SharedPosition, before: RotationCourse | None) -> RotationCourse:
+    """The course of the free rotation with this position; before: without it."""
+    stand, (pinion, wheel) = shared.contact.stand, free_rotation(model, shared.smooth)
+    extra = stand.extra[0] + pinion, stand.extra[1] + wheel
+    return RotationCourse(stand.angle, extra) if before is None else before.followed_by(stand.angle, extra)
 
 
 def free_shift(model: GearModel, equilibrium: Equilibrium) -> float:

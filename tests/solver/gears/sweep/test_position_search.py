@@ -11,8 +11,9 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.frictional_position import solve_position
+from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.gears.sweep.position_search import shared_position
+from evolvent.gears.sweep.position_search import RotationCourse, course_after, shared_position
 from evolvent.scene.scene import Scene
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import helical_scene, model_of, spur_scene, swept
@@ -75,3 +76,36 @@ def test_contact_line_between_two_rows_of_points_has_a_start() -> None:
     model = model_of(spur_scene("mesh.elements_per_contact_width=0.5"))
     for curve in swept(model, np.arange(0.1, 7.2, 0.4), [0.0]):
         assert np.abs(curve.torque_ratio - 1.0).max() < 0.05
+
+
+def test_rotation_that_changes_steadily_is_predicted_exactly() -> None:
+    """A rotation 0.1 + 0.3 φ of one gear and −0.2 φ of the other, known at 0.5 and 0.7: exact anywhere; known at one
+    angle, it is taken to stay."""
+    one = RotationCourse(0.5, (0.25, -0.1))
+    assert one.at(0.8) == (0.25, -0.1)
+    two = one.followed_by(0.7, (0.31, -0.14))
+    assert two.at(1.1) == pytest.approx((0.43, -0.22), rel=1e-12)
+    assert two.followed_by(0.7, (0.31, -0.14)).at(1.1) == pytest.approx((0.43, -0.22), rel=1e-12)
+
+
+def test_sweep_predicts_where_the_next_equilibrium_is(spur: GearModel) -> None:
+    """At 3.0°, 3.1° and 3.2° the transmission error of this pair goes on smoothly: from the first two positions the
+    third rotation is predicted three times closer than the second one is to it."""
+    *angles, coming = np.radians([3.0, 3.1, 3.2])
+    swept_to = list(sweep_pitch(spur, Pitch(tuple(angles)), [0.0], initial_state([0.0])))[-1].state
+    there = shared_position(spur, coming, (0.0, 0.0), [0.0], None)
+    wanted = np.array(course_after(spur, there, None).extra)
+    assert swept_to.course is not None
+    moved = np.abs(wanted - swept_to.course.extra).max()
+    assert 3.0 * np.abs(wanted - swept_to.predicted(coming)).max() < moved
+
+
+def test_result_with_friction_does_not_depend_on_its_start(spur: GearModel) -> None:
+    """μ = 0.1 alone, which starts from a frictionless state solved to 1e-5 of the load, and beside μ = 0, whose result
+    that state is: the same equilibrium within 1e-8, the stiffness within 1e-5."""
+    alone, beside = (
+        swept(spur, np.array([2.0, 2.2]), frictions)[-1].results[-1] for frictions in ([0.1], [0.0, 0.1])
+    )
+    assert alone.transmission_error == pytest.approx(beside.transmission_error, rel=1e-8)
+    assert alone.pressure.max() == pytest.approx(beside.pressure.max(), rel=1e-8)
+    assert alone.stiffness == pytest.approx(beside.stiffness, rel=1e-5)

@@ -65,6 +65,10 @@ class Measurement:
         yield "ratios", scaling.ratio_rows(self.size(scaling), self.folder)
         yield "sizes", scaling.size_rows(self.size(scaling), self.folder)
 
+    def profile(self) -> Tables:
+        for name, case in self.size(profile).items():
+            yield name, profile.rows(case, self.folder)
+
     def bars(self) -> Tables:
         small = [error_bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1))]
         problems = small if self.small else [error_bars.spur_problem(), error_bars.helical_problem()]
@@ -91,7 +95,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "gears": Measurement.gears,
     "pitches": _table("pitches", lambda given: pitch_precision.rows(given.size(pitch_precision), given.folder)),
     "scaling": Measurement.scaling,
-    "profile": _table("profile", lambda given: profile.rows(given.size(profile), given.folder)),
+    "profile": Measurement.profile,
     "skips": _table("skips", lambda given: skips.rows(skips.CASES[:1] if given.small else skips.CASES)),
     "spur": _table("spur", lambda given: plane_and_solid.rows()),
     "bars": Measurement.bars,

@@ -51,6 +51,13 @@ def _profile_said(rows: Sequence[ProfileRow]) -> list[str]:
     ]
 
 
+def _levels_profile_said(rows: Sequence[ProfileRow]) -> list[str]:
+    return [
+        f"The same at standard on flanks in levels, {rows[0].positions} positions, some of them twice, as the friction "
+        "history closes:"
+    ]
+
+
 def _skips_said(rows: Sequence[SkipRow]) -> list[str]:
     beyond = [row.skip for row in rows if not row.difference <= row.tolerance]
     said = f"Beyond their tolerance: {', '.join(beyond)}." if beyond else "All differences are within the tolerances."
@@ -192,6 +199,7 @@ COSTS: tuple[PageSection[Any], ...] = (
         words=_levels_said, after=_power_laws,
     ),
     PageSection("Where the time goes", "profile", PROFILE_TABLE, words=_profile_said),
+    PageSection("", "profile_levels", PROFILE_TABLE, words=_levels_profile_said),
     PageSection("What a scene does not need", "skips", SKIP_TABLE, words=_skips_said),
     PageSection("A spur pair in 2D and in 3D", "spur", SPUR_TABLE, words=_spur_said),
 )  # fmt: skip

@@ -10,7 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from evidence.benchmarks.gears.pitch import PitchFacts
-from evidence.benchmarks.gears.profile import PARTS
+from evidence.benchmarks.gears.profile import LEVEL_PARTS, ONE_MESH_PARTS
 from evidence.benchmarks.gears.three_teeth import three_teeth
 from evidence.benchmarks.gears.whole_runs import RunCase, failed, row_of
 from tests.support.checkout import ROOT
@@ -38,7 +38,7 @@ def test_a_pitch_is_told_from_one_position() -> None:
 def test_profiled_functions_are_there() -> None:
     """The profile looks functions up by file and name: one that was renamed would silently take no time."""
     solver = ROOT / "solver" / "evolvent"
-    for _, file, function in PARTS:
+    for _, file, function in (*ONE_MESH_PARTS, *LEVEL_PARTS):
         tree = ast.parse((solver / file).read_text(encoding="utf-8"))
         assert function in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}, (file, function)
 

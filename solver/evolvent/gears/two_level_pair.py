@@ -8,6 +8,7 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.division import divided, exchanged
+from evolvent.fem.parallel.memory import return_free_memory
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh
@@ -50,7 +51,9 @@ def two_level_pair(
         known = {name: response for (m, name), response in responses.items() if m == member}
         return corrected_gears(problem, bodies[member], sectors[member], flanks[member], known)
 
-    return together(comm, lambda: {member: corrected(member) for member in sectors}, cores.lent)
+    gears = together(comm, lambda: {member: corrected(member) for member in sectors}, cores.lent)
+    return_free_memory()  # of the patches; positions want less at once
+    return gears
 
 
 def _division(flanks: Mapping[Member, FlankPatches], busy: list[float]) -> list[list[NamedPatch]]:

@@ -165,6 +165,8 @@ def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) 
     """The finest settings with which the command fits into the memory `there` [MB], in words."""
     if processes > 1 and needed(scene, 1) <= there:
         return "run on one rank"
+    if lightest := _lightest_that_fits(scene, needed, processes, there):
+        return f"leave out loads below about {lightest:.3g} N·m (--percent), or take a coarser mesh"
     for words, other in _coarser(scene):
         if (wanted := needed(other, processes)) <= there:
             return f"take {words} ({gigabytes(wanted)})"
@@ -175,6 +177,17 @@ def _remedy(scene: Scene, needed: MemoryEstimate, processes: int, there: float) 
         if needed(other, processes) <= there:
             return f"no mesh fits: the contact is too narrow. From about {torque:.4g} N·m on --level quick does"
     return "no mesh fits: take narrower gears, or a machine with more memory"
+
+
+def _lightest_that_fits(scene: Scene, needed: MemoryEstimate, processes: int, there: float) -> float | None:
+    """The lightest torque [N·m], in steps of two, that the meshes of a load list may serve within the memory `there`
+    [MB]; None where none does, or the scene is no load list's."""
+    lightest, heaviest = scene.load.mesh_torques_Nm or (0.0, 0.0)
+    while 0.0 < (lightest := 2.0 * lightest) <= heaviest:
+        load = scene.load.model_copy(update={"torque_Nm": heaviest, "mesh_torques_Nm": (lightest, heaviest)})
+        if needed(scene.model_copy(update={"load": load}), processes) <= there:
+            return lightest
+    return None
 
 
 def _coarser(scene: Scene) -> Iterator[tuple[str, Scene]]:

@@ -172,6 +172,19 @@ def test_remedy_names_one_rank_where_two_do_not_fit(machine: Callable[[float], N
     assert problem is not None and problem.remedy.startswith("run on one rank")
 
 
+def test_remedy_of_a_load_list_names_the_lightest_load_that_fits(machine: Callable[[float], None]) -> None:
+    """A list from 0.25 to 250 N·m on one mesh a sector: loads below some torque are to be left out; a list from that
+    torque on fits, one from half of it does not."""
+    machine(10e3)
+    listed = ["mesh.level=quick", ONE_MESH, "load.torque_Nm=250"]
+    problem = room_problem(yang(*listed, "load.mesh_torques_Nm=[0.25, 250]"), memory_megabytes)
+    assert problem is not None and "--percent" in problem.remedy
+    lightest = float(problem.remedy.split("about ")[1].split()[0])
+    wanted = [memory_megabytes(yang(*listed, f"load.mesh_torques_Nm=[{least}, 250]")) for least in
+              (lightest, 0.5 * lightest)]  # fmt: skip
+    assert wanted[0] <= 10e3 < wanted[1]
+
+
 @pytest.mark.parametrize("command", ["run", "mesh"])
 def test_commands_refuse_a_mesh_that_does_not_fit(
     command: str, machine: Callable[[float], None], tmp_path: Path, capsys: pytest.CaptureFixture[str],

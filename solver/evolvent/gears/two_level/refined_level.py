@@ -7,6 +7,7 @@ from functools import cached_property
 
 import scipy.sparse as sp
 
+from evolvent.gears.two_level.normal_strips import NormalStrips
 from evolvent.gears.two_level.strips import StripCorrection
 from evolvent_meshes.arrays import Floats
 
@@ -25,6 +26,6 @@ class RefinedLevel:
     normals: Floats
 
     @cached_property
-    def normal(self) -> sp.csr_matrix:
-        """(n, n) correction between normal components [mm/N], in single precision."""
-        return self.correction.normal(self.normals)
+    def normal(self) -> NormalStrips:
+        """The correction between normal components."""
+        return NormalStrips.of(self.correction, self.normals)

@@ -85,7 +85,8 @@ class RoughFlanks:
         nodes."""
         parts: list[tuple[sp.csr_matrix, sp.csr_matrix | Singles]] = []
         for level in reversed(self.levels):
-            parts.append((N.astype(np.float32), level.normal))
+            used = np.unique(N.indices)
+            parts.append((N[:, used].astype(np.float32).tocsr(), level.normal.among(used)))
             N = (N @ level.transfer).tocsr()
         place = np.full(N.shape[1], -1)
         place[tooth.nodes[0]] = np.arange(len(tooth.nodes[0]))

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent.gears.two_level.symmetric_strips import Strip, symmetric_strips
@@ -45,24 +44,6 @@ class StripCorrection:
     def among(self, nodes: Sequence[Ints]) -> LoadedStrips:
         """Between some nodes of each of some teeth, different ones of a tooth."""
         return LoadedStrips.of(self, nodes)
-
-    def normal(self, normals: Floats) -> sp.csr_matrix:
-        """(n, n) normal displacements under normal forces [mm/N], in single precision; normals: (n, 3)."""
-        n = turned(normals[self.numbers], -self.angle[:, None])
-        rows, columns, values = [], [], []
-        for strip in self.strips:
-            (q, p), (Q, P) = strip.sources, strip.moved
-            (level, row), (start, top) = strip.source, strip.start
-            loads, moves = n[level : level + q, row : row + p], n[start : start + Q, top : top + P]
-            scalar = np.einsum("qpaQPb,qpa,QPb->qpQP", strip.blocks(), loads, moves, optimize=True).astype(np.float32)
-            for first in range(0, strip.layers * self.per_layer, self.per_layer):
-                sources = self.numbers[level + first : level + first + q, row : row + p].ravel()
-                moved = self.numbers[start + first : start + first + Q, top : top + P].ravel()
-                rows.append(np.repeat(sources, len(moved)))
-                columns.append(np.tile(moved, len(sources)))
-                values.append(scalar.ravel())
-        size = (self.size, self.size)
-        return sp.csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), size)
 
 
 @dataclass(frozen=True)
@@ -96,14 +77,14 @@ class LoadedStrips:
         tooth = np.repeat(np.arange(len(nodes), dtype=np.int32), [len(each) for each in nodes])
         loaded = np.zeros((len(nodes), *whole.numbers.shape), dtype=bool)
         loaded.reshape(len(nodes), -1)[tooth, own] = True
-        found = [(strip, _first_nodes(strip, loaded, whole.per_layer)) for strip in whole.strips]
+        found = [(strip, first_nodes(strip, loaded, whole.per_layer)) for strip in whole.strips]
         used = [(strip, first) for strip, first in found if len(first)]
         rows = whole.numbers.shape[1]
         return LoadedStrips(
             len(nodes) * whole.size, own + whole.size * tooth, whole.angle[own // rows],
             tuple(strip for strip, _ in used), tuple(len(first) for _, first in used),
-            _places([(first + _offset(s.source, rows), s.sources) for s, first in used], rows),
-            _places([(first + _offset(s.start, rows), s.moved) for s, first in used], rows),
+            _places([(first + node_offset(s.source, rows), s.sources) for s, first in used], rows),
+            _places([(first + node_offset(s.start, rows), s.moved) for s, first in used], rows),
         )  # fmt: skip
 
     def times(self, forces: Reals) -> Reals:
@@ -125,7 +106,7 @@ class LoadedStrips:
         return turned(u[self.place], self.angle).astype(forces.dtype, copy=False)
 
 
-def _first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
+def first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
     """Of the patches of a strip with nodes that are `loaded` (teeth, levels, rows): by how many places each is away
     from the first patch on the first tooth."""
     (level, row), (q, p), (teeth, levels, rows) = strip.source, strip.sources, loaded.shape
@@ -137,15 +118,20 @@ def _first_nodes(strip: Strip, loaded: Bools, per_layer: int) -> Ints:
     return np.asarray((tooth * levels + layer * per_layer) * rows, dtype=np.int32)
 
 
-def _offset(first: tuple[int, int], rows: int) -> int:
+def node_offset(first: tuple[int, int], rows: int) -> int:
     """Place of a level and row."""
     return first[0] * rows + first[1]
 
 
+def node_places(first: Ints, size: tuple[int, int], rows: int) -> Ints:
+    """(m, Q·P) of all nodes of m patches of Q levels × P rows, given by their first nodes (m,)."""
+    levels, across = np.arange(size[0])[:, None], np.arange(size[1])
+    return np.asarray(first[:, None] + (levels * rows + across).ravel())
+
+
 def _places(patches: Sequence[tuple[Ints, tuple[int, int]]], rows: int) -> Ints:
     """Of all nodes of patches, given by their first nodes (m,) and their levels and rows."""
-    grids = [(np.arange(Q)[:, None] * rows + np.arange(P)).ravel() for _, (Q, P) in patches]
-    parts = [(first[:, None] + grid).ravel() for (first, _), grid in zip(patches, grids)]
+    parts = [node_places(first, size, rows).ravel() for first, size in patches]
     return np.concatenate(parts).astype(np.int32) if parts else np.zeros(0, dtype=np.int32)
 
 

@@ -41,20 +41,6 @@ def test_products_between_some_nodes_of_several_teeth(correction: RandomCorrecti
     assert found.ravel() == pytest.approx(np.concatenate(wanted), abs=1e-13 * np.abs(S).sum())
 
 
-def test_normal_components(correction: RandomCorrection) -> None:
-    """nᵀ S n with normals that turn with the layers, in single precision."""
-    strips = correction.strips
-    n = np.random.default_rng(4).normal(size=(*strips.numbers.shape, 3))
-    n[:] = n[:1]  # in the frames of the layers, one normal a row
-    c, s = np.cos(strips.angle)[:, None], np.sin(strips.angle)[:, None]
-    normals = np.empty((strips.size, 3))
-    x, y, z = np.moveaxis(n, -1, 0)
-    normals[strips.numbers] = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
-    S = correction.matrix.reshape(strips.size, 3, strips.size, 3)
-    wanted = np.einsum("iajb,ia,jb->ij", S, normals, normals)
-    assert np.abs(strips.normal(normals).toarray() - wanted).max() < 1e-6 * np.abs(wanted).max()
-
-
 def test_sources_that_leave_nodes_out_are_refused(correction: RandomCorrection) -> None:
     """Nodes of no patch would have no displacement."""
     strips = correction.strips

@@ -1,0 +1,68 @@
+"""What fine cells change in the normal displacements of a swept flank under normal forces, between some of its nodes.
+
+In the frames of the coarse layers the normals are alike from layer to layer, as the patches are. So each strip has one
+matrix of numbers, a ninth of its own size, and only what lies between the nodes of a position is put together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from evolvent.gears.two_level.strips import StripCorrection, first_nodes, node_offset, node_places, turned
+from evolvent_meshes.arrays import Floats, Ints, Singles
+
+Indices = NDArray[np.int32]
+"""Half the memory of `Ints`."""
+
+
+@dataclass(frozen=True)
+class NormalStrips:
+    """nᵀ S n of a flank's nodes.
+
+    correction: S.
+    changes: (q·p, Q·P) of each of its strips, in single precision [mm/N].
+    """
+
+    correction: StripCorrection
+    changes: tuple[Singles, ...]
+
+    @staticmethod
+    def of(correction: StripCorrection, normals: Floats) -> NormalStrips:
+        """normals: (n, 3) at the nodes."""
+        n = turned(normals[correction.numbers], -correction.angle[:, None])
+        changes = []
+        for strip in correction.strips:
+            (q, p), (Q, P) = strip.sources, strip.moved
+            (level, row), (start, top) = strip.source, strip.start
+            loads, moves = n[level : level + q, row : row + p], n[start : start + Q, top : top + P]
+            change = np.einsum("qpaQPb,qpa,QPb->qpQP", strip.blocks(), loads, moves, optimize=True)
+            changes.append(change.reshape(q * p, Q * P).astype(np.float32))
+        return NormalStrips(correction, tuple(changes))
+
+    def among(self, nodes: Ints) -> sp.csr_matrix:
+        """Between some nodes (k,), different ones: (k, k) [mm/N]."""
+        number = np.full(self.correction.size, -1, dtype=np.int32)
+        number[nodes] = np.arange(len(nodes), dtype=np.int32)
+        parts = list(self._parts(number[self.correction.numbers]))
+        rows, columns, values = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return sp.csr_matrix((values, (rows, columns)), (len(nodes), len(nodes)))
+
+    def _parts(self, number: Indices) -> Iterator[tuple[Indices, Indices, Singles]]:
+        """Rows, columns and values of each strip. number: (levels, rows) of the wanted nodes, −1 of others."""
+        correction, number_at, per_row = self.correction, number.ravel(), number.shape[1]
+        wanted = (number >= 0)[None]
+        for strip, change in zip(correction.strips, self.changes):
+            first = first_nodes(strip, wanted, correction.per_layer)
+            sources, moved = (
+                number_at[node_places(first + node_offset(corner, per_row), size, per_row)]
+                for corner, size in ((strip.source, strip.sources), (strip.start, strip.moved))
+            )
+            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None]
+            of_all = sources[:, :, None], moved[:, None], change[None]
+            rows, columns, values = (np.broadcast_to(each, both.shape)[both] for each in of_all)
+            yield rows, columns, values

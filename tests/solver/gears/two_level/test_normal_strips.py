@@ -1,0 +1,28 @@
+"""Corrections of normal components between some nodes, against the matrix written out, with random numbers. Exact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.gears.two_level.normal_strips import NormalStrips
+from tests.support.random_strips import random_correction
+
+
+def test_normal_components_between_some_nodes() -> None:
+    """nᵀ S n with normals that turn with the layers, in single precision: between all nodes, between some of them in
+    any order, and between one alone."""
+    random = np.random.default_rng(1)
+    correction = random_correction(random, 5, 6)
+    strips = correction.strips
+    n = np.random.default_rng(4).normal(size=(*strips.numbers.shape, 3))
+    n[:] = n[:1]  # in the frames of the layers, one normal a row
+    c, s = np.cos(strips.angle)[:, None], np.sin(strips.angle)[:, None]
+    normals = np.empty((strips.size, 3))
+    x, y, z = np.moveaxis(n, -1, 0)
+    normals[strips.numbers] = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+    S = correction.matrix.reshape(strips.size, 3, strips.size, 3)
+    wanted = np.einsum("iajb,ia,jb->ij", S, normals, normals)
+    normal = NormalStrips.of(strips, normals)
+    for nodes in (np.arange(strips.size), random.permutation(strips.size)[:23], np.array([7])):
+        found = normal.among(nodes).toarray()
+        assert np.abs(found - wanted[np.ix_(nodes, nodes)]).max() < 1e-6 * np.abs(wanted).max()

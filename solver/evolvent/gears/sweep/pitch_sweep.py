@@ -69,7 +69,7 @@ class SweepState:
     def earlier(self, pitches: int) -> SweepState:
         """The same so many angular pitches earlier."""
         histories = tuple(None if history is None else history.earlier(pitches) for history in self.histories)
-        return replace(self, histories=histories)
+        return replace(self, histories=histories, course=None)  # the course ends a pitch later
 
 
 @dataclass(frozen=True)

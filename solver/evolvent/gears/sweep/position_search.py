@@ -37,9 +37,8 @@ FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
 START = 1e-5
-"""Residual over the load of a frictionless state that is not a result: with it friction starts, the flanks are searched
-and the mesh stiffness is taken. Newton's method comes there two or three iterations earlier. The set of points in
-contact, on which the stiffness depends, is then off by less than one in 5,000."""
+"""Residual over the load of a frictionless state that is no result: friction starts from it, and the flanks are
+searched where it leaves the gears. Newton's method comes there two or three iterations earlier."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ class SharedPosition:
 
     contact: the flanks that face each other.
     system: their condensed system.
-    smooth: the frictionless equilibrium.
+    smooth: the frictionless equilibrium, to `START` only where no coefficient has it for its result.
     unsearched: where flanks might touch outside the window.
     """
 
@@ -114,7 +113,8 @@ class SharedPosition:
     @cached_property
     def stiffness(self) -> float:
         """Of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D]."""
-        return tangent_stiffness(normal_part(self.system), self.smooth)
+        normal = normal_part(self.system)
+        return tangent_stiffness(normal, frictionless(normal, near=InitialGuess.of(self.smooth)))
 
     @property
     def patch(self) -> ContactPatch:
@@ -129,7 +129,7 @@ class SharedPosition:
 
 def shared_position(
     model: GearModel, angle: float, extra: tuple[float, float], frictions: Sequence[float], before: ContactPatch | None,
-    threads: Threads = nullcontext, known: KnownSolution | None = None,
+    threads: Threads = nullcontext, known: KnownSolution | None = None, exact: bool = False,
 ) -> SharedPosition:  # fmt: skip
     """Search, compliance and frictionless equilibrium; the free rotation is made exact, and the window wide enough.
 
@@ -140,10 +140,11 @@ def shared_position(
     threads: in which compliances are put together.
     known: how it was solved before, None where it was not; it replaces extra and before.
 
-    Where no coefficient has it for its result, the frictionless state is solved for to `START` only. Raises
-    NotConverged, SearchError.
+    exact: solve the frictionless state to the end, also where no coefficient has it for its result; else to `START`.
+
+    Raises NotConverged, SearchError.
     """
-    normal_only, tolerance = not any(map(model.has_friction_terms, frictions)), _tolerance(model, frictions)
+    normal_only, tolerance = not any(map(model.has_friction_terms, frictions)), _tolerance(model, frictions, exact)
     stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
     if known is not None:
         stand, half_width = Stand(model.pair, angle, known.searched.extra), known.searched.half_width
@@ -187,13 +188,13 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
     normal_only = not any(map(model.has_friction_terms, frictions))
     system = contact.system(model.load.on, model.load.torque, normal_only)
     start = _initially_pressed(contact.geometry, None)
-    smooth = frictionless(normal_part(system), start, tolerance=_tolerance(model, frictions))
+    smooth = frictionless(normal_part(system), start)
     return SharedPosition(contact, system, smooth, unsearched_overlaps(contact.geometry, model.teeth))
 
 
-def _tolerance(model: GearModel, frictions: Sequence[float]) -> float:
+def _tolerance(model: GearModel, frictions: Sequence[float], exact: bool) -> float:
     """Of the frictionless state: it is the result of coefficients without friction terms."""
-    return START if all(map(model.has_friction_terms, frictions)) else TOLERANCE
+    return START if all(map(model.has_friction_terms, frictions)) and not exact else TOLERANCE
 
 
 def free_rotation(model: GearModel, equilibrium: Equilibrium) -> tuple[float, float]:

@@ -50,7 +50,7 @@ def load_sharing(run: RunData) -> Figure:
     axes.plot(angle, 100.0 * share, **by_length)
     axes.set(xlabel=TOOTH_ANGLE, ylabel="share of the normal force [%]")
     axes.set_ylim(bottom=0.0)
-    axes.legend(loc="lower center")  # below the curves, which rise from both ends
+    axes.legend(loc="lower center", ncols=1)  # below the curves, which rise from both ends
     return figure
 
 

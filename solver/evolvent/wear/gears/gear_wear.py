@@ -206,7 +206,7 @@ class GearWear:
                 near = old or (positions[-1] if positions else None)
                 extra = (0.0, 0.0) if near is None else near.contact.stand.extra
                 patch = None if near is None else near.patch
-                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], patch)
+                shared = shared_position(model, self.pitch.angles[k], extra, [self.friction], patch, exact=True)
                 searched += 1
             positions.append(shared)
         return positions, searched

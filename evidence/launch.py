@@ -22,17 +22,17 @@ def main() -> int:
     out, ranks, *words = sys.argv[1:]
     begin = time.perf_counter()
     process = subprocess.Popen(words)
-    together = _largest_together(process.pid) if int(ranks) > 1 else 0.0
+    together = _largest_together(process.pid) if int(ranks) > 1 else None
     _, status, used = os.wait4(process.pid, 0)
     wall = time.perf_counter() - begin
-    memory = together or used.ru_maxrss / 1024.0
+    memory = used.ru_maxrss / 1024.0 if together is None else together
     Path(out).write_text(json.dumps({"wall": wall, "cpu": used.ru_utime + used.ru_stime, "memory_MB": memory}))
     code = os.waitstatus_to_exitcode(status)
     return 128 - code if code < 0 else code
 
 
 def _largest_together(pid: int) -> float:
-    """Largest sampled memory [MB] of all processes of this session until one of them ends."""
+    """Largest sampled memory [MB] of all processes of this session until the command ends."""
     largest, looked = 0.0, time.monotonic() - SAMPLING
     while os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
         if time.monotonic() - looked >= SAMPLING:

@@ -16,7 +16,7 @@ import numpy as np
 from evidence.benchmarks.accuracy.same_cells import exact_model, fine_nodes, two_level_model
 from evidence.benchmarks.accuracy.slice_peaks import slice_peaks
 from evidence.robustness.campaigns.random_scenes import random_scene
-from evidence.scenes import HELICAL, SPUR
+from evidence.scenes import SPUR, WHOLE_WIDTH, helical_pair_of_width
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.problem.gear_problem import LEVELS, GearOptions, GearProblem, MeshSettings
@@ -27,8 +27,8 @@ from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
-WHOLE_WIDTH, NARROW = 16.9, 4.6
-"""Face widths of Yang's pair [mm]; its line load is the same on both."""
+NARROW = 4.6
+"""Face width of Yang's pair [mm] on which its line load is the same."""
 MODIFIED = ("pinion.lead_crowning_um=5", "pinion.tip_relief_um=10", "pair.misalignment_um=10")
 ERROR_BAR, SHARING_BAR = 2e-3, 1e-3
 PEAK_BARS = {"nine in ten": 5e-3, "all": 2e-2}
@@ -85,10 +85,9 @@ class Size:
 def yang_case(mesh: MeshSettings, width: float, frictions: tuple[float, ...], *settings: str, name: str = "") -> Case:
     """Yang's pair of some face width [mm] under the line load of the whole one. settings: of the scene; name: of what
     they change."""
-    widths = [f"{gear}.face_width_mm={width}" for gear in ("pinion", "wheel")]
-    scene = load_scene(HELICAL, [*widths, f"load.torque_Nm={250.0 * width / WHOLE_WIDTH}", *settings])
+    problem = gear_problem(helical_pair_of_width(width, *settings))
     named = f"Yang{name}, {width:g} mm, {mesh.level}"
-    return Case(named, replace(gear_problem(scene), mesh=replace(mesh, two_level=True)), frictions)
+    return Case(named, replace(problem, mesh=replace(mesh, two_level=True)), frictions)
 
 
 def he_case() -> Case:

@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from evidence.claims import Claim, regression
 from evidence.robustness.settings.independence import CHANGE
-from evidence.scenes import helical_pair
+from evidence.scenes import helical_pair_of_width
 from evolvent.contact.nitsche.flux_recovery import SAFETY
 from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.gears.condensed_gear import GearBody
@@ -28,8 +28,8 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
 
 SAFETIES = (1.1, 1.25, 5.0, 20.0, 50.0)
-WIDTH, WHOLE_WIDTH, TORQUE = 4.6, 16.9, 250.0
-"""Face width of the pair, and of Yang's under its torque [mm, N·m]."""
+WIDTH = 4.6
+"""Face width [mm]."""
 STANDARD = MeshSettings("standard", two_level=True)
 POSITIONS = 4
 FRICTION = 0.1
@@ -55,9 +55,7 @@ class LevelFigures:
 @cache
 def problem(mesh: MeshSettings) -> GearProblem:
     """The pair's."""
-    widths = [f"{gear}.face_width_mm={WIDTH}" for gear in ("pinion", "wheel")]
-    scene = helical_pair(*widths, f"load.torque_Nm={TORQUE * WIDTH / WHOLE_WIDTH}")
-    return replace(gear_problem(scene), mesh=mesh)
+    return replace(gear_problem(helical_pair_of_width(WIDTH)), mesh=mesh)
 
 
 @cache

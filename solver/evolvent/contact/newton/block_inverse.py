@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from evolvent.contact.newton.band_factor import BandFactor, times_banded
+from evolvent.contact.newton.band_factor import BandFactor
 from evolvent.contact.newton.snes import NotConverged
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
@@ -141,8 +141,8 @@ class _Block:
         mine = mine[reverse_cuthill_mckee(A[:, node[kept[mine]]], symmetric_mode=True)]
         rows = kept[mine]
         A = _of_components(block[node[rows]], node[near], axis[rows], axis[near])
-        B = times_banded(A[:, np.searchsorted(near, rows)], M[rows][:, rows].tocsc())
-        return _Block(mine, near, A, BandFactor(B))
+        factor = BandFactor(A[:, np.searchsorted(near, rows)], M[rows][:, rows].tocsc())
+        return _Block(mine, near, A, factor)
 
     def moved(self, b: Floats) -> Singles:
         """A_b b (s_i,) for forces (u,) on all active unknowns."""

@@ -44,16 +44,18 @@ class NormalStrips:
             changes.append(change.reshape(q * p, Q * P).astype(np.float32))
         return NormalStrips(correction, tuple(changes))
 
-    def among(self, nodes: Ints) -> sp.csr_matrix:
-        """Between some nodes (k,), different ones: (k, k) [mm/N]."""
+    def among(self, nodes: Ints, apart: float) -> sp.csr_matrix:
+        """Between some nodes (k,), different ones, no more than so many coarse layers apart along the face: (k, k)
+        [mm/N]."""
         number = np.full(self.correction.size, -1, dtype=np.int32)
         number[nodes] = np.arange(len(nodes), dtype=np.int32)
-        parts = list(self._parts(number[self.correction.numbers]))
+        parts = list(self._parts(number[self.correction.numbers], apart * self.correction.per_layer))
         rows, columns, values = (np.concatenate(each) for each in zip(*parts, strict=True))
         return sp.csr_matrix((values, (rows, columns)), (len(nodes), len(nodes)))
 
-    def _parts(self, number: Indices) -> Iterator[tuple[Indices, Indices, Singles]]:
-        """Rows, columns and values of each strip. number: (levels, rows) of the wanted nodes, −1 of others."""
+    def _parts(self, number: Indices, apart: float) -> Iterator[tuple[Indices, Indices, Singles]]:
+        """Rows, columns and values of each strip. number: (levels, rows) of the wanted nodes, −1 of others. apart:
+        in levels of nodes."""
         correction, number_at, per_row = self.correction, number.ravel(), number.shape[1]
         wanted = (number >= 0)[None]
         for strip, change in zip(correction.strips, self.changes):
@@ -62,7 +64,13 @@ class NormalStrips:
                 number_at[node_places(first + node_offset(corner, per_row), size, per_row)]
                 for corner, size in ((strip.source, strip.sources), (strip.start, strip.moved))
             )
-            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None]
+            rise = _levels(strip.source, strip.sources)[:, None] - _levels(strip.start, strip.moved)
+            both = (sources >= 0)[:, :, None] & (moved >= 0)[:, None] & (np.abs(rise) <= apart)
             of_all = sources[:, :, None], moved[:, None], change[None]
             rows, columns, values = (np.broadcast_to(each, both.shape)[both] for each in of_all)
             yield rows, columns, values
+
+
+def _levels(corner: tuple[int, int], size: tuple[int, int]) -> Ints:
+    """Of the nodes of a patch with levels and rows of a number, from the first node of its strip's first patch on."""
+    return np.repeat(corner[0] + np.arange(size[0]), size[1])

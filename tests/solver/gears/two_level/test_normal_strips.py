@@ -10,7 +10,7 @@ from tests.support.random_strips import random_correction
 
 def test_normal_components_between_some_nodes() -> None:
     """nᵀ S n with normals that turn with the layers, in single precision: between all nodes, between some of them in
-    any order, and between one alone."""
+    any order, and between one alone; of all, and of those that are half a layer apart at most."""
     random = np.random.default_rng(1)
     correction = random_correction(random, 5, 6)
     strips = correction.strips
@@ -23,6 +23,10 @@ def test_normal_components_between_some_nodes() -> None:
     S = correction.matrix.reshape(strips.size, 3, strips.size, 3)
     wanted = np.einsum("iajb,ia,jb->ij", S, normals, normals)
     normal = NormalStrips.of(strips, normals)
-    for nodes in (np.arange(strips.size), random.permutation(strips.size)[:23], np.array([7])):
-        found = normal.among(nodes).toarray()
-        assert np.abs(found - wanted[np.ix_(nodes, nodes)]).max() < 1e-6 * np.abs(wanted).max()
+    level = np.empty(strips.size, dtype=int)
+    level[strips.numbers] = np.arange(len(strips.numbers))[:, None]
+    near = np.abs(level[:, None] - level) <= strips.per_layer / 2
+    for apart, S_n in ((np.inf, wanted), (0.5, np.where(near, wanted, 0.0))):
+        for nodes in (np.arange(strips.size), random.permutation(strips.size)[:23], np.array([7])):
+            found = normal.among(nodes, apart).toarray()
+            assert np.abs(found - S_n[np.ix_(nodes, nodes)]).max() < 1e-6 * np.abs(wanted).max()

@@ -26,6 +26,10 @@ HELD = 0.9  # share of the error bars that must hold
 OVER_PARAMETERS = (
     ("p0 over γ from 1.25 to 50 C, spur pair, `standard`", "p0 [MPa], spur pair, standard"),
     ("p0 over γ from 1.25 to 50 C, spur pair, `fine`", "p0 [MPa], spur pair, fine"),
+    ("p0 over γ from 1.1 to 50 C, helical pair in levels, `standard`", "largest p0 [MPa], helical pair"),
+    ("its mean over the slices", "mean p0 [MPa], helical pair"),
+    ("transmission error over γ, helical pair in levels", "TE [mm], helical pair"),
+    ("load sharing over γ, helical pair in levels", "load share, helical pair"),
     ("transmission error over γ, spur pair", "TE [mm], spur pair,"),
     ("wheel torque over γ, spur pair", "wheel torque [N], spur pair,"),
     ("p0 over θ, spur pair as two bodies", "p0 [MPa], spur pair as two bodies"),
@@ -152,8 +156,11 @@ def _parameters(robustness: Path) -> Iterator[Promise]:
         solved = [each for each in claims if each.quantity.startswith(start) and not isnan(each.found)]
         worst = max(each.off for each in solved)
         yield Promise(what, "0.5 %", f"{100 * worst:.2g} %", all(each.held for each in solved))
-    refused = {each.quantity.split(", ")[2] for each in claims if isnan(each.found) and "spur pair" in each.quantity}
-    yield Promise("γ = 1.1 C, spur pair", "a result", f"refused, {' and '.join(sorted(refused))}", not refused)
+    for pair in ("spur pair", "helical pair in levels"):
+        without = (each.quantity for each in claims if isnan(each.found))
+        refused = {quantity.split(f"{pair}, ")[1] for quantity in without if pair in quantity}
+        found = f"refused: {'; '.join(sorted(refused))}" if refused else "results"
+        yield Promise(f"γ from 1.1 to 50 C, {pair}", "results", found, not refused)
     newton = max(each.found for each in claims if each.quantity.startswith("Newton iterations"))
     yield _at_most("Newton iterations per position with friction, spur pair in 2D, both stages", newton, 8.0)
     (kills,) = measured(robustness / "faults.md")

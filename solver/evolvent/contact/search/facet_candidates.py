@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -11,6 +14,9 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 OPPOSED = -0.2
 """n1·n2 at the centres of two facets above which they cannot face each other."""
+AT_ONCE = 2000
+"""Facets of surface 1: their candidates are lists of Python, which take forty bytes each."""
+SLIGHTLY_MORE = 1.0 + 1e-9  # of a radius: against rounding
 
 
 def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_gap: float,
@@ -19,25 +25,71 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
 
     facets1: facets of surface 1 to pair. max_gap, max_overlap: largest distances [mm].
     """
-    centre1, radius1 = facet_balls(surface1, facets1)
-    centre2, radius2 = facet_balls(surface2, np.arange(len(surface2.facets)))
-    if len(centre1) == 0 or len(centre2) == 0:
+    if not (len(facets1) and len(surface2.facets)):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    reach = max(max_gap, max_overlap)
-    near = cKDTree(centre2).query_ball_point(centre1, radius1 + radius2.max() + reach, return_sorted=True)
-    i1 = np.repeat(np.arange(len(facets1)), [len(n) for n in near])
-    i2 = np.concatenate([np.asarray(n, dtype=np.int64) for n in near])
-    keep = np.linalg.norm(centre1[i1] - centre2[i2], axis=1) <= radius1[i1] + radius2[i2] + reach
-    i1, i2 = i1[keep], i2[keep]
-    frame1, frame2 = _frames(surface1)[facets1], _frames(surface2)
-    keep = np.einsum("pd,pd->p", frame1[i1, 0], frame2[i2, 0]) < OPPOSED
-    i1, i2 = i1[keep], i2[keep]
-    beside = radius1 + reach * _tilt(surface1.normals[surface1.facets[facets1]], frame1[:, 0])
-    distance, along = centre2[i2] - centre1[i1], frame1[i1, 0]
-    keep = _balls_meet(distance, along, radius1[i1] + radius2[i2], beside[i1] + radius2[i2], (max_gap, max_overlap))
-    i1, i2 = i1[keep], i2[keep]
-    keep = _boxes_meet(surface1, surface2, facets1[i1], i2, frame1[i1], max_gap, max_overlap)
-    return facets1[i1[keep]], i2[keep]
+    frames, balls2 = (_frames(surface1), _frames(surface2)), facet_balls(surface2, np.arange(len(surface2.facets)))
+    tree, found = cKDTree(balls2[0]), []
+    for chosen in np.array_split(facets1, math.ceil(len(facets1) / AT_ONCE)):
+        centre1, radius1 = facet_balls(surface1, chosen)
+        frame1 = frames[0][chosen]
+        beside = radius1 + max(max_gap, max_overlap) * _tilt(surface1.normals[surface1.facets[chosen]], frame1[:, 0])
+        layers = _Layers(centre1, radius1, frame1[:, 0], beside, (max_gap, max_overlap))
+        i1, i2 = layers.candidates(tree, *balls2)
+        keep = np.einsum("pd,pd->p", frame1[i1, 0], frames[1][i2, 0]) < OPPOSED
+        i1, i2 = i1[keep], i2[keep]
+        keep = _boxes_meet(surface1, surface2, chosen[i1], i2, frame1[i1], max_gap, max_overlap)
+        found.append((chosen[i1[keep]], i2[keep]))
+    first, second = (np.concatenate(each) for each in zip(*found))
+    return first, second
+
+
+@dataclass(frozen=True)
+class _Layers:
+    """Where the partners of some facets of surface 1 lie: within reach along their normals.
+
+    centre, radius: of balls around the facets, (m, d), (m,) [mm].
+    normal: (m, d) at their centres.
+    beside: (m,) how far across the normal partners may lie [mm].
+    reach: largest gap and largest overlap [mm].
+    """
+
+    centre: Floats
+    radius: Floats
+    normal: Floats
+    beside: Floats
+    reach: tuple[float, float]
+
+    def candidates(self, tree: cKDTree, centre2: Floats, radius2: Floats) -> tuple[Ints, Ints]:
+        """Pairs (p,), (p,) of these facets with those of surface 2 whose balls reach into the layers, sorted. tree: of
+        the balls' centres.
+
+        The tree is asked for balls of the size of a facet one after the other along the normal: one that holds a whole
+        layer, which may be thirty times as high as a facet is wide, holds hundreds of facets beside it.
+        """
+        most = self.radius + radius2.max()
+        low, height = -self.reach[1] - most, sum(self.reach) + 2.0 * most
+        across = self.beside + radius2.max()
+        count = math.ceil(float((height / across).max()) / 2.0)
+        step = height / count
+        parts = [self._slab(tree, centre2, low, step, np.hypot(0.5 * step, across), k) for k in range(count)]
+        i1, i2 = (np.concatenate(each) for each in zip(*parts))
+        distance, along = centre2[i2] - self.centre[i1], self.normal[i1]
+        radii = self.radius[i1] + radius2[i2]
+        keep = _balls_meet(distance, along, radii, self.beside[i1] + radius2[i2], self.reach)
+        order = np.lexsort((i2[keep], i1[keep]))
+        return i1[keep][order], i2[keep][order]
+
+    def _slab(
+        self, tree: cKDTree, centre2: Floats, low: Floats, step: Floats, radius: Floats, number: int
+    ) -> tuple[Ints, Ints]:
+        """Pairs whose distance along the normal is from low + number · step to one step more."""
+        middle = self.centre + (low + (number + 0.5) * step)[:, None] * self.normal
+        near = tree.query_ball_point(middle, SLIGHTLY_MORE * radius)
+        i1 = np.repeat(np.arange(len(near)), [len(n) for n in near])
+        i2 = np.concatenate([np.asarray(n, dtype=np.int64) for n in near])
+        along = np.einsum("pd,pd->p", centre2[i2] - self.centre[i1], self.normal[i1])
+        keep = np.floor((along - low[i1]) / step[i1]) == number
+        return i1[keep], i2[keep]
 
 
 def _tilt(normals: Floats, centre: Floats) -> Floats:

@@ -119,7 +119,8 @@ class ContactGeometry:
         parts = []
         for t in self.teeth:
             first = t.operator.shape @ pinion.tip_zone[t.operator.nodes].astype(float)
-            tip = np.flatnonzero(wheel.tip_zone)
+            opposite = t.operator.jump2.columns
+            tip = opposite[wheel.tip_zone[opposite]]
             second = np.abs(t.operator.shape) @ np.abs(t.operator.jump2.at(tip)).sum(axis=1)
             parts.append((np.abs(first) > 1e-9) | (second > 0.05))
         return np.concatenate(parts)

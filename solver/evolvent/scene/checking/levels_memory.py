@@ -1,8 +1,7 @@
 """Memory of gears whose flanks have levels of their own, estimated from the numbers of cells.
 
-Three times of a run want most: a coarse sector is eliminated, a patch is condensed, a position is solved. Compared with
-runs of Yang's pair on one rank: quick 2705 MB, standard 1840 MB, with its coarse companion or without, fine 3200 MB;
-the estimates are 2710, 2050 and 3210.
+Three times of a run want most: a coarse sector is eliminated, a patch is condensed, a position is solved. Fitted to
+runs of Yang's pair and of 23/81 teeth at 50 and 10 N·m, see *Whole runs* in docs/benchmark.md.
 """
 
 from __future__ import annotations
@@ -13,8 +12,11 @@ from evolvent.gears.meshing.flank_levels import LevelledSector
 from evolvent.gears.meshing.sector_sizes import LevelledSize
 from evolvent_meshes.gears.member import Member
 
-LEVELS_PER_DOF = 8.4e-3
-"""Memory [MB] of corrections and of a position's products per degree of freedom of both finest flanks."""
+POSITION_PER_DOF, POSITION_PER_LEVEL = 2.46e-3, 2250.0
+"""Memory [MB] of corrections and of a position on two ranks: per degree of freedom of both finest flanks, and for each
+level after the first."""
+SHARED, OWN = 0.2, 0.4
+"""Shares of it that all ranks have together, and that each has."""
 PATCH_PER_NODE = {False: 1.25, True: 1.73}
 """Memory [MB] of condensing a patch per node of its flank, without and with the functionals of Nitsche's method, which
 the finest level of the pinion has."""
@@ -29,8 +31,9 @@ def levels_megabytes(sectors: Sequence[LevelledSector], ranks: int) -> float:
     sizes = [LevelledSize.of(sector) for sector in sectors]
     pinion, wheel = (_patch_megabytes(sector, member) for sector, member in zip(sectors, Member))
     patches = max(pinion, wheel) if ranks == 1 else pinion + wheel
-    positions = LEVELS_PER_DOF * sum(size.flank for size in sizes)
-    return sum(map(_compliance_megabytes, sizes)) + max(patches, positions)
+    later = max(len(sector.levels) for sector in sectors) - 1
+    positions = POSITION_PER_DOF * sum(size.flank for size in sizes) + POSITION_PER_LEVEL * later
+    return sum(map(_compliance_megabytes, sizes)) + max(patches, (SHARED + OWN * ranks) * positions)
 
 
 def _compliance_megabytes(size: LevelledSize) -> float:

@@ -12,8 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evidence.benchmarks.gears.whole_runs import FULL, RANKS, RunRow
-from evidence.tables import read_rows
 from evolvent.cli import main
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.sector_meshes import gear_mesh
@@ -91,18 +89,6 @@ def test_memory_estimate_of_small_runs() -> None:
     quick = spur_scene("mesh.level=quick")
     assert 150 < memory_megabytes(quick) < 330
     assert 600 < memory_megabytes(spur_scene("mesh.level=quick", "skip.off=one-sector")) < 1300
-
-
-RUNS = [each for each in read_rows(ROOT / "docs/benchmark/runs.csv", RunRow) if each.flank_dofs and not each.error_bars]
-
-
-@pytest.mark.parametrize("measured", RUNS, ids=lambda row: f"{row.case}, {row.level}")
-def test_memory_estimate_of_flanks_in_levels_on_two_ranks(measured: RunRow) -> None:
-    """From 10 % below to 40 % above what plain runs took, all ranks together (docs/benchmark.md, whole runs): the
-    largest patches of both gears are taken to be condensed at once, which they seldom are."""
-    (case,) = (each for each in FULL if (each.name, each.level) == (measured.case, measured.level))
-    scene = load_scene(ROOT / case.scene, [*case.settings, f"mesh.level={case.level}"])
-    assert 0.9 * measured.memory_MB < memory_megabytes(scene, RANKS) < 1.4 * measured.memory_MB
 
 
 def test_memory_estimate_of_several_ranks() -> None:

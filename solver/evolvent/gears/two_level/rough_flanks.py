@@ -68,7 +68,7 @@ class RoughFlanks:
         lattice = self.levels[-1].correction.lattice
         x = tooth.map.opposite(lattice.at(tooth.nodes[-1]))
         layer = float(np.diff(self._heights).max())
-        near, members = _groups(x[:, 2], layer)
+        near, members = _groups(x[:, 2], layer, layer / self.levels[-1].correction.per_layer)
         parts = self._parts(lattice.interpolation(x), tooth, C, bending, near / layer)
         rows, columns, values = [], [], []
         for first, second in [*zip(members, members), *pairwise(members)]:
@@ -106,13 +106,13 @@ class RoughFlanks:
         return np.unique(np.round(self.flank.points[:, 2], 9))[::2]
 
 
-def _groups(z: Floats, near: float) -> tuple[float, list[Ints]]:
-    """Nodes with heights z (n,) in groups that are `near` high [mm], halved until none has more nodes than TOGETHER;
-    and how high that is."""
+def _groups(z: Floats, near: float, least: float) -> tuple[float, list[Ints]]:
+    """Nodes with heights z (n,) in groups that are `near` high [mm], halved until none has more nodes than TOGETHER or
+    they are no higher than `least`, the distance of two levels of nodes; and how high that is."""
     while True:
         group = ((z - z.min()) / near).astype(np.int64)
         sizes = np.bincount(group)
-        if sizes.max() <= TOGETHER:
+        if sizes.max() <= TOGETHER or near <= least:
             return near, [np.flatnonzero(group == each) for each in range(len(sizes))]
         near *= 0.5
 

@@ -122,7 +122,8 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
     if wanted <= there:
         return None
     allowed = f"what fits into {gigabytes(there)}, the memory of this machine or container"
-    if needed is memory_megabytes and (kept := results_megabytes(scene)) > 0.5 * wanted:
+    kept = results_megabytes(scene) if needed is memory_megabytes else 0.0
+    if kept > 0.5 * wanted and wanted - kept <= there:
         count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
         found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
         remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"

@@ -1,7 +1,7 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
 PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, level-sizes, two-level,
-runs, all (the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in
+beside, runs, all (the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in
 docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
@@ -103,6 +103,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "wear": Measurement.wear,
     "level-sizes": _table("level_sizes", lambda given: scaling.level_rows(given.size(scaling), given.folder)),
     "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
+    "beside": _table("beside", lambda given: whole_runs.beside_rows(whole_runs.BESIDE, given.folder)),
     "runs": _table("runs", lambda given: whole_runs.rows(given.size(whole_runs), given.folder)),
 }
 

@@ -18,7 +18,7 @@ from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
-from evolvent.results.tables.load_table import LoadRow
+from evolvent.results.tables.load_table import ERROR, LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from evolvent.scene.skips import Skipped
 from evolvent.wear.gears.gear_study import BlockRow
@@ -129,7 +129,8 @@ def unit(name: str, kind: type | None = None) -> str:
     """What a name's ending says."""
     if kind in SECONDS or name in SECONDS:
         return "s"
-    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+    figure = name.removesuffix(ERROR)  # an error bar has the unit of its figure
+    return next((unit for ending, unit in UNITS.items() if figure.endswith(ending)), "")
 
 
 def page() -> list[str]:

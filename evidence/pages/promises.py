@@ -102,7 +102,7 @@ def _speed(tables: Path) -> Iterator[Promise]:
     for program, bar in GEAR_BARS.items():
         (row,) = large(gears, program)
         yield _at_least(f"gear pair, {row.dofs:,} dofs: seconds per position of {program} over ours", row.ratio, bar)
-    for ratio_row in read_rows(tables / "ratios.csv", RatioRow):
+    for ratio_row in (row for name in ("ratios", "beside") for row in read_rows(tables / f"{name}.csv", RatioRow)):
         compared = _at_least if ratio_row.is_least else _at_most
         yield compared(f"{ratio_row.what}, {ratio_row.dofs:,} dofs", ratio_row.ratio, ratio_row.bar)
     for run in read_rows(tables / "runs.csv", RunRow):

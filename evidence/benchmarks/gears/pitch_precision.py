@@ -57,7 +57,7 @@ class PitchSizes:
     """A coarser and a finer mesh of hexahedra of order 2."""
 
 
-FULL = PitchSizes({1: (0.7, 1.2, 1.9), 2: (0.5, 0.8, 1.2)}, (0.8, 1.2), (0.8, 1.2, 1.7, 3.0), 20, (1.4, 1.9))
+FULL = PitchSizes({1: (0.7, 1.2, 1.9), 2: (0.5, 0.8, 1.2)}, (0.8, 1.2), (0.8, 1.2, 1.7), 20, (1.4, 1.9))
 SMALL = PitchSizes({1: (0.7,), 2: (0.5,)}, (0.5,), (0.5,), 4, (0.6, 0.7))
 
 

@@ -12,6 +12,7 @@ from math import isnan, nan
 from pathlib import Path
 from typing import Any
 
+from evidence.benchmarks.gears.scaling import RatioRow
 from evidence.checkout import ROOT
 from evidence.processes import Command, RunFailed, module_run, run, run_arguments
 from evidence.scenes import PLAIN
@@ -87,13 +88,16 @@ LIGHT = "23/81, 20 positions"
 FULL = (
     RunCase(f"{YANG}, plain", HELICAL, "quick", (*PLAIN, ONE)),
     RunCase(f"{YANG}, plain", HELICAL, "standard", (*PLAIN, ONE), memory_bar_MB=3e3, iterations_bar=8.0),
-    RunCase(f"{YANG}, plain, one mesh", HELICAL, "standard", (*PLAIN, ONE), ("--no-skip=two-level",)),
     RunCase(f"{YANG}, plain", HELICAL, "fine", (*PLAIN, ONE), (), 240.0, 6e3),
     RunCase(f"{YANG}, error bars, pictures", HELICAL, "quick", (), (), 300.0),
     RunCase(f"{YANG}, error bars, pictures", HELICAL, "standard", (), (), 300.0),
     RunCase(f"{LIGHT}, 50 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=50"), (), 180.0, 4e3),
     RunCase(f"{LIGHT}, 10 N·m, plain", FIRST, "standard", (*PLAIN, ONE, *SLENDER, "load.torque_Nm=10"), (), 360.0, 6e3),
 )
+BESIDE = FULL[1], RunCase(f"{YANG}, plain, one mesh", HELICAL, "standard", (*PLAIN, ONE), ("--no-skip=two-level",))
+"""The same scene with flanks in levels, and in one mesh with their body."""
+BESIDE_BAR = 0.2
+"""At most, of the seconds of the first over those of the second."""
 SMALL = (RunCase("He, plain", "demos/he2022.toml", "quick", (*PLAIN, "contact.friction=0", "sweep.positions=4")),)
 
 
@@ -109,6 +113,21 @@ def rows(cases: Sequence[RunCase], folder: Path) -> Iterator[RunRow]:
             yield failed(case, failure.reason)
             continue
         yield row_of(case, json.loads((out / "summary.json").read_text(encoding="utf-8")), cost.memory_MB)
+
+
+def beside_rows(cases: tuple[RunCase, RunCase], folder: Path) -> Iterator[RatioRow]:
+    """Flanks in levels over one mesh, one run after the other. Raises ValueError where one came to no end."""
+    levels, one_mesh = rows(cases, folder)
+    if levels.note or one_mesh.note:
+        raise ValueError(f"levels beside one mesh: wanted both runs to end, found {levels.note or one_mesh.note}")
+    yield beside(levels, one_mesh)
+
+
+def beside(levels: RunRow, one_mesh: RunRow) -> RatioRow:
+    """The ratio of two runs of the same scene."""
+    what = f"{levels.case}, `{levels.level}`: a run with flanks in levels over one with one mesh a sector"
+    above, below = levels.seconds, one_mesh.seconds
+    return RatioRow(what, one_mesh.dofs, above, below, above / below, BESIDE_BAR, nan)
 
 
 def row_of(case: RunCase, summary: dict[str, Any], memory_MB: float) -> RunRow:

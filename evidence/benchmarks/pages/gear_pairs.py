@@ -188,6 +188,7 @@ WEAR_TABLE = Table(
 )  # fmt: skip
 COSTS: tuple[PageSection[Any], ...] = (
     PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
+    PageSection("", "beside", RATIO_TABLE),
     PageSection(
         "A position and a pitch, against the error", "pitches", PITCH_TABLE, figure=figures.pitches, caption="A pitch",
         words=lambda _: [PITCHES],

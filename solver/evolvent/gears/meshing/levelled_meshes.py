@@ -64,8 +64,9 @@ def has_long_cells(problem: GearProblem) -> bool:
 
 
 def _cell_lengths(problem: GearProblem, member: Member) -> float:
-    """Length of the finest flank cells along the face over that along the profile, on average."""
-    sector, gear = levelled_sector(problem, member), problem.pair.gears[member]
+    """Length of the finest flank cells along the face over that along the profile, on average; of the lightest torque
+    that the meshes serve, so that all torques of a list have levels or none."""
+    sector, gear = levelled_sector(problem.lightest, member), problem.pair.gears[member]
     rows, layers = finest_cells(sector)
     lowest = sector.coarse.flank_start_diameter or gear.root_form_diameter
     start, tip = gear.roll_length(lowest), gear.roll_length(gear.tip_diameter)

@@ -113,8 +113,10 @@ class SharedPosition:
     @cached_property
     def stiffness(self) -> float:
         """Of the frictionless mesh, as in PositionResult [N/mm; per mm of width in 2D]."""
-        normal = normal_part(self.system)
-        return tangent_stiffness(normal, frictionless(normal, near=InitialGuess.of(self.smooth)))
+        normal, exact = normal_part(self.system), self.smooth
+        if exact.residual > TOLERANCE * float(exact.force.sum()):
+            exact = frictionless(normal, near=InitialGuess.of(exact))
+        return tangent_stiffness(normal, exact)
 
     @property
     def patch(self) -> ContactPatch:

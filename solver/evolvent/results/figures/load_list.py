@@ -47,7 +47,9 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
             torque, values, bars = ([getattr(row, name) for row in own] for name in ("torque_Nm", key, key + ERROR))
             axes.errorbar(torque, values, bars, color=colour, capsize=3.0, label=f"μ = {friction:g}")
             fills = ["white" if row.tip_edge_positions else colour for row in own]
-            axes.scatter(torque, values, 20.0, color=fills, edgecolors=[colour] * len(own), zorder=3)
+            for row, value, fill in zip(own, values, fills):
+                at_end = key == "max_pressure_MPa" and row.max_pressure_at_zone_end
+                axes.scatter(row.torque_Nm, value, 20.0, fill, "s" if at_end else "o", edgecolors=colour, zorder=3)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(0.0, 1.05 * torques[-1])
         axes.set_xlabel("torque [N·m]")
@@ -57,7 +59,7 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
     foot(
         figure,
         "Bars: estimated error, of mesh and spacing of positions. Hollow: a tip edge bears at some positions; the "
-        "pressure is that between tip-edge zones.",
+        "pressure is that between tip-edge zones. Square: at the end of such a zone, where it varies beyond its bar.",
     )
     return figure
 

@@ -36,9 +36,14 @@ class LoadRow:
     max_pressure_MPa_error: float
     """Its estimated error."""
     max_pressure_at_zone_end: bool
-    """As in summary.json: its value depends on where a tip-edge zone ends, and so on the mesh."""
+    """As in summary.json: its value depends on where a tip-edge zone ends, and so on the mesh, which its error bar
+    leaves out."""
     max_pressure_at_relief_start: bool
     """As in summary.json: its value depends on how sharp the kink of the flank is."""
+    mean_pressure_MPa: float
+    """As in summary.json; it depends less on the mesh than the largest one, so that torques can be compared by it."""
+    mean_pressure_MPa_error: float
+    """Its estimated error."""
     mesh_stiffness_N_per_mm_um: float
     """Tangent stiffness, mean over the pitch."""
     mesh_stiffness_N_per_mm_um_error: float

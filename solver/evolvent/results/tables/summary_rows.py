@@ -109,11 +109,13 @@ class FrictionRow:
     friction: float
     """Coulomb friction coefficient μ."""
     max_pressure_MPa: float
-    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones."""
+    """Largest contact pressure over the whole engagement of a tooth, between the tip-edge zones: peak p0 of the
+    half-ellipse with a slice's line load and second moment."""
     max_pressure_angle_deg: float
     """Pinion rotation of the tooth at which it occurs; 0 is the pitch point at mid-face."""
     max_pressure_at_zone_end: bool
-    """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit."""
+    """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit, and so on
+    the mesh, which its error bar leaves out."""
     max_pressure_at_relief_start: bool
     """Whether it lies, or may lie between two positions, at the start of a linear tip relief. Over that kink of the
     flank its value depends on how sharp the kink is."""

@@ -96,6 +96,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
         "results.*", "wear", "wear.gears",
     ),
+    "dynamics.oscillator": ("meshes",),
+    "dynamics.excitation": (
+        "meshes", "meshes.gears", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator",
+    ),
+    "dynamics": ("meshes", "meshes.gears"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",

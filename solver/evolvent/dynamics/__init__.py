@@ -1,0 +1,1 @@
+"""Torsional vibration of a gear pair, excited by its mesh."""

@@ -1,0 +1,95 @@
+"""The force of a mesh over its deflection and the rotation, from a pitch under several torques.
+
+At each position the force over x = s − e goes through (0, 0) and each torque's point, with the tangent stiffness that
+was computed there: a cubic Hermite interpolant. All positions are read off at common depths. Between the positions the
+force is a periodic spline, see `mesh_law.force_side`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, MeshSide, behind, force_side, linear_side, mirrored
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
+from evolvent_meshes.gears.pair import GearPair
+
+DEPTHS = 24
+"""Intervals of x at which positions are read off, closer where forces are small: there contact stiffens most."""
+
+
+class NoForceSurface(ResultError):
+    """Deflections that do not grow with the torque."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshExcitation:
+    """What a pair's mesh does to its vibration."""
+
+    unloaded_error: Floats
+    """(n,) e [mm] at equidistant phases of a pitch."""
+    loaded: LoadedMesh
+    """The same positions under (m,) torques."""
+
+    def __post_init__(self) -> None:
+        """Raises NoForceSurface."""
+        depths = np.column_stack([np.zeros(len(self.unloaded_error)), self.depths])
+        if not (np.diff(depths) > 0.0).all():
+            i, j = np.argwhere(~(np.diff(depths) > 0.0))[0]
+            raise NoForceSurface(
+                f"deflection at {np.degrees(self.loaded.angles[i]):.3f}° under {self.loaded.forces[j]:.4g} N: wanted "
+                f"more than under the load before, found {1e3 * (depths[i, j + 1] - depths[i, j]):.2e} µm more; refine "
+                "the mesh (mesh.level), or leave out the lightest loads"
+            )
+
+    @property
+    def depths(self) -> Floats:
+        """x = s − e (n, m) [mm]."""
+        return self.loaded.errors - self.unloaded_error[:, None]
+
+    @property
+    def secant(self) -> Floats:
+        """F/x (n, m) [N/mm]."""
+        return self.loaded.forces / self.depths
+
+    def in_series(self, stiffness: float) -> MeshExcitation:
+        """The mesh behind a spring [N/mm] along the line of action: shafts and bearings without inertia."""
+        errors = self.loaded.errors + self.loaded.forces / stiffness
+        slope = 1.0 / (1.0 / self.loaded.stiffness + 1.0 / stiffness)
+        return replace(self, loaded=replace(self.loaded, errors=errors, stiffness=slope))
+
+    def force_surface(self) -> MeshSide:
+        """F(x, φ) of the loaded flanks, as computed."""
+        depths = self.depths.max() * np.linspace(0.0, 1.0, DEPTHS + 1) ** 2
+        force = np.array([self._over_depth(i, depths) for i in range(len(self.unloaded_error))])
+        return force_side(depths, force, self.unloaded_error)
+
+    def stiffness_side(self, number: int, secant: bool = False) -> MeshSide:
+        """k(φ) x with the tangent or the secant stiffness under the torque of this number (He et al. 2022, Eq. 12)."""
+        stiffness = self.secant if secant else self.loaded.stiffness
+        return linear_side(stiffness[:, number], self.unloaded_error)
+
+    def _over_depth(self, i: int, depths: Floats) -> Floats:
+        """F (k,) [N] at position i, at depths (k,); beyond the heaviest torque it goes on straight."""
+        x, force, slope = self.depths[i], self.loaded.forces, self.loaded.stiffness[i]
+        first = force[0] / x[0]
+        curve = CubicHermiteSpline(np.append(0.0, x), np.append(0.0, force), np.append(2.0 * first - slope[0], slope))
+        beyond = np.maximum(depths - x[-1], 0.0)
+        return np.asarray(curve(np.minimum(depths, x[-1])) + slope[-1] * beyond)
+
+
+def mirrored_law(side: MeshSide, pair: GearPair, backlash: float) -> MeshLaw:
+    """Back flanks alike the loaded ones, their modifications included: at rotation φ of the pinion they stand as those
+    do, seen in a mirror, at 2ψ − φ, with ψ the half angle of its tooth on the working pitch circle. backlash: [mm]
+    along the line of action."""
+    meeting = 2.0 * pair.pinion.half_angle(pair.working_pitch_diameters[0]) * pair.pinion.z / (2.0 * np.pi)
+    return MeshLaw(side, mirrored(side, meeting, backlash))
+
+
+def paper_law(side: MeshSide, backlash: float) -> MeshLaw:
+    """Both sides with the same force at the same phase (He et al. 2022, Eq. 6). backlash: [mm] along the line of
+    action, from flank to flank."""
+    return MeshLaw(side, behind(side, backlash))

@@ -1,0 +1,1 @@
+"""A mass on the periodic, piecewise smooth force of a mesh with backlash: its steady states over the speed."""

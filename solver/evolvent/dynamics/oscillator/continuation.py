@@ -1,0 +1,185 @@
+"""Branches of steady states over the speed, through folds: stable, unstable and stable again.
+
+Pseudo-arclength continuation (Keller 1977; Seydel, Practical Bifurcation and Stability Analysis, 2010, chapter 4): the
+next point is sought in the plane normal to the branch's tangent, a step ahead. So folds, where the speed has an
+extremum along the branch and a motion that follows the speed has to jump, are points like all others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState, residual, steady_state
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent_meshes.arrays import Bools, Floats, Ints
+
+SPEED_SCALE = 0.1
+"""Change of ln(speed) that counts as much as one static deflection."""
+LONGEST, SHORTEST = 0.1, 1e-9
+"""Steps along a branch, in static deflections."""
+TURN = 0.97
+"""Least cosine of the angle between the tangents of two points."""
+NEWTON_STEPS = 6
+ACCURACY = 1e-11
+FARTHEST = 3.0
+"""Distance from the last point, in steps, at which Newton's method is given up."""
+MOST_POINTS = 20000
+FOLD_ACCURACY = 1e-10
+"""Of the length along a branch at which it folds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Steady states along a branch, in the order in which they follow each other."""
+
+    points: tuple[SteadyState, ...]
+    """From the first speed to the last."""
+    folds: tuple[int, ...]
+    """Which of them are folds."""
+
+    @cached_property
+    def periods(self) -> Floats:
+        """Mesh periods (k,) [s]."""
+        return np.array([point.period for point in self.points])
+
+    @cached_property
+    def states(self) -> Floats:
+        """(k, 2) s [mm] and ṡ [mm/s] at phase 0."""
+        return np.array([point.state for point in self.points])
+
+    @cached_property
+    def stable(self) -> Bools:
+        """Whether each is stable (k,)."""
+        return np.array([point.stable for point in self.points])
+
+    def crossings(self, period: float) -> Ints:
+        """Points i (n,) after which the branch passes a mesh period: between i and i + 1."""
+        beyond = self.periods > period
+        return np.flatnonzero(beyond[1:] != beyond[:-1])
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A point z = (s, ṡ, ln(speed)) in scaled units, on the branch."""
+
+    z: Floats
+    """(3,)."""
+    tangent: Floats
+    """(3,) unit vector along the branch."""
+    state: SteadyState
+
+
+@dataclass(frozen=True, eq=False)
+class _Track:
+    """The model in scaled units."""
+
+    model: TorsionalModel
+    scales: Scales
+
+    def steady(self, z: Floats) -> tuple[Floats, Floats, SteadyState]:
+        """Residual (2,), derivatives (2, 3) by z, and the state at z (3,)."""
+        period, state = float(np.exp(-SPEED_SCALE * z[2])), z[:2] * self.scales.array
+        found, change = residual(self.model, self.scales, period, state)
+        derivatives = change.copy()
+        derivatives[:, :2] += np.eye(2)
+        derivatives *= self.scales.array[:, None] / np.append(self.scales.array, 1.0)
+        change[:, 2] *= -SPEED_SCALE
+        return found, change, SteadyState(period, state, derivatives)
+
+    def scaled(self, state: SteadyState) -> Floats:
+        """z (3,) of a steady state."""
+        return np.append(state.state / self.scales.array, -np.log(state.period) / SPEED_SCALE)
+
+    def onto(self, start: _Point, length: float) -> tuple[_Point, int] | None:
+        """The point a length ahead of another one, and the steps of Newton's method; None where it does not come
+        there."""
+        z = start.z + length * start.tangent
+        for count in range(NEWTON_STEPS):
+            found, change, state = self.steady(z)
+            if np.abs(found).max() <= ACCURACY * max(1.0, float(np.abs(z[:2]).max())):
+                return _Point(z, _tangent(change, start.tangent), state), count
+            plane = np.append(found, start.tangent @ (z - start.z) - length)
+            z = z - np.linalg.lstsq(np.vstack([change, start.tangent]), plane, rcond=None)[0]
+            if not np.linalg.norm(z - start.z) < FARTHEST * length:
+                break
+        return None
+
+
+def follow(model: TorsionalModel, start: SteadyState, last_period: float) -> Branch:
+    """The branch from a steady state until the mesh period is `last_period` [s] or the first one again.
+
+    Raises NoSteadyState where the branch cannot be followed.
+    """
+    track = _Track(model, Scales.of(model))
+    points, folds = [start], []
+    for point, fold in _points(track, start, last_period):
+        if fold:
+            folds.append(len(points))
+        points.append(point)
+    return Branch(tuple(points), tuple(folds))
+
+
+def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[tuple[SteadyState, bool]]:
+    """The points after the first one, and whether each is a fold."""
+    rising = start.period > last_period
+    z = track.scaled(start)
+    ends = sorted((z[2], -np.log(last_period) / SPEED_SCALE))
+    heading = np.array([0.0, 0.0, 1.0 if rising else -1.0])
+    here, length = _Point(z, _tangent(track.steady(z)[1], heading), start), LONGEST
+    for _ in range(MOST_POINTS):
+        following, length = _next(track, here, length)
+        if here.tangent[2] * following.tangent[2] < 0.0:
+            fold = _fold(track, here, following)
+            if ends[0] <= fold.z[2] <= ends[1]:
+                yield fold.state, True
+        if not ends[0] <= following.z[2] <= ends[1]:
+            end = last_period if (following.z[2] > ends[1]) == rising else start.period
+            yield steady_state(track.model, end, _between(here.state, following.state, end)), False
+            return
+        yield following.state, False
+        here = following
+    raise NoSteadyState(f"branch of steady states: wanted its end within {MOST_POINTS} points, found none")
+
+
+def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
+    """The next point, and the step to take from it."""
+    while length > SHORTEST:
+        found = track.onto(here, length)
+        if found is not None and found[0].tangent @ here.tangent > TURN:
+            return found[0], min(LONGEST, length * (2.0 if found[1] <= 3 else 1.0))
+        length *= 0.5
+    raise NoSteadyState(
+        f"branch of steady states at a mesh period of {here.state.period:.6g} s: wanted a next one, found none however "
+        "near; the motion may graze a side of the teeth there"
+    )
+
+
+def _fold(track: _Track, before: _Point, after: _Point) -> _Point:
+    """Between two points on both sides of it."""
+
+    def at(length: float) -> _Point:
+        found = track.onto(before, length)
+        if found is None:
+            raise NoSteadyState("fold of a branch: wanted the points around it, found none")
+        return found[0]
+
+    whole = float(before.tangent @ (after.z - before.z))
+    return at(brentq(lambda length: at(length).tangent[2], 0.0, whole, xtol=FOLD_ACCURACY * whole))
+
+
+def _tangent(change: Floats, along: Floats) -> Floats:
+    """Unit vector (3,) that derivatives (2, 3) map to 0, on the side of another one."""
+    vector = np.cross(change[0], change[1])
+    vector /= np.linalg.norm(vector)
+    return np.asarray(vector if vector @ along >= 0.0 else -vector)
+
+
+def _between(one: SteadyState, other: SteadyState, period: float) -> Floats:
+    """State (2,) on a straight line between two, at a period."""
+    share = (period - one.period) / (other.period - one.period)
+    return np.asarray(one.state + share * (other.state - one.state))

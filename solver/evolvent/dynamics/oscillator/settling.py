@@ -1,0 +1,57 @@
+"""Motions found by waiting: what is left of a start after many mesh periods, whether it repeats with the mesh or
+not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.steady_state import Scales
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, period_map
+from evolvent_meshes.arrays import Floats
+
+MOST_PERIODS = 4000
+"""Of the mesh that are waited for; a motion of damping ratio 0.01 is then 1e-100 from where it ends."""
+LONGEST_REPEAT = 16
+"""Mesh periods after which a subharmonic motion repeats at the latest, to be told as one."""
+SETTLED = 1e-9
+"""Change from repeat to repeat, over the static deflection, of a motion that has settled."""
+
+
+DIFFERENT = 1e-5
+"""Least change after fewer meshes of a motion that repeats after several: one that spirals in on a steady state comes
+closest to itself after several, too."""
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """Where a motion ends."""
+
+    state: Floats
+    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    repeats: int
+    """Mesh periods after which it repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not within
+    `LONGEST_REPEAT`: quasi-periodic, chaotic, or not settled after `MOST_PERIODS`."""
+    waited: int
+    """Mesh periods integrated."""
+
+
+def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOST_PERIODS) -> Settled:
+    """Integrates from a state (2,) at phase 0 until the motion repeats. period: of the mesh [s]."""
+    scales, state = Scales.of(model).array, np.asarray(start, dtype=float)
+    last = np.full((LONGEST_REPEAT, 2), np.inf)
+    for count in range(1, most + 1):
+        last = np.vstack([state, last[:-1]])
+        state = period_map(model, period, state)[0]
+        change = np.abs((last - state) / scales).max(axis=1)
+        close = change <= SETTLED
+        repeats = int(np.argmax(close)) + 1
+        if close.any() and (change[: repeats - 1] > DIFFERENT).all():
+            return Settled(state, repeats, count)
+    return Settled(state, 0, most)
+
+
+def static_state(model: TorsionalModel) -> Floats:
+    """(2,) at rest under the load on the stiffest mesh: a start for `settled`."""
+    return np.array([model.load / model.law.stiffest(), 0.0])

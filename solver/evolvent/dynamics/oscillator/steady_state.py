@@ -1,0 +1,111 @@
+"""Steady states: motions that repeat with the mesh, stable or not.
+
+A state before a mesh period that is the state after it: a root of P(y) − y, found by Newton's method with the exact
+derivatives of P. The eigenvalues of ∂P/∂y, Floquet's multipliers, say whether it is stable.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.torsional_model import Derivatives, TorsionalModel, period_map
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
+
+TOLERANCE = 1e-11
+"""Of the residual, over the static deflection."""
+ITERATIONS = 30
+
+
+class NoSteadyState(ResultError):
+    """No motion that repeats with the mesh was found."""
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """A motion that repeats with the mesh."""
+
+    period: float
+    """T of the mesh [s]."""
+    state: Floats
+    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    derivatives: Derivatives
+    """Of the state after a period, (2, 3)."""
+
+    @property
+    def multipliers(self) -> Floats:
+        """Floquet's multipliers (2,), complex."""
+        return np.linalg.eigvals(self.derivatives[:, :2])
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out."""
+        return bool(np.abs(self.multipliers).max() < 1.0)
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Units in which s, ṡ and ln T are alike in size."""
+
+    length: float
+    """[mm]."""
+    velocity: float
+    """[mm/s]."""
+
+    @staticmethod
+    def of(model: TorsionalModel) -> Scales:
+        """By the static deflection on the stiffest mesh."""
+        length = abs(model.load) / model.law.stiffest() or 1e-3
+        return Scales(length, length * model.fastest)
+
+    @property
+    def array(self) -> Floats:
+        """(2,)."""
+        return np.array([self.length, self.velocity])
+
+
+def residual(model: TorsionalModel, scales: Scales, period: float, state: Floats) -> tuple[Floats, Derivatives]:
+    """(P(y) − y)/scales (2,), and its derivatives (2, 3) by y/scales and ln T."""
+    after, derivatives = period_map(model, period, state)
+    size = scales.array
+    wide = np.append(size, 1.0)
+    change = derivatives * wide / size[:, None]
+    change[:, :2] -= np.eye(2)
+    return (after - state) / size, change
+
+
+def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyState:
+    """The steady state near a state (2,), by Newton's method with halved steps where the residual grows.
+
+    Raises NoSteadyState.
+    """
+    scales, state = Scales.of(model), np.asarray(start, dtype=float)
+    found, change = residual(model, scales, period, state)
+    for _ in range(ITERATIONS):
+        size = float(np.abs(found).max())
+        if size <= TOLERANCE * max(1.0, float(np.abs(state / scales.array).max())):
+            return SteadyState(period, state, _unscaled(change, scales))
+        move = np.linalg.lstsq(change[:, :2], -found, rcond=None)[0] * scales.array
+        for _ in range(12):
+            trial = state + move
+            then, change_then = residual(model, scales, period, trial)
+            if np.abs(then).max() < size:
+                break
+            move = 0.5 * move
+        else:
+            break
+        state, found, change = trial, then, change_then
+    raise NoSteadyState(
+        f"steady state of a mesh period of {period:.6g} s: wanted a residual of {TOLERANCE}, found "
+        f"{np.abs(found).max():.2e}; start nearer, or follow a branch of steady states from another speed"
+    )
+
+
+def _unscaled(change: Derivatives, scales: Scales) -> Derivatives:
+    """Of P by y and ln T."""
+    size = scales.array
+    scaled = change.copy()
+    scaled[:, :2] += np.eye(2)
+    return scaled * size[:, None] / np.append(size, 1.0)

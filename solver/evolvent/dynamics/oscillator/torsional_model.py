@@ -1,0 +1,111 @@
+"""The torsional vibration of a gear pair as one oscillator along the line of action.
+
+    m_e s̈ + c (ṡ − ė) + c_g ṡ + F(s − e, φ) = F_0 ,    s = r_b1 θ_1 − r_b2 θ_2 ,   m_e = I_1 I_2/(I_1 r_b2² + I_2 r_b1²)
+
+Kahraman and Singh, J. Sound Vib. 142 (1990) 49-75; He et al., Machines 2022, 10, 69, Eqs 4-13, who write Δx for s − e.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw
+from evolvent.dynamics.oscillator.stepping import SIZE, STEP, Oscillator, advance
+from evolvent_meshes.arrays import Bools, Floats, Ints
+
+Derivatives = Floats
+"""(2, 3): of s [mm] and v [mm/s] after a period, by s and v before it and by ln T."""
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionalModel:
+    """A gear pair's inertia, damping and load on the force of its mesh."""
+
+    mass: float
+    """m_e [t]."""
+    load: float
+    """F_0, the torque over the base radius [N]."""
+    law: MeshLaw
+    """F(x, φ) of both sides of the teeth."""
+    damping: float = 0.0
+    """c, of the mesh [N·s/mm]."""
+    damped_apart: bool = False
+    """Whether c acts in free flight, too, as it does in He et al. (Eq. 15)."""
+    ground_damping: float = 0.0
+    """c_g, of the shafts against the ground [N·s/mm]."""
+
+    @cached_property
+    def oscillator(self) -> Oscillator:
+        """For compiled code."""
+        return Oscillator(
+            float(self.mass), float(self.damping), bool(self.damped_apart), float(self.ground_damping),
+            float(self.load), self.law.front, self.law.back,
+        )  # fmt: skip
+
+    @cached_property
+    def fastest(self) -> float:
+        """Angular frequency [rad/s] on the stiffest mesh: what steps in time are chosen by."""
+        return float(np.sqrt(self.law.stiffest() / self.mass))
+
+    @cached_property
+    def intervals(self) -> tuple[Floats, Ints]:
+        """Phases (k + 1,) between which the force is smooth in time, and the intervals of both sides (k, 2)."""
+        return self.law.stops()
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """A mesh period, at phases (k + 1,)."""
+
+    phases: Floats
+    """[mesh periods]."""
+    displacement: Floats
+    """s [mm]."""
+    velocity: Floats
+    """ṡ [mm/s]."""
+    side: Ints
+    """1 where the loaded flanks touch, −1 where the back flanks do, 0 where neither."""
+    force: Floats
+    """Of the mesh, with its damping [N]; below 0 where the back flanks press."""
+    error: Floats
+    """e of the loaded flanks [mm]."""
+    apart: float
+    """Share of the period out of contact."""
+
+    @property
+    def separated(self) -> Bools:
+        """Where no side touches (k + 1,)."""
+        return self.side == 0
+
+
+def period_map(model: TorsionalModel, period: float, state: Floats) -> tuple[Floats, Derivatives]:
+    """The state (2,) [mm, mm/s] after a mesh period of so many seconds, and its derivatives."""
+    y = _with_derivatives(state)
+    stops, cells = model.intervals
+    advance(model.oscillator, stops, cells, period, _longest(model, period), y, np.empty((0, 5)))
+    return y[:2], np.stack([y[2:5], y[5:8]])
+
+
+def history(model: TorsionalModel, period: float, state: Floats, phases: Floats | tuple[float, ...] = ()) -> History:
+    """What happens in the mesh period after a state (2,). phases: at which it is wanted, beside those at which the
+    force is not smooth."""
+    y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
+    path = np.empty((len(stops), 5))
+    apart = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
+    s, v, side, force, error = path.T
+    return History(stops, s, v, side.astype(np.int64), force, error, apart)
+
+
+def _with_derivatives(state: Floats) -> Floats:
+    """(8,)."""
+    y = np.zeros(SIZE)
+    y[:2], y[2], y[6] = state, 1.0, 1.0
+    return y
+
+
+def _longest(model: TorsionalModel, period: float) -> float:
+    """Longest step [mesh periods]."""
+    return STEP / (model.fastest * period)

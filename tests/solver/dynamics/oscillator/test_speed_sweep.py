@@ -1,0 +1,87 @@
+"""Branches over the speed, their folds, and what a pair does that runs up and down."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from evolvent.dynamics.oscillator.continuation import Branch
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
+from evolvent.dynamics.oscillator.settling import settled
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.steady_state import SteadyState, steady_state
+from evolvent.dynamics.oscillator.time_integration import integrate
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history
+
+MASS, STIFFNESS, LOAD, TEETH = 0.77e-3, 258.6e3, 2412.0, 50
+NATURAL, STATIC = float(np.sqrt(STIFFNESS / MASS)), LOAD / STIFFNESS
+RESONANCE = NATURAL / (2.0 * np.pi) * 60.0 / TEETH
+
+
+def softening(swing: float, share: float = 0.03) -> TorsionalModel:
+    """Stiffness with one harmonic: flanks part near resonance, which leans to lower speeds."""
+    k = STIFFNESS * (1.0 + swing * np.cos(2.0 * np.pi * np.arange(16) / 16))
+    return TorsionalModel(MASS, LOAD, MeshLaw(linear_side(k, np.zeros(16)), no_side()), 2.0 * share * MASS * NATURAL)
+
+
+@cache
+def swept() -> SpeedSweep:
+    speeds = np.linspace(0.6, 1.3, 141) * RESONANCE
+    return sweep_speeds(softening(0.15), speeds_to_periods(speeds, TEETH))
+
+
+def fold_speeds(branch: Branch) -> list[float]:
+    return [60.0 / (TEETH * branch.points[i].period) for i in branch.folds]
+
+
+def test_resonance_leans_to_lower_speeds() -> None:
+    """Two folds; between them three steady states, stable, unstable, stable; elsewhere one."""
+    found = swept()
+    down, up = sorted(fold_speeds(found.branch))
+    speeds = 60.0 / (TEETH * found.periods)
+    assert 0.6 * RESONANCE < down < up < RESONANCE
+    for speed, states in zip(speeds, found.coexisting):
+        stable = [each.state.stable for each in states]
+        assert stable == ([True, False, True] if down < speed < up else [True])
+    jumps = [[speeds[i] for i, motion in enumerate(runs) if motion.jumped] for runs in (found.up, found.down)]
+    assert [len(each) for each in jumps] == [1, 1]
+    assert 0.0 <= jumps[0][0] - up < speeds[1] - speeds[0]
+    assert 0.0 <= down - jumps[1][0] < speeds[1] - speeds[0]
+
+
+def test_steady_states_repeat_by_scipy() -> None:
+    """One more mesh period by SciPy's integrator leads back to each state, stable or not, to 1e-8 of the deflection."""
+    model, found, scale = softening(0.15), swept(), np.array([1.0, NATURAL]) * STATIC
+    for states in found.coexisting[::7]:
+        for each in states:
+            after = integrate(model, each.state.period, each.state.state)
+            assert after / scale == pytest.approx(each.state.state / scale, abs=1e-8)
+
+
+def test_folds_are_where_slow_sweeps_jump() -> None:
+    """Time integration at steps of 1 r/min, each from the last one's end: it jumps within 2 r/min of the folds."""
+    model, found = softening(0.15), swept()
+    for fold, step in ((max(fold_speeds(found.branch)), 1.0), (min(fold_speeds(found.branch)), -1.0)):
+        speeds = fold + step * np.arange(-12.0, 6.0)
+        i = int(np.argmin(np.abs(60.0 / (TEETH * found.periods) - speeds[0])))
+        state = (found.up if step > 0.0 else found.down)[i].motion.state
+        sizes = []
+        for speed in speeds:
+            period = 60.0 / (TEETH * speed)
+            state = settled(model, period, state).state
+            sizes.append(np.ptp(history(model, period, state, np.linspace(0.0, 1.0, 100)).displacement))
+        jump = int(np.argmax(np.abs(np.diff(sizes)))) + 1
+        assert abs(speeds[jump] - fold) <= 2.0
+        assert np.abs(np.diff(sizes)).max() > 5.0 * np.sort(np.abs(np.diff(sizes)))[-2]
+
+
+def test_multipliers_of_a_linear_oscillator() -> None:
+    """Of a constant stiffness without separation: e^(−ζωT ± iω_d T), 1e-10."""
+    share, period = 0.03, 2.0 * np.pi / (0.9 * NATURAL)
+    found: SteadyState = steady_state(softening(0.0, share), period, np.array([STATIC, 0.0]))
+    exact = np.exp(NATURAL * period * (-share + 1j * np.sqrt(1.0 - share**2)))
+    multipliers = sorted(found.multipliers, key=lambda μ: float(np.imag(μ)))
+    assert sorted([exact, exact.conjugate()], key=lambda μ: float(np.imag(μ))) == pytest.approx(multipliers, abs=1e-10)
+    assert found.stable

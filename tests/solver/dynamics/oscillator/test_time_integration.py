@@ -1,0 +1,79 @@
+"""The period map and its branches against SciPy's integrator, which shares no code with them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, force_side, linear_side
+from evolvent.dynamics.oscillator.time_integration import integrate
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history, period_map
+from evolvent_meshes.arrays import Floats
+
+MASS, STIFFNESS, LOAD, POSITIONS = 0.77e-3, 258.6e3, 2412.0, 20
+NATURAL, STATIC = float(np.sqrt(STIFFNESS / MASS)), LOAD / STIFFNESS
+PHASES = np.arange(POSITIONS) / POSITIONS
+
+
+def wavy(amplitude: float) -> Floats:
+    """Two mesh harmonics."""
+    return amplitude * (np.cos(2.0 * np.pi * PHASES) + 0.4 * np.sin(4.0 * np.pi * PHASES))
+
+
+def surface(damped_apart: bool = False) -> TorsionalModel:
+    """A force that stiffens with its depth and varies over the phase, on flanks with an error and backlash; the hardest
+    blows go beyond the last depth."""
+    depths = STATIC * np.array([0.0, 0.2, 0.6, 1.2, 2.0, 4.0])
+    force = STIFFNESS * np.outer(1.0 + wavy(0.15), depths) * (1.0 + 0.2 * np.tanh(depths / STATIC))
+    front = force_side(depths, force, wavy(0.05 * STATIC))
+    law = MeshLaw(front, behind(front, 3.0 * STATIC))
+    return TorsionalModel(MASS, LOAD, law, 0.06 * MASS * NATURAL, damped_apart, 2e-3)
+
+
+def linear() -> TorsionalModel:
+    side = linear_side(STIFFNESS * (1.0 + wavy(0.2)), wavy(0.02 * STATIC))
+    return TorsionalModel(MASS, LOAD, MeshLaw(side, behind(side, 6.0 * STATIC)), 0.04 * MASS * NATURAL)
+
+
+START = {
+    "in contact": (1.0, 0.05, {1}),
+    "with free flight": (1.0, -2.5, {0, 1}),
+    "with blows on both sides": (1.0, -7.0, {-1, 0, 1}),
+}
+
+
+MODELS = pytest.mark.parametrize(
+    "model", [linear(), surface(), surface(damped_apart=True)], ids=["k x", "F(x)", "damped apart"]
+)
+
+
+@MODELS
+@pytest.mark.parametrize("start", START)
+def test_period_map_is_that_of_scipy(model: TorsionalModel, start: str) -> None:
+    """State after three mesh periods in contact, with free flight, and with blows on both flanks: 1e-8 of the static
+    deflection where the force is smooth over x, 1e-7 where it is a spline, whose knots steps pass over."""
+    s, v, sides = START[start]
+    y, scale = np.array([s * STATIC, v * STATIC * NATURAL]), np.array([1.0, NATURAL]) * STATIC
+    period, accuracy = 2.0 * np.pi / (0.8 * NATURAL), 1e-8 if len(model.law.front.depths) == 2 else 1e-7
+    found, seen = y, set()
+    for _ in range(3):
+        seen |= set(history(model, period, found, np.linspace(0.0, 1.0, 200)).side.tolist())
+        found, _ = period_map(model, period, found)
+    assert seen == sides
+    assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=accuracy)
+
+
+@MODELS
+@pytest.mark.parametrize("start", START)
+def test_derivatives_of_the_period_map(model: TorsionalModel, start: str) -> None:
+    """By s, ṡ and ln T against central differences, 2e-6 of their size: with jumps of the damping where flanks part."""
+    s, v, _ = START[start]
+    y, period = np.array([s * STATIC, v * STATIC * NATURAL]), 2.0 * np.pi / (0.8 * NATURAL)
+    scale, small = np.array([1.0, NATURAL]) * STATIC, 1e-5
+    exact = period_map(model, period, y)[1]
+    for column, step in enumerate(np.vstack([np.diag(scale), np.zeros(2)])):
+        lengths = period * np.exp(small * np.array([1.0, -1.0])) if column == 2 else np.array([period, period])
+        ahead, before = (period_map(model, T, y + sign * small * step)[0] for T, sign in zip(lengths, (1.0, -1.0)))
+        difference, size = (ahead - before) / (2.0 * small) / scale, scale[column] if column < 2 else 1.0
+        accuracy = 2e-6 * max(1.0, float(np.abs(difference).max()))
+        assert exact[:, column] * size / scale == pytest.approx(difference, abs=accuracy)

@@ -1,20 +1,21 @@
 """The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
 
-0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in `run` and
-`loads`; only rank 0 prints, but a rank that fails alone does, and ends all. Rank 0 alone does all else.
+0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in the
+commands of `evolvent.computing`; only rank 0 prints, but a rank that fails alone does, and ends all. Rank 0 alone does
+all else.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from mpi4py import MPI
 
+from evolvent.computing import EXCITATION_EPILOG, LOADS_EPILOG, RUN_EPILOG, excitation, loads, run
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
@@ -22,15 +23,11 @@ from evolvent.options import (
     LevelOption,
     NoSkip,
     Overrides,
-    Overwrite,
-    Quiet,
-    Resume,
     SceneFile,
     UsageError,
     Version,
     given_number,
     given_path,
-    given_percents,
     usage_message,
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
@@ -39,16 +36,8 @@ from evolvent_meshes.files import require_writable
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-RESUME = "; `evolvent {} ... --resume` continues"
-"""Appended to the message on a signal that ends a command."""
-SHARED = ("run", "loads")
+SHARED = ("run", "loads", "excitation")
 """The commands that all ranks take part in."""
-BOTH = (
-    "--overwrite: found --resume and --overwrite; allowed: one of them; remedy: --resume keeps what --overwrite removes"
-)
-"""Message on two options that exclude each other."""
-PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
-"""Environment variable that evolvent.fem.backend.petsc reads."""
 app = typer.Typer(
     name="evolvent",
     help="Frictional contact of involute gear pairs by finite elements, from a scene file to pictures.",
@@ -71,89 +60,9 @@ Examples:
 def evolvent(version: Version = False) -> None: ...
 
 
-@app.command(
-    epilog=f"""\b
-Examples:
-  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
-  evolvent run demos/yang2022.toml --out out/t300 --set load.torque_Nm=300 --set contact.friction=[0,0.1]
-  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume
-
-{STATUSES}"""
-)
-def run(
-    scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.", parser=given_path)
-    ],
-    level: LevelOption = None,
-    settings: Overrides = None,
-    no_skip: NoSkip = None,
-    force: Force = False,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
-    quiet: Quiet = False,
-    petsc: Annotated[
-        str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
-    ] = None,
-) -> None:
-    """Compute a scene.
-
-    The positions of one angular pitch 2π/z_1 (one mesh cycle) for every friction coefficient; tables, fields and
-    pictures go to DIR.
-    """
-    with reported(parallel=True, advice=RESUME.format("run")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
-        require(not (resume and overwrite), BOTH)
-        if petsc is not None:
-            os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
-        require_room(loaded, "run", force, MPI.COMM_WORLD)
-        from evolvent.run.output import last_lines
-        from evolvent.run.scene_run import run_scene
-
-        run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
-        if not quiet:
-            typer.echo(last_lines(out, loaded))
-
-
-@app.command(
-    epilog=f"""\b
-Examples:
-  evolvent loads demos/yang2022.toml --out out/loads --level quick
-  mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,100,150
-
-{STATUSES}"""
-)
-def loads(
-    scene: SceneFile,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="For a folder of each load.", parser=given_path)],
-    percent: Annotated[
-        Any,
-        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
-    ] = "5,10,25,50,75,100",
-    level: LevelOption = None,
-    settings: Overrides = None,
-    no_skip: NoSkip = None,
-    force: Force = False,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
-    quiet: Quiet = False,
-) -> None:
-    """Compute a scene under a list of loads.
-
-    The gears are condensed once. DIR gets the folder of a run for each load, and loads.csv and pictures/loads.png.
-    """
-    with reported(parallel=True, advice=RESUME.format("loads")):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
-        require(not (resume and overwrite), BOTH)
-        from evolvent.run.load_list import load_scenes, run_loads
-
-        scenes = load_scenes(loaded, percent)
-        for each in scenes.values():
-            require_room(each, "run", force, MPI.COMM_WORLD)
-        for failure in run_loads(scenes, out, resume, quiet, overwrite, scene):
-            typer.echo(f"evolvent: warning: {failure}", err=True)
-        if not quiet:
-            typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")
+app.command(epilog=RUN_EPILOG)(run)
+app.command(epilog=LOADS_EPILOG)(loads)
+app.command(epilog=EXCITATION_EPILOG)(excitation)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

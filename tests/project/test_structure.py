@@ -97,15 +97,18 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "wear", "wear.gears",
     ),
     "dynamics.oscillator": ("meshes",),
-    "dynamics.excitation": (
-        "meshes", "meshes.gears", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator",
-    ),
+    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
     "dynamics": ("meshes", "meshes.gears"),
+    "dynamics.results": ("meshes", "dynamics.excitation", "results.archive", "results.tables", "results.drawing"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
-    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run"),
+    "run.dynamics": (
+        "fem.backend", "fem.parallel", "gears.problem", "gears", "scene", "results.archive", "results.drawing",
+        "dynamics.excitation", "dynamics.results", "run",
+    ),
+    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""
 FILES, BELOW, LINES = 12, 9, 300

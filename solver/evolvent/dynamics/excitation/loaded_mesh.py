@@ -5,7 +5,7 @@ Gears are condensed once; each torque is solved from where the last one, and the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,11 +34,15 @@ class LoadedMesh:
 
 
 def loaded_mesh(
-    gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD
-) -> LoadedMesh:
+    gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
+    solved: Callable[[], None] = lambda: None,
+) -> LoadedMesh:  # fmt: skip
     """Solves all positions under all torques; the ranks divide the positions.
 
-    gears: as condensed for each torque. torques: (m,) ascending, on the gear that holds the load [N·mm].
+    gears: as condensed for each torque.
+    torques: (m,) ascending, on the gear that holds the load [N·mm].
+    solved: called after each position under a torque that this rank has solved.
+
     Raises NotConverged, SearchError.
     """
     models = [
@@ -47,13 +51,13 @@ def loaded_mesh(
     ]
     ends = [len(angles) * rank // comm.size for rank in range(comm.size + 1)]
     own = angles[ends[comm.rank] : ends[comm.rank + 1]]
-    parts = comm.allgather(together(comm, lambda: _solved(models, own)))
+    parts = comm.allgather(together(comm, lambda: _solved(models, own, solved)))
     both = np.concatenate(parts)
     radius = models[0].pair.gears[models[0].load.on].base_radius
     return LoadedMesh(angles, np.asarray(torques) / radius, both[..., 0], both[..., 1])
 
 
-def _solved(models: Sequence[GearModel], angles: Floats) -> Floats:
+def _solved(models: Sequence[GearModel], angles: Floats, solved: Callable[[], None]) -> Floats:
     """Transmission error [mm] and stiffness [N/mm] (n, m, 2) at positions one after the other."""
     found = np.empty((len(angles), len(models), 2))
     ahead: list[SharedPosition | None] = [None] * len(models)
@@ -66,6 +70,7 @@ def _solved(models: Sequence[GearModel], angles: Floats) -> Floats:
             position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
             found[i, j] = _transmission_error(model, position), position.stiffness * model.width_factor
             ahead[j] = lighter = position
+            solved()
     return found
 
 

@@ -1,0 +1,158 @@
+"""The commands of `evolvent` that compute: `run`, `loads` and `excitation`. All ranks take part in them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from mpi4py import MPI
+
+from evolvent.failures import STATUSES, reported
+from evolvent.options import (
+    Force,
+    LevelOption,
+    NoSkip,
+    Overrides,
+    Overwrite,
+    Quiet,
+    Resume,
+    SceneFile,
+    given_path,
+    given_percents,
+)  # fmt: skip
+from evolvent.scene_argument import loaded_scene, require, require_room
+
+# commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
+
+RESUME = "; `evolvent {} ... --resume` continues"
+"""Appended to the message on a signal that ends a command."""
+BOTH = (
+    "--overwrite: found --resume and --overwrite; allowed: one of them; remedy: --resume keeps what --overwrite removes"
+)
+"""Message on two options that exclude each other."""
+PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
+"""Environment variable that evolvent.fem.backend.petsc reads."""
+RUN_EPILOG = f"""\b
+Examples:
+  evolvent run demos/yang2022.toml --out out/yang2022 --level quick
+  evolvent run demos/yang2022.toml --out out/t300 --set load.torque_Nm=300 --set contact.friction=[0,0.1]
+  mpirun -n 2 evolvent run demos/yang2022.toml --out out/yang2022 --resume
+
+{STATUSES}"""
+LOADS_EPILOG = f"""\b
+Examples:
+  evolvent loads demos/yang2022.toml --out out/loads --level quick
+  mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,100,150
+
+{STATUSES}"""
+EXCITATION_EPILOG = f"""\b
+Examples:
+  evolvent excitation demos/he2022.toml --out out/excitation --set sweep.positions=40
+  mpirun -n 2 evolvent excitation demos/he2022.toml --out out/excitation --percent 10,50,100,200
+
+{STATUSES}"""
+
+
+def run(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables, fields and pictures go.", parser=given_path)
+    ],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+    petsc: Annotated[
+        str | None, typer.Option("--petsc-options", metavar="OPTIONS", help='For PETSc, such as "-log_view".')
+    ] = None,
+) -> None:
+    """Compute a scene.
+
+    The positions of one angular pitch 2π/z_1 (one mesh cycle) for every friction coefficient; tables, fields and
+    pictures go to DIR.
+    """
+    with reported(parallel=True, advice=RESUME.format("run")):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
+        if petsc is not None:
+            os.environ[PETSC_OPTIONS] = petsc  # before PETSc starts
+        require_room(loaded, "run", force, MPI.COMM_WORLD)
+        from evolvent.run.output import last_lines
+        from evolvent.run.scene_run import run_scene
+
+        run_scene(loaded, out, resume=resume, quiet=quiet, overwrite=overwrite, source=scene)
+        if not quiet:
+            typer.echo(last_lines(out, loaded))
+
+
+def loads(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="For a folder of each load.", parser=given_path)],
+    percent: Annotated[
+        Any,
+        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
+    ] = "5,10,25,50,75,100",
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute a scene under a list of loads.
+
+    The gears are condensed once. DIR gets the folder of a run for each load, and loads.csv and pictures/loads.png.
+    """
+    with reported(parallel=True, advice=RESUME.format("loads")):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
+        from evolvent.run.load_list import load_scenes, run_loads
+
+        scenes = load_scenes(loaded, percent)
+        for each in scenes.values():
+            require_room(each, "run", force, MPI.COMM_WORLD)
+        for failure in run_loads(scenes, out, resume, quiet, overwrite, scene):
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        if not quiet:
+            typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")
+
+
+def excitation(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
+    ],
+    percent: Annotated[
+        Any,
+        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
+    ] = "5,15,30,50,75,100,150,200",
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute what a pair's mesh does to its vibration.
+
+    Without friction, over one angular pitch: the unloaded transmission error, and under each of a list of torques the
+    loaded one and the mesh stiffness, tangent and secant, with their mesh harmonics. The gears are condensed once.
+    """
+    with reported(parallel=True):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        from evolvent.run.dynamics.excitation import run_excitation
+        from evolvent.run.load_list import load_scenes
+
+        scenes = load_scenes(loaded, percent)
+        for each in scenes.values():
+            require_room(each, "run", force, MPI.COMM_WORLD)
+        for failure in run_excitation(list(scenes.values()), out, overwrite, quiet):
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        if not quiet and MPI.COMM_WORLD.rank == 0:
+            typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")

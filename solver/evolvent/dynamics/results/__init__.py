@@ -1,0 +1,1 @@
+"""What is left of the dynamics of a pair: tables and pictures."""

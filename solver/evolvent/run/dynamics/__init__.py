@@ -1,0 +1,1 @@
+"""The dynamics of a scene, from start to finish."""

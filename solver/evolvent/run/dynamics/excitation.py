@@ -1,0 +1,84 @@
+"""The excitation of a scene's gears, from start to finish. `evolvent excitation` calls only this."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows, write_tables
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.load_list import LoadList
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_lock import locked
+from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.progress import CONDENSING, MESHING, OUTPUT, POSITIONS, Progress
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
+
+PICTURE = "excitation.png"
+WRITTEN = EXCITATION, HARMONICS, f"pictures/{PICTURE}"
+
+
+def run_excitation(scenes: Sequence[Scene], out: Path, overwrite: bool = False, quiet: bool = False) -> list[str]:
+    """Computes the excitation under some torques and writes its tables and picture to `out`. Returns a sentence for
+    each picture that could not be drawn. Collective.
+
+    scenes: the scene under each torque, see `load_scenes`.
+    overwrite: replace what an earlier call has written.
+
+    Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface, WriteError.
+    """
+    comm = MPI.COMM_WORLD
+    on_first(comm, lambda: _check_folder(out, overwrite))
+    dolfinx_compat.silence_logs()
+    problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
+    with Progress(hidden=quiet or comm.rank > 0) as progress:
+        excitation = _computed(problems, scenes[0].sweep.positions, comm, progress)
+        progress.stage(OUTPUT)
+        return on_first(comm, lambda: _written(excitation, problems, out))
+
+
+def _check_folder(out: Path, overwrite: bool) -> None:
+    """Raises FolderError where files of others would be lost, or results unasked."""
+    RunFolder(out).require_free(WRITTEN)
+    if (out / EXCITATION).exists() and not overwrite:
+        raise FolderError(
+            f"{out}: found {EXCITATION} of an earlier call; allowed: a folder without; remedy: --overwrite replaces "
+            "it, --out names another folder"
+        )
+
+
+def _computed(problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress) -> MeshExcitation:
+    """Of the same gears under each torque."""
+    progress.stage(MESHING)
+    gears, first = LoadList(problems), problems[0]
+    gears.prepare(first, comm, meshed=lambda: progress.stage(CONDENSING))
+    models = [gears.prepare(each, comm).model for each in problems]
+    progress.stage(POSITIONS, positions * len(problems))
+    angles = 2.0 * np.pi / first.pair.pinion.z * np.arange(positions) / positions
+    loaded = loaded_mesh(models, [each.torque for each in problems], angles, comm, progress.advance)
+    return MeshExcitation(unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on), loaded)
+
+
+def _written(excitation: MeshExcitation, problems: Sequence[GearProblem], out: Path) -> list[str]:
+    """Writes everything. On rank 0 alone."""
+    first = problems[0]
+    radius, torques = first.pair.gears[first.torque_on].base_radius, [1e-3 * each.torque for each in problems]
+    with locked(out):
+        folder = RunFolder(out)
+        write_tables(folder, excitation_rows(excitation, radius), harmonic_rows(excitation, radius))
+
+        def drawn() -> bytes:
+            from evolvent.dynamics.results.figures import excitation_picture  # matplotlib takes a second to import
+
+            return excitation_picture(excitation, torques)
+
+        return list(draw([Picture(PICTURE, drawn)], folder).failures)

@@ -1,0 +1,110 @@
+"""`evolvent excitation` on He's pair: what it writes, what it leaves alone, and what several ranks find."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evolvent.cli import main
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.dynamics.excitation import run_excitation
+from evolvent.run.load_list import load_scenes
+from evolvent_meshes.arrays import Floats
+from tests.support.gear_cases import model_of, spur_scene, swept
+from tests.support.running.processes import Run, on_ranks
+
+SETTINGS = "mesh.level=quick", "sweep.positions=6"
+PERCENTS = [50.0, 100.0]
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def column(lines: list[dict[str, str]], name: str) -> Floats:
+    return np.array([float(line[name]) for line in lines])
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Under 50 and 100 % of the torque."""
+    folder = tmp_path_factory.mktemp("excitation")
+    assert run_excitation(list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values()), folder, quiet=True) == []
+    return folder
+
+
+def test_table_has_what_a_sweep_finds(out: Path) -> None:
+    """Transmission error and stiffness under the whole torque as a sweep on the same meshes has them, 1e-6; no unloaded
+    error; the secant is the force over the deflection."""
+    lines = rows(out / "excitation.csv")
+    assert len(lines) == 12
+    full = [line for line in lines if float(line["torque_Nm"]) == 170.0]
+    scene = load_scenes(spur_scene(*SETTINGS), PERCENTS)["load_100.0_percent"]
+    (curves,) = swept(model_of(scene), column(full, "pinion_angle_deg"), [0.0])
+    assert column(full, "transmission_error_um") == pytest.approx(1e3 * curves.of("transmission_error"), rel=1e-6)
+    stiffness = 20.0e-3 * np.array([result.stiffness for result in curves.results])
+    assert column(full, "tangent_stiffness_N_per_um") == pytest.approx(stiffness, rel=1e-6)
+    assert column(lines, "unloaded_transmission_error_um") == pytest.approx(0.0, abs=1e-3)
+    secant = column(lines, "mesh_force_N") / column(lines, "transmission_error_um")
+    assert column(lines, "secant_stiffness_N_per_um") == pytest.approx(secant, rel=1e-3)
+    assert column(full, "mesh_force_N") == pytest.approx(170e3 / 70.4769, rel=1e-5)
+
+
+def test_harmonics_are_those_of_the_table(out: Path) -> None:
+    """Two harmonics from six positions, of three quantities under two torques and of the unloaded error; the first one
+    of the stiffness by its sum, 1e-7."""
+    lines = rows(out / "harmonics.csv")
+    assert len(lines) == 2 * (1 + 2 * 3)
+    stiffness = [line for line in lines if line["quantity"].startswith("tangent") and float(line["torque_Nm"]) == 170.0]
+    full = [line for line in rows(out / "excitation.csv") if float(line["torque_Nm"]) == 170.0]
+    values = column(full, "tangent_stiffness_N_per_um")
+    first = 2.0 * np.mean(values * np.exp(-2j * np.pi * np.arange(6) / 6))
+    assert float(stiffness[0]["amplitude"]) == pytest.approx(abs(first), rel=1e-7)
+    assert float(stiffness[0]["mean"]) == pytest.approx(values.mean(), rel=1e-7)
+    assert float(stiffness[0]["peak_to_peak"]) == pytest.approx(np.ptp(values), rel=1e-7)
+    assert (out / "pictures/excitation.png").stat().st_size > 20_000
+
+
+def test_results_are_not_replaced_unasked(out: Path) -> None:
+    """A second call is refused before anything is computed, and says what to do."""
+    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    with pytest.raises(FolderError, match="remedy: --overwrite replaces it"):
+        run_excitation(scenes, out, quiet=True)
+
+
+def test_foreign_files_stay(tmp_path: Path) -> None:
+    """Also with --overwrite a file that no call has written is left as it is."""
+    (tmp_path / "harmonics.csv").write_text("mine")
+    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    with pytest.raises(FolderError, match=r"harmonics\.csv"):
+        run_excitation(scenes, tmp_path, overwrite=True, quiet=True)
+    assert (tmp_path / "harmonics.csv").read_text() == "mine"
+
+
+def test_gears_that_wear_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Status 2, and what to do; nothing is written."""
+    scene = Path(__file__).resolve().parents[4] / "demos/he2022.toml"
+    wear = ["--set", "wear.cycles=1e5", "--set", "wear.pinion_mm2_per_N=1e-10"]
+    assert main(["excitation", str(scene), "--out", str(tmp_path / "out"), *wear]) == 2
+    assert "wear: found" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", on_ranks(2))
+def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+    """Two ranks divide the positions: the same table to 1e-6, and one line at the end."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = ["excitation", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--percent", "50,100"]
+    for setting in SETTINGS:
+        arguments += ["--set", setting]
+    done = run_script("-c", code, *arguments, ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("done: ") == 1
+    for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
+        one, two = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path / "out"))
+        assert two == pytest.approx(one, rel=1e-6)

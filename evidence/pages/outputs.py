@@ -28,8 +28,9 @@ from evolvent.wear.results.report import GearReport, PairReport, WearReport
 Schema = dict[str, Any]
 
 UNITS = {
-    "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_mm2_per_N": "mm²/N", "_mm_per_rad": "mm/rad", "_Nm": "N·m", "_N": "N", "_MPa": "MPa",
-    "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB", "_s": "s",
+    "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_mm2_per_N": "mm²/N", "_mm_per_rad": "mm/rad", "_Nm": "N·m",
+    "_N": "N", "_MPa": "MPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB",
+    "_s": "s",
 }  # fmt: skip
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (

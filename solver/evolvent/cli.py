@@ -15,7 +15,16 @@ from typing import Annotated
 import typer
 from mpi4py import MPI
 
-from evolvent.computing import EXCITATION_EPILOG, LOADS_EPILOG, RUN_EPILOG, excitation, loads, run
+from evolvent.computing import (
+    DYNAMICS_EPILOG,
+    EXCITATION_EPILOG,
+    LOADS_EPILOG,
+    RUN_EPILOG,
+    dynamics,
+    excitation,
+    loads,
+    run,
+)
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
 from evolvent.options import (
@@ -36,7 +45,7 @@ from evolvent_meshes.files import require_writable
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-SHARED = ("run", "loads", "excitation")
+SHARED = ("run", "loads", "excitation", "dynamics")
 """The commands that all ranks take part in."""
 app = typer.Typer(
     name="evolvent",
@@ -63,6 +72,7 @@ def evolvent(version: Version = False) -> None: ...
 app.command(epilog=RUN_EPILOG)(run)
 app.command(epilog=LOADS_EPILOG)(loads)
 app.command(epilog=EXCITATION_EPILOG)(excitation)
+app.command(epilog=DYNAMICS_EPILOG)(dynamics)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

@@ -1,4 +1,4 @@
-"""The commands of `evolvent` that compute: `run`, `loads` and `excitation`. All ranks take part in them."""
+"""The commands of `evolvent` that compute: `run`, `loads`, `excitation` and `dynamics`. All ranks take part in them."""
 
 from __future__ import annotations
 
@@ -45,6 +45,11 @@ LOADS_EPILOG = f"""\b
 Examples:
   evolvent loads demos/yang2022.toml --out out/loads --level quick
   mpirun -n 2 evolvent loads demos/yang2022.toml --out out/loads --percent 25,50,100,150
+
+{STATUSES}"""
+DYNAMICS_EPILOG = f"""\b
+Example:
+  evolvent dynamics demos/he2022_dynamics.toml --out out/dynamics
 
 {STATUSES}"""
 EXCITATION_EPILOG = f"""\b
@@ -156,3 +161,36 @@ def excitation(
             typer.echo(f"evolvent: warning: {failure}", err=True)
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
+
+
+def dynamics(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables and pictures go.", parser=given_path)
+    ],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute the vibration of a pair over the speed.
+
+    The excitation by its mesh, then steady states, jumps, and the motions of a pair that runs up and down, as the
+    section [dynamics] of the scene says.
+    """
+    with reported(parallel=True):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        from evolvent.run.dynamics.vibration import run_dynamics
+        from evolvent.run.load_list import load_scenes
+        from evolvent.scene.schema.dynamics import DynamicsSection
+
+        section = loaded.dynamics or DynamicsSection()
+        scenes = load_scenes(loaded, section.torque_percents)
+        for each in scenes.values():
+            require_room(each, "run", force, MPI.COMM_WORLD)
+        for failure in run_dynamics(list(scenes.values()), section, out, overwrite, quiet):
+            typer.echo(f"evolvent: warning: {failure}", err=True)
+        if not quiet and MPI.COMM_WORLD.rank == 0:
+            typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {out / 'pictures/vibration.png'}")

@@ -67,9 +67,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure", "scene",
         "scene.schema",
     ),
-    "results.archive": (
-        "meshes", "meshes.mesh", "meshes.gears", "scene", "gears", "gears.contact", "gears.sweep",
-    ),
+    "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
         "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
@@ -98,15 +96,18 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.oscillator": ("meshes",),
     "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
-    "dynamics": ("meshes", "meshes.gears"),
-    "dynamics.results": ("meshes", "dynamics.excitation", "results.archive", "results.tables", "results.drawing"),
+    "dynamics": ("meshes.*", "dynamics.excitation", "dynamics.oscillator"),
+    "dynamics.results": (
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.tables",
+        "results.drawing",
+    ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
-        "fem.backend", "fem.parallel", "gears.problem", "gears", "scene", "results.archive", "results.drawing",
-        "dynamics.excitation", "dynamics.results", "run",
+        "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears", "scene", "scene.schema",
+        "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

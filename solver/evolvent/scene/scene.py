@@ -20,6 +20,7 @@ from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload, roun
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
+from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
@@ -54,6 +55,7 @@ class Scene(SceneSection):
     load: LoadSection
     sweep: SweepSection = SweepSection()
     wear: WearSection | None = None
+    dynamics: DynamicsSection | None = None
     output: OutputSection = OutputSection()
     skip: SkipSection = SkipSection()
 

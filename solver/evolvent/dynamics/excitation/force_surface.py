@@ -1,8 +1,9 @@
 """The force of a mesh over its deflection and the rotation, from a pitch under several torques.
 
 At each position the force over x = s − e goes through (0, 0) and each torque's point, with the tangent stiffness that
-was computed there: a cubic Hermite interpolant. All positions are read off at common depths. Between the positions the
-force is a periodic spline, see `mesh_law.force_side`."""
+was computed there: a cubic Hermite interpolant. All positions are read off at common depths, those of the loads in the
+mean and halfway between. Between the positions the force is a periodic spline, see `mesh_law.force_side`.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +17,6 @@ from evolvent.dynamics.oscillator.mesh_law import MeshLaw, MeshSide, behind, for
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
-
-DEPTHS = 24
-"""Intervals of x at which positions are read off, closer where forces are small: there contact stiffens most."""
 
 
 class NoForceSurface(ResultError):
@@ -63,7 +61,8 @@ class MeshExcitation:
 
     def force_surface(self) -> MeshSide:
         """F(x, φ) of the loaded flanks, as computed."""
-        depths = self.depths.max() * np.linspace(0.0, 1.0, DEPTHS + 1) ** 2
+        loads = np.concatenate([[0.0], self.depths[:, :-1].mean(axis=0), [self.depths.max()]])
+        depths = np.sort(np.concatenate([loads, 0.5 * (loads[1:] + loads[:-1])]))
         force = np.array([self._over_depth(i, depths) for i in range(len(self.unloaded_error))])
         return force_side(depths, force, self.unloaded_error)
 

@@ -38,6 +38,11 @@ class Response:
         """√ΣA_r² of the first three harmonics of s [mm]; the rms of such a motion is 1/√2 of it."""
         return float(np.linalg.norm(self.total[:IN_RMS]))
 
+    @property
+    def elastic_equivalent_amplitude(self) -> float:
+        """The same of s − e [mm]."""
+        return float(np.linalg.norm(self.elastic[:IN_RMS]))
+
 
 def response(model: TorsionalModel, period: float, state: Floats, repeats: int = 1) -> Response:
     """Of the motion from a state (2,) at phase 0, over the mesh periods [s] after which it repeats."""

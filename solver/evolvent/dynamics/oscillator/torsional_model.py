@@ -12,8 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
+from evolvent.dynamics.oscillator.equation import SIZE, Oscillator
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw
-from evolvent.dynamics.oscillator.stepping import SIZE, STEP, Oscillator, advance
+from evolvent.dynamics.oscillator.stepping import STEP, advance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 Derivatives = Floats

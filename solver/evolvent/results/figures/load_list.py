@@ -49,7 +49,8 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
             fills = ["white" if row.tip_edge_positions else colour for row in own]
             for row, value, fill in zip(own, values, fills):
                 at_end = key == "max_pressure_MPa" and row.max_pressure_at_zone_end
-                axes.scatter(row.torque_Nm, value, 20.0, fill, "s" if at_end else "o", edgecolors=colour, zorder=3)
+                marker = {"marker": "s" if at_end else "o", "markerfacecolor": fill, "markeredgecolor": colour}
+                axes.plot(row.torque_Nm, value, markersize=4.5, linestyle="", zorder=3, **marker)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(0.0, 1.05 * torques[-1])
         axes.set_xlabel("torque [N·m]")
@@ -58,8 +59,8 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
         grid[0, 1].legend(loc="best")
     foot(
         figure,
-        "Bars: estimated error, of mesh and spacing of positions. Hollow: a tip edge bears at some positions; the "
-        "pressure is that between tip-edge zones. Square: at the end of such a zone, where it varies beyond its bar.",
+        "Bars: estimated error, of mesh and spacing of positions. Hollow: a tip edge bears at some positions.",
+        "Pressure: between tip-edge zones; square: at the end of such a zone, where it varies beyond its bar.",
     )
     return figure
 

@@ -37,18 +37,18 @@ def run_excitation(scenes: Sequence[Scene], out: Path, overwrite: bool = False, 
     Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface, WriteError.
     """
     comm = MPI.COMM_WORLD
-    on_first(comm, lambda: _check_folder(out, overwrite))
+    on_first(comm, lambda: check_results(out, WRITTEN, overwrite))
     dolfinx_compat.silence_logs()
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     with Progress(hidden=quiet or comm.rank > 0) as progress:
-        excitation = _computed(problems, scenes[0].sweep.positions, comm, progress)
+        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
         progress.stage(OUTPUT)
         return on_first(comm, lambda: _written(excitation, problems, out))
 
 
-def _check_folder(out: Path, overwrite: bool) -> None:
-    """Raises FolderError where files of others would be lost, or results unasked."""
-    RunFolder(out).require_free(WRITTEN)
+def check_results(out: Path, written: Sequence[str], overwrite: bool) -> None:
+    """Raises FolderError where files of others would be lost, or results unasked. written: names of what is written."""
+    RunFolder(out).require_free(written)
     if (out / EXCITATION).exists() and not overwrite:
         raise FolderError(
             f"{out}: found {EXCITATION} of an earlier call; allowed: a folder without; remedy: --overwrite replaces "
@@ -56,8 +56,10 @@ def _check_folder(out: Path, overwrite: bool) -> None:
         )
 
 
-def _computed(problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress) -> MeshExcitation:
-    """Of the same gears under each torque."""
+def computed_excitation(
+    problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress
+) -> MeshExcitation:
+    """Of the same gears under each torque, the lightest first. Collective."""
     progress.stage(MESHING)
     gears, first = LoadList(problems), problems[0]
     gears.prepare(first, comm, meshed=lambda: progress.stage(CONDENSING))
@@ -70,15 +72,20 @@ def _computed(problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, p
 
 def _written(excitation: MeshExcitation, problems: Sequence[GearProblem], out: Path) -> list[str]:
     """Writes everything. On rank 0 alone."""
+    with locked(out):
+        return write_excitation(RunFolder(out), excitation, problems)
+
+
+def write_excitation(folder: RunFolder, excitation: MeshExcitation, problems: Sequence[GearProblem]) -> list[str]:
+    """Writes tables and picture; returns a sentence for a picture that could not be drawn. Raises WriteError,
+    FolderError."""
     first = problems[0]
     radius, torques = first.pair.gears[first.torque_on].base_radius, [1e-3 * each.torque for each in problems]
-    with locked(out):
-        folder = RunFolder(out)
-        write_tables(folder, excitation_rows(excitation, radius), harmonic_rows(excitation, radius))
+    write_tables(folder, excitation_rows(excitation, radius), harmonic_rows(excitation, radius))
 
-        def drawn() -> bytes:
-            from evolvent.dynamics.results.figures import excitation_picture  # matplotlib takes a second to import
+    def drawn() -> bytes:
+        from evolvent.dynamics.results.figures import excitation_picture  # matplotlib takes a second to import
 
-            return excitation_picture(excitation, torques)
+        return excitation_picture(excitation, torques)
 
-        return list(draw([Picture(PICTURE, drawn)], folder).failures)
+    return list(draw([Picture(PICTURE, drawn)], folder).failures)

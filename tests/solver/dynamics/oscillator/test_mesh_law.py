@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent.dynamics.oscillator.equation import force_at, interval_at, offset_at
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, MeshSide, behind, force_side, linear_side, mirrored, no_side
-from evolvent.dynamics.oscillator.stepping import force_at, offset_at
 
 DEPTHS = np.array([0.0, 0.5, 1.2, 2.0])
 PHASES = np.arange(8) / 8
@@ -21,7 +21,7 @@ def side() -> MeshSide:
 def at(one: MeshSide, τ: float, x: float) -> tuple[float, float, float]:
     """F, ∂F/∂x and e at a phase from 0 to 1."""
     cell = min(int(np.searchsorted(one.phases, τ, side="right")) - 1, len(one.phases) - 2)
-    return (*force_at(one, cell, τ, x), offset_at(one, cell, τ)[0])
+    return (*force_at(one, cell, interval_at(one, x), τ, x), offset_at(one, cell, τ)[0])
 
 
 def test_force_side_goes_through_its_values() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evolvent.dynamics.oscillator import torsional_model
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, force_side, linear_side
 from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history, period_map
@@ -51,16 +52,34 @@ MODELS = pytest.mark.parametrize(
 @pytest.mark.parametrize("start", START)
 def test_period_map_is_that_of_scipy(model: TorsionalModel, start: str) -> None:
     """State after three mesh periods in contact, with free flight, and with blows on both flanks: 1e-8 of the static
-    deflection where the force is smooth over x, 1e-7 where it is a spline, whose knots steps pass over."""
+    deflection; 1e-7 where F(x) is a spline, whose knots SciPy's steps pass over."""
     s, v, sides = START[start]
     y, scale = np.array([s * STATIC, v * STATIC * NATURAL]), np.array([1.0, NATURAL]) * STATIC
-    period, accuracy = 2.0 * np.pi / (0.8 * NATURAL), 1e-8 if len(model.law.front.depths) == 2 else 1e-7
+    period = 2.0 * np.pi / (0.8 * NATURAL)
     found, seen = y, set()
     for _ in range(3):
         seen |= set(history(model, period, found, np.linspace(0.0, 1.0, 200)).side.tolist())
         found, _ = period_map(model, period, found)
     assert seen == sides
+    accuracy = 1e-8 if len(model.law.front.depths) == 2 else 1e-7
     assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=accuracy)
+
+
+@MODELS
+@pytest.mark.parametrize("start", START)
+def test_steps_of_half_the_length_find_the_same(
+    model: TorsionalModel, start: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """State and derivatives after a mesh period, 1e-10: steps end wherever the force is not smooth, so that their order
+    is the whole error."""
+    s, v, _ = START[start]
+    y, period = np.array([s * STATIC, v * STATIC * NATURAL]), 2.0 * np.pi / (0.8 * NATURAL)
+    scale = np.array([1.0, NATURAL]) * STATIC
+    coarse = period_map(model, period, y)
+    monkeypatch.setattr(torsional_model, "STEP", 0.5 * torsional_model.STEP)
+    fine = period_map(model, period, y)
+    assert coarse[0] / scale == pytest.approx(fine[0] / scale, abs=1e-10)
+    assert coarse[1] / scale[:, None] == pytest.approx(fine[1] / scale[:, None], rel=1e-10, abs=1e-10)
 
 
 @MODELS

@@ -1,0 +1,83 @@
+"""The oscillator of a gear pair: its inertia, damping and load on the mesh force that was computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
+from evolvent.dynamics.gear_inertia import equivalent_mass
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent_meshes.gears.pair import GearPair
+
+MeshModel = Literal["force_surface", "tangent", "secant"]
+
+
+@dataclass(frozen=True)
+class DriveSettings:
+    """What a pair's vibration depends on beside its mesh."""
+
+    inertias: tuple[float, float]
+    """Of pinion and wheel [t·mm²]."""
+    damping_ratio: float
+    """Of the mesh, over the critical one at the mean tangent stiffness."""
+    backlash: float
+    """Along the line of action, from flank to flank [mm]."""
+    damped_apart: bool = False
+    """Whether this damping acts in free flight, too."""
+    ground_damping_ratio: float = 0.0
+    """Of the shafts against the ground, likewise."""
+    series_stiffness: float = math.inf
+    """Of shafts and bearings along the line of action [N/mm]."""
+    mesh: MeshModel = "force_surface"
+    """The mesh force."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A pair that vibrates."""
+
+    model: TorsionalModel
+    """Its oscillator."""
+    mean_stiffness: float
+    """Tangent stiffness under the load, with what gives way in series, mean over the pitch [N/mm]."""
+    teeth: int
+    """Of the pinion."""
+
+    @property
+    def natural_speed(self) -> float:
+        """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness [r/min]."""
+        return math.sqrt(self.mean_stiffness / self.model.mass) / (2.0 * math.pi) * 60.0 / self.teeth
+
+
+def drive(pair: GearPair, excitation: MeshExcitation, number: int, settings: DriveSettings) -> Drive:
+    """The pair under the torque of this number in the excitation."""
+    mass = equivalent_mass(pair, settings.inertias)
+    mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
+    mean = float(np.mean(mesh.loaded.stiffness[:, number]))
+    critical = 2.0 * math.sqrt(mean * mass)
+    model = TorsionalModel(
+        mass, float(mesh.loaded.forces[number]), _law(pair, mesh, number, settings), settings.damping_ratio * critical,
+        settings.damped_apart, settings.ground_damping_ratio * critical,
+    )  # fmt: skip
+    return Drive(model, mean, pair.pinion.z)
+
+
+def geometric_backlash(pair: GearPair) -> float:
+    """j_bt = (2π r_w1/z_1 − s_w1 − s_w2) cos α_wt [mm]: along the line of action in the transverse section, from the
+    tooth thicknesses on the working pitch circles (ISO 21771:2007, 5.6); 0 where rounding leaves less."""
+    gap = np.pi * pair.working_pitch_diameters[0] / pair.pinion.z
+    for gear, diameter in zip(pair.gears, pair.working_pitch_diameters):
+        gap -= diameter * gear.half_angle(diameter)
+    return max(float(gap * np.cos(pair.working_pressure_angle)), 0.0)
+
+
+def _law(pair: GearPair, mesh: MeshExcitation, number: int, settings: DriveSettings) -> MeshLaw:
+    """Of both sides of the teeth."""
+    if settings.mesh == "force_surface":
+        return mirrored_law(mesh.force_surface(), pair, settings.backlash)
+    return paper_law(mesh.stiffness_side(number, settings.mesh == "secant"), settings.backlash)

@@ -1,0 +1,164 @@
+"""Tables of a pair's vibration: over the speed, along the branch of steady states, and what it is computed from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.response import Response, response
+from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
+from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
+from evolvent.dynamics.pair_model import Drive, DriveSettings
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import csv_text
+
+RESPONSE, BRANCH, DYNAMICS = "response.csv", "branch.csv", "dynamics.json"
+UM = 1e3  # µm per mm
+
+
+@dataclass(frozen=True)
+class ResponseRow:
+    """A line of response.csv: a speed, run up to or down to."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    way: str
+    """up or down: from which side the pair has come to the speed, slowly."""
+    repeats: int
+    """Mesh periods after which the motion repeats; 0 where it does not within sixteen."""
+    jumped: bool
+    """Whether it left the branch of steady states, or came to another part of it, since the speed before."""
+    equivalent_amplitude_um: float
+    """√ΣA_r² of the first three mesh harmonics of s = r_b1 θ_1 − r_b2 θ_2, with the unloaded transmission error in it;
+    the rms value of these is 1/√2 of it."""
+    elastic_equivalent_amplitude_um: float
+    """The same of s − e, without it."""
+    harmonic_1_um: float
+    """Amplitude of the mesh harmonic of s, like the next four."""
+    harmonic_2_um: float
+    """Second."""
+    harmonic_3_um: float
+    """Third."""
+    harmonic_4_um: float
+    """Fourth."""
+    harmonic_5_um: float
+    """Fifth."""
+    force_harmonic_1_N: float
+    """Of the mesh force, first mesh harmonic."""
+    largest_force_N: float
+    """Largest mesh force, damping included."""
+    smallest_force_N: float
+    """Smallest one: below 0 where back flanks press, or the damper pulls."""
+    dynamic_factor: float
+    """Largest mesh force over the static one."""
+    separated_share: float
+    """Share of the time in which no flanks touch."""
+
+
+@dataclass(frozen=True)
+class BranchRow:
+    """A line of branch.csv: a steady state, stable or not, in the order along the branch."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    equivalent_amplitude_um: float
+    """As in response.csv."""
+    stable: bool
+    """Whether small disturbances die out."""
+    fold: bool
+    """Whether the branch turns back here: a pair that follows the speed jumps."""
+
+
+@dataclass(frozen=True)
+class DriveSummary:
+    """dynamics.json: what the vibration is computed from, and the speeds of its jumps."""
+
+    equivalent_mass_kg: float
+    """m_e, along the line of action."""
+    pinion_inertia_kg_m2: float
+    """Of the pinion."""
+    wheel_inertia_kg_m2: float
+    """Of the wheel."""
+    mean_stiffness_N_per_um: float
+    """Tangent stiffness of the whole face under the torque, mean over the pitch, with what gives way in series."""
+    natural_speed_rpm: float
+    """Of the pinion, at which the mesh frequency is the natural one at that stiffness."""
+    static_force_N: float
+    """Torque over base radius."""
+    damping_N_s_per_mm: float
+    """Of the mesh."""
+    backlash_um: float
+    """Along the line of action, from flank to flank."""
+    mesh: str
+    """Model of the mesh force, as dynamics.mesh."""
+    folds_rpm: tuple[float, ...]
+    """Speeds at which the branch of steady states turns back."""
+    heaviest_torque_share: float
+    """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
+    on straight."""
+
+
+def speed_of(drive: Drive, period: float) -> float:
+    """[r/min] of the pinion at a mesh period [s]."""
+    return 60.0 / (drive.teeth * period)
+
+
+def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
+    """Of all speeds, "up" and "down"; a motion that does not repeat is taken over sixteen mesh periods."""
+    return {
+        way: [
+            response(drive.model, float(period), run.motion.state, run.repeats or LONGEST_REPEAT)
+            for period, run in zip(swept.periods, runs)
+        ]
+        for way, runs in (("up", swept.up), ("down", swept.down))
+    }
+
+
+def response_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]]) -> Iterator[ResponseRow]:
+    """Up, then down, at ascending speeds."""
+    for way, runs in (("up", swept.up), ("down", swept.down)):
+        for period, run, each in zip(swept.periods, runs, found[way]):
+            yield _row(drive, way, float(period), run, each)
+
+
+def _row(drive: Drive, way: str, period: float, run: Running, each: Response) -> ResponseRow:
+    first, second, third, fourth, fifth = (UM * float(value) for value in each.total)
+    return ResponseRow(
+        speed_of(drive, period), way, run.repeats, run.jumped, UM * each.equivalent_amplitude,
+        UM * each.elastic_equivalent_amplitude, first, second, third, fourth, fifth, float(each.force[0]),
+        each.largest_force, each.smallest_force, each.largest_force / drive.model.load, each.apart,
+    )  # fmt: skip
+
+
+def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
+    """From the lowest speed to the highest, through all folds."""
+    for i, (state, stable) in enumerate(zip(swept.branch.points, swept.branch.stable)):
+        size = response(drive.model, state.period, state.state).equivalent_amplitude
+        yield BranchRow(speed_of(drive, state.period), UM * size, bool(stable), i in swept.branch.folds)
+
+
+def summary(drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float) -> DriveSummary:
+    """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
+    pinion, wheel = settings.inertias
+    folds = tuple(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
+    return DriveSummary(
+        1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness, drive.natural_speed,
+        drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, folds, largest / heaviest,
+    )  # fmt: skip
+
+
+def write_response(
+    folder: RunFolder, drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], known: DriveSummary
+) -> None:
+    """Writes response.csv, branch.csv and dynamics.json. Raises WriteError, FolderError."""
+    folder.write_text(RESPONSE, csv_text([asdict(row) for row in response_rows(drive, swept, found)]))
+    folder.write_text(BRANCH, csv_text([asdict(row) for row in branch_rows(drive, swept)]))
+    folder.write_text(DYNAMICS, json.dumps(asdict(known), indent=1, ensure_ascii=False) + "\n")
+
+
+def largest_force(found: dict[str, list[Response]]) -> float:
+    """Of all speeds, both ways [N]."""
+    return float(np.max([each.largest_force for runs in found.values() for each in runs]))

@@ -1,0 +1,96 @@
+"""The section [dynamics]: vibration that the mesh excites."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Self
+
+from pydantic import field_validator, model_validator
+
+from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.section import SceneSection, key
+
+MOST_SPEEDS = 5000
+FASTEST = 1e6
+"""Highest speed [r/min]."""
+SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
+PERCENTS = "different numbers above 0 up to 1000, 100 among them"
+
+
+def _inertia(gear: str) -> Any:
+    """The key of a moment of inertia."""
+    return key(
+        f"moment of inertia of the {gear} with all that turns rigidly with it; by default that of its body, from "
+        "geometry and density",
+        "a number above 0 up to 1e9, in kg·m²",
+        "mind the unit: 1 kg·m² is 1e6 kg·mm²; or delete the key",
+        default=None, gt=0, le=1e9,
+    )  # fmt: skip
+
+
+class DynamicsSection(SceneSection):
+    """[dynamics]: torsional vibration of both gears on their mesh, over the speed. `evolvent dynamics` reads it."""
+
+    speed_rpm: tuple[float, float] | None = key(
+        "lowest and highest speed of the pinion; by default from a sixth to 1.6 of the speed at which the mesh "
+        "frequency is the natural one",
+        SPEEDS,
+        "give the lower speed first, or delete the key",
+        default=None,
+    )
+    speeds: int = key(
+        "number of speeds, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}", default=400, ge=2, le=MOST_SPEEDS
+    )
+    mesh: Literal["force_surface", "tangent", "secant"] = key(
+        "the mesh force: as computed over deflection and rotation, or the tangent or secant stiffness under the torque "
+        "times the deflection",
+        '"force_surface", "tangent" or "secant"',
+        default="force_surface",
+    )
+    torque_percents: tuple[float, ...] = key(
+        "torques of the force surface, in percent of load.torque_Nm; beyond the heaviest it goes on straight",
+        f"a list of up to 30 {PERCENTS}",
+        "a force of twice the static one is usual near resonance: go on to 200",
+        default=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0), max_length=30,
+    )  # fmt: skip
+    damping_ratio: float = key(
+        "damping of the mesh over the critical one, at the mean tangent stiffness", "a number from 0.001 to 1",
+        "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
+    )  # fmt: skip
+    damped_apart: bool = key(
+        "whether it acts in free flight, too, as in the model of He et al. 2022", "true or false", default=False
+    )
+    ground_damping_ratio: float = key(
+        "damping of the shafts against the ground, likewise", "a number from 0 to 1", default=0.0, ge=0, le=1
+    )
+    backlash_um: float | None = key(
+        "backlash along the line of action in the transverse section, from flank to flank; by default that of the "
+        "gears' tooth thicknesses at their centre distance",
+        "a number from 0 to 1e5, in µm", "delete the key for the default", default=None, ge=0, le=1e5,
+    )  # fmt: skip
+    density_kg_m3: float = key(
+        "density of both gears", "a number from 100 to 30000, in kg/m³", "steel has 7850", default=7850.0, ge=100,
+        le=30000,
+    )  # fmt: skip
+    pinion_inertia_kg_m2: float | None = _inertia("pinion")
+    wheel_inertia_kg_m2: float | None = _inertia("wheel")
+    series_stiffness_N_per_um: float | None = key(
+        "stiffness along the line of action of what gives way with the mesh, shafts and bearings, without inertia; by "
+        "default nothing does",
+        "a number from 0.001 to 1e9, in N/µm", "delete the key for the default", default=None, ge=1e-3, le=1e9,
+    )  # fmt: skip
+
+    @field_validator("speed_rpm", "torque_percents", mode="before")
+    @classmethod
+    def _list_is_tuple(cls, value: Any) -> Any:
+        return tuple(value) if isinstance(value, list) else value
+
+    @model_validator(mode="after")
+    def _ranges(self) -> Self:
+        if (speeds := self.speed_rpm) and not 0.0 < speeds[0] < speeds[1] <= FASTEST:
+            remedy = "give the lower speed first, or delete the key"
+            raise validation_error(InputProblem("speed_rpm", shown(speeds), SPEEDS, remedy))
+        given = self.torque_percents
+        if not all(0.0 < each <= 1000.0 for each in given) or len(set(given)) < len(given) or 100.0 not in given:
+            remedy = "add 100, the torque itself, and give each once"
+            raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, remedy))
+        return self

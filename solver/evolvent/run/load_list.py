@@ -10,12 +10,14 @@ from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.load_list import LoadList
+from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.tables.load_table import LOADS, load_results, write_loads
 from evolvent.run.folder_checks import check_folder
 from evolvent.run.scene_run import run_scene
+from evolvent.run.start import resume_point, scene_to_solve
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_values
 from evolvent.scene.schema.errors import InputProblem, SceneError
@@ -43,6 +45,9 @@ def run_loads(
         RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
         for name, each in scenes.items():
             check_folder(each, out / name, resume, overwrite, source)
+            if resume:  # before the first of them is computed
+                solved = scene_to_solve(each, Archive(out / name, each), resume)
+                resume_point(solved, Archive(out / name, solved), resume)
 
     on_first(comm, check)
     gears = LoadList([gear_problem(each) for each in scenes.values()])

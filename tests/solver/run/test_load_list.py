@@ -11,6 +11,7 @@ import pytest
 
 from evolvent.cli import Exit, main
 from evolvent.gears import load_list as gear_loads
+from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.tables.load_table import LoadRow
 from evolvent.run.load_list import load_scenes, run_loads
 from evolvent.run.scene_run import run_scene
@@ -63,6 +64,16 @@ def test_each_load_is_a_run_of_its_own_scene(tmp_path: Path, monkeypatch: pytest
         for folder in (tmp_path / "alone", folders[0])
     )
     assert alone["max_pressure_MPa"] == pytest.approx(found["max_pressure_MPa"], rel=1e-6)
+
+
+def test_resuming_with_a_heavier_load_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
+    """Its meshes serve other torques, so that no kept result would fit: the error names the key, and no folder is made
+    for the new load."""
+    scene = spur_scene(*SHORT)
+    run_loads(load_scenes(scene, [50.0, 100.0]), tmp_path, quiet=True)
+    with pytest.raises(ArchiveError, match="mesh_torques_Nm"):
+        run_loads(load_scenes(scene, [50.0, 100.0, 120.0]), tmp_path, resume=True, quiet=True)
+    assert not (tmp_path / "load_120.0_percent").exists()
 
 
 def test_each_load_has_a_folder_of_its_own() -> None:

@@ -126,6 +126,7 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
     if kept > 0.5 * wanted and wanted - kept <= there:
         count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
         found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
+        found += f" of {gigabytes(wanted)} in all"
         remedy = "take fewer positions, friction coefficients or reports, or a coarser mesh; --force goes on"
         return InputProblem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
@@ -185,8 +186,9 @@ def _lightest_that_fits(scene: Scene, needed: MemoryEstimate, processes: int, th
     [MB]; None where none does, or the scene is no load list's."""
     lightest, heaviest = scene.load.mesh_torques_Nm or (0.0, 0.0)
     while 0.0 < (lightest := 2.0 * lightest) <= heaviest:
-        load = scene.load.model_copy(update={"torque_Nm": heaviest, "mesh_torques_Nm": (lightest, heaviest)})
-        if needed(scene.model_copy(update={"load": load}), processes) <= there:
+        served = lightest, heaviest
+        loads = (scene.load.model_copy(update={"torque_Nm": each, "mesh_torques_Nm": served}) for each in served)
+        if all(needed(scene.model_copy(update={"load": load}), processes) <= there for load in loads):
             return lightest
     return None
 

@@ -64,7 +64,7 @@ class MeshExcitation:
         loads = np.concatenate([[0.0], self.depths[:, :-1].mean(axis=0), [self.depths.max()]])
         depths = np.sort(np.concatenate([loads, 0.5 * (loads[1:] + loads[:-1])]))
         force = np.array([self._over_depth(i, depths) for i in range(len(self.unloaded_error))])
-        return force_side(depths, force, self.unloaded_error)
+        return force_side(depths, force, self.unloaded_error, last_slope=self.loaded.stiffness[:, -1])
 
     def stiffness_side(self, number: int, secant: bool = False) -> MeshSide:
         """k(φ) x with the tangent or the secant stiffness under the torque of this number (He et al. 2022, Eq. 12)."""

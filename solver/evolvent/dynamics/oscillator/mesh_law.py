@@ -61,14 +61,19 @@ class MeshLaw:
         return max(float(_slopes(side).max()) for side in (self.front, self.back))
 
 
-def force_side(depths: Floats, force: Floats, error: Floats, sign: float = 1.0) -> MeshSide:
+def force_side(
+    depths: Floats, force: Floats, error: Floats, sign: float = 1.0, last_slope: Floats | None = None
+) -> MeshSide:
     """A side through values at k equidistant phases 0, 1/k, ...: cubic splines of x and, periodic, of τ.
 
-    depths: (m + 1,) from 0 [mm]. force: (k, m + 1) F there [N], 0 in the first column. error: (k,) e(τ) [mm].
+    depths: (m + 1,) from 0 [mm].
+    force: (k, m + 1) F there [N], 0 in the first column.
+    error: (k,) e(τ) [mm].
+    last_slope: (k,) ∂F/∂x at the last depth [N/mm], with which F goes on; None: as a natural spline has it.
     """
     phases = np.linspace(0.0, 1.0, len(error) + 1)
-    depths, straight = np.array(depths, dtype=float), ("not-a-knot", "natural")  # natural: it goes on straight
-    along = CubicSpline(depths, force, axis=1, bc_type=straight).c  # (4, m, k), the highest power first
+    depths, end = np.array(depths, dtype=float), "natural" if last_slope is None else (1, last_slope)
+    along = CubicSpline(depths, force, axis=1, bc_type=("not-a-knot", end)).c  # (4, m, k), the highest power first
     periodic = np.concatenate([along, along[:, :, :1]], axis=2)
     both = CubicSpline(phases, periodic, axis=2, bc_type="periodic").c  # (4 of τ, k, 4 of x, m)
     coefficients = np.ascontiguousarray(both[::-1, :, ::-1].transpose(1, 3, 2, 0))

@@ -32,6 +32,8 @@ class Response:
     """[N]; below 0 where back flanks press, or the damper pulls."""
     apart: float
     """Share of the time out of contact."""
+    behind: float
+    """Share of the time on the back flanks."""
 
     @property
     def equivalent_amplitude(self) -> float:
@@ -57,8 +59,8 @@ def response(model: TorsionalModel, period: float, state: Floats, repeats: int =
     )
     forces = np.concatenate([path.force for path in paths])
     s, x, F = (_amplitudes(values, repeats) for values in (total, total - error, force))
-    share = float(np.mean([path.apart for path in paths]))
-    return Response(s, x, F, float(forces.max()), float(forces.min()), share)
+    apart, behind = (float(np.mean([getattr(path, name) for path in paths])) for name in ("apart", "behind"))
+    return Response(s, x, F, float(forces.max()), float(forces.min()), apart, behind)
 
 
 def _amplitudes(values: Floats, repeats: int) -> Floats:

@@ -65,10 +65,18 @@ class SpeedSweep:
     """Of one that runs down slowly, at each speed; in ascending order, too."""
 
 
-def sweep_speeds(model: TorsionalModel, periods: Floats) -> SpeedSweep:
-    """Steady states at mesh periods (n,) [s], two at least, descending. Raises NoSteadyState."""
-    first = settled(model, float(periods[0]), static_state(model))
-    branch = follow(model, steady_state(model, float(periods[0]), first.state), float(periods[-1]))
+def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, float] | None = None) -> SpeedSweep:
+    """Steady states at mesh periods (n,) [s], two at least, descending.
+
+    beyond: longest and shortest mesh period from and to which the branch is followed, where those of the speeds lie
+    within: a branch that turns back within the speeds may leave them on its way.
+
+    Raises NoSteadyState.
+    """
+    longest, shortest = beyond or (0.0, np.inf)
+    begin, end = max(longest, float(periods[0])), min(shortest, float(periods[-1]))
+    first = settled(model, begin, static_state(model))
+    branch = follow(model, steady_state(model, begin, first.state), end)
     coexisting = [tuple(_refined(model, branch, float(period))) for period in periods]
     up = _run(model, branch, periods, coexisting)
     down = _run(model, branch, periods[::-1], coexisting[::-1])[::-1]
@@ -99,7 +107,8 @@ def _run(
 ) -> list[Running]:
     """The motions of a pair that takes the speeds one after the other."""
     stable = [each for each in coexisting[0] if each.state.stable]
-    found = [_start(model, float(periods[0]), stable)]
+    rising = periods[0] > periods[-1]
+    found = [_start(model, float(periods[0]), stable if rising else stable[::-1])]
     for period, states in zip(periods[1:], coexisting[1:]):
         before = found[-1]
         along = None if before.place is None else _along(branch, before.place, states)
@@ -112,7 +121,7 @@ def _run(
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:
-    """At the first speed."""
+    """At the first speed. stable: the state that the pair would have come from outside in first."""
     if stable:
         return Running(stable[0].state, stable[0].place, False)
     return Running(settled(model, period, static_state(model)), None, False)
@@ -133,5 +142,5 @@ def _landed(model: TorsionalModel, motion: Settled, states: Sequence[OnBranch], 
     scale = Scales.of(model).array
     for each in states:
         if motion.repeats == 1 and each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
-            return Running(each.state, each.place, True)
+            return Running(each.state, each.place, left)
     return Running(motion, None, left)

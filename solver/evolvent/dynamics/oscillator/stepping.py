@@ -141,7 +141,9 @@ def record(
 
 
 @njit(cache=True, error_model="numpy")
-def advance(o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float, y: Floats, path: Floats) -> float:
+def advance(
+    o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float, y: Floats, path: Floats
+) -> tuple[float, float]:
     """Integrates the state y (8,) from the first to the last of the phases stops (k + 1,), in place.
 
     cells: (k, 2) phase intervals of both sides.
@@ -149,11 +151,11 @@ def advance(o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float,
     path: (k + 1, 5) takes s, v, the side that touches, the mesh force and e of the loaded flanks at all stops; of
     length 0 where they are not wanted.
 
-    Returns the phase [mesh periods] spent out of contact.
+    Returns the phases [mesh periods] spent out of contact and on the back flanks.
     """
     stages, out = np.empty((STAGES, SIZE)), np.empty(SIZE)
     begin, left = np.empty((2, 2)), np.empty((2, 2))
-    region, apart = region_at(o, cells[0, 0], cells[0, 1], stops[0], T, y), 0.0
+    region, apart, behind = region_at(o, cells[0, 0], cells[0, 1], stops[0], T, y), 0.0, 0.0
     for k in range(len(cells)):
         front, back = cells[k, 0], cells[k, 1]
         if len(path):
@@ -178,6 +180,8 @@ def advance(o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float,
                 ends = False
             if region == FREE:
                 apart += h
+            elif region < FREE:
+                behind += h
             τ = end if ends else τ + h
             for n in range(SIZE):
                 y[n] = out[n]
@@ -188,4 +192,4 @@ def advance(o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float,
                 region = following
     if len(path):
         record(o, region, cells[-1, 0], cells[-1, 1], stops[-1], T, y, path[-1])
-    return apart
+    return apart, behind

@@ -70,11 +70,13 @@ class History:
     side: Ints
     """1 where the loaded flanks touch, −1 where the back flanks do, 0 where neither."""
     force: Floats
-    """Of the mesh, with its damping [N]; below 0 where the back flanks press."""
+    """Of the mesh, with its damping [N]; below 0 where the back flanks press, or the damper pulls at parting flanks."""
     error: Floats
     """e of the loaded flanks [mm]."""
     apart: float
     """Share of the period out of contact."""
+    behind: float
+    """Share of it on the back flanks."""
 
     @property
     def separated(self) -> Bools:
@@ -95,9 +97,9 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
     force is not smooth."""
     y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
     path = np.empty((len(stops), 5))
-    apart = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
+    shares = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
     s, v, side, force, error = path.T
-    return History(stops, s, v, side.astype(np.int64), force, error, apart)
+    return History(stops, s, v, side.astype(np.int64), force, error, *shares)
 
 
 def _with_derivatives(state: Floats) -> Floats:

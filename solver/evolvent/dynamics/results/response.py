@@ -53,9 +53,12 @@ class ResponseRow:
     smallest_force_N: float
     """Smallest one: below 0 where back flanks press, or the damper pulls."""
     dynamic_factor: float
-    """Largest mesh force over the static one."""
+    """Largest mesh force of this motion over the static one; with the damping that the scene gives, and of all teeth in
+    contact: not K_v of ISO 6336-1."""
     separated_share: float
     """Share of the time in which no flanks touch."""
+    back_contact_share: float
+    """Share of the time in which the back flanks touch."""
 
 
 @dataclass(frozen=True)
@@ -94,11 +97,20 @@ class DriveSummary:
     """Along the line of action, from flank to flank."""
     mesh: str
     """Model of the mesh force, as dynamics.mesh."""
+    damping_ratio: float
+    """As in the scene, like the next two."""
+    damped_apart: bool
+    """Whether the mesh's damping acts in free flight."""
+    ground_damping_ratio: float
+    """Of the shafts against the ground."""
+    mesh_frequency_Hz: float
+    """At the natural speed."""
     folds_rpm: tuple[float, ...]
-    """Speeds at which the branch of steady states turns back."""
-    heaviest_torque_share: float
+    """Speeds at which the branch of steady states turns back, in the order along it: a pair that runs up leaves it at
+    the first of each two, one that runs down at the second, where both are stable up to there (branch.csv)."""
+    heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
-    on straight."""
+    on straight. Null with another model of the mesh."""
 
 
 def speed_of(drive: Drive, period: float) -> float:
@@ -129,7 +141,7 @@ def _row(drive: Drive, way: str, period: float, run: Running, each: Response) ->
     return ResponseRow(
         speed_of(drive, period), way, run.repeats, run.jumped, UM * each.equivalent_amplitude,
         UM * each.elastic_equivalent_amplitude, first, second, third, fourth, fifth, float(each.force[0]),
-        each.largest_force, each.smallest_force, each.largest_force / drive.model.load, each.apart,
+        each.largest_force, each.smallest_force, each.largest_force / drive.model.load, each.apart, each.behind,
     )  # fmt: skip
 
 
@@ -146,7 +158,9 @@ def summary(drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: f
     folds = tuple(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     return DriveSummary(
         1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness, drive.natural_speed,
-        drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, folds, largest / heaviest,
+        drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
+        settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
+        largest / heaviest if settings.mesh == "force_surface" else None,
     )  # fmt: skip
 
 

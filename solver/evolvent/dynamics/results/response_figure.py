@@ -36,7 +36,7 @@ def response_figure(
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
         f"Natural speed {drive.natural_speed:.0f} r/min at the mean tangent stiffness of "
-        f"{1e-3 * drive.mean_stiffness:.1f} N/µm{_jumps(speeds, swept)}.",
+        f"{1e-3 * drive.mean_stiffness:.1f} N/µm{_folds(drive, swept)}.",
         (11.0, 8.6),
     )
     amplitude, factor, apart = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 2.0, 1.0))
@@ -50,14 +50,14 @@ def response_figure(
         for axes, values in zip((amplitude, factor, apart), figures):
             axes.plot(speeds, values, style, color=colour, label=f"running {way}")
             _mark_unrepeated(axes, speeds, values, runs)
-    _draw_unstable(amplitude, branch)
+    _draw_branch(amplitude, branch)
     for axes in (amplitude, factor, apart):
         for part in SUPERHARMONICS:
             axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
-    factor.set_ylabel("largest mesh force\nover the static one")
+    factor.set_ylabel("largest mesh force over\nthe static one (not K_v)")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
     amplitude.legend(loc="upper left")
@@ -69,14 +69,10 @@ def response_figure(
     return figure
 
 
-def _jumps(speeds: Floats, swept: SpeedSweep) -> str:
-    """Where the pair jumps."""
-    parts = []
-    for way, runs in (("up", swept.up), ("down", swept.down)):
-        jumped = [f"{speeds[i]:.0f}" for i, run in enumerate(runs) if run.jumped]
-        if jumped:
-            parts.append(f"running {way} it jumps at {', '.join(jumped)}")
-    return f"; {'; '.join(parts)} r/min" if parts else "; it does not jump"
+def _folds(drive: Drive, swept: SpeedSweep) -> str:
+    """Where the branch turns back."""
+    speeds = sorted({f"{speed_of(drive, swept.branch.points[i].period):.0f}" for i in swept.branch.folds}, key=float)
+    return f"; steady states turn back at {', '.join(speeds)} r/min" if speeds else "; no steady state turns back"
 
 
 def _mark_unrepeated(axes: Axes, speeds: Floats, values: Sequence[float], runs: Sequence[Running]) -> None:
@@ -85,10 +81,11 @@ def _mark_unrepeated(axes: Axes, speeds: Floats, values: Sequence[float], runs: 
     axes.plot(speeds[other], np.asarray(values)[other], "o", markersize=4.0, markerfacecolor="white", color=INK)
 
 
-def _draw_unstable(axes: Axes, branch: Sequence[BranchRow]) -> None:
-    """The parts of the branch that are not stable."""
+def _draw_branch(axes: Axes, branch: Sequence[BranchRow]) -> None:
+    """All steady states, those that are not stable dotted."""
     speed = np.array([row.speed_rpm for row in branch])
     size = np.array([row.equivalent_amplitude_um for row in branch])
     stable = np.array([row.stable for row in branch])
+    axes.plot(speed, np.where(stable, size, np.nan), color=FAINT, lw=3.0, alpha=0.5, zorder=1, label="all stable ones")
     if not stable.all():
-        axes.plot(speed, np.where(stable, np.nan, size), ":", color=INK, lw=1.2, label="unstable steady states")
+        axes.plot(speed, np.where(stable, np.nan, size), ":", color=INK, lw=1.2, label="unstable ones")

@@ -16,6 +16,7 @@ from evolvent.dynamics.results.response import (
     BRANCH,
     DYNAMICS,
     RESPONSE,
+    DriveSummary,
     branch_rows,
     largest_force,
     responses,
@@ -46,8 +47,8 @@ KG_M2 = 1e3
 def run_dynamics(
     scenes: Sequence[Scene], section: DynamicsSection, out: Path, overwrite: bool = False, quiet: bool = False
 ) -> list[str]:
-    """Computes excitation and vibration and writes their tables and pictures to `out`. Returns a sentence for each
-    picture that could not be drawn. Collective.
+    """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
+    reader has to know, pictures that could not be drawn among them. Collective.
 
     scenes: the scene under each torque of the force surface, see `load_scenes`; that of the section's 100 % among them.
     section: [dynamics].
@@ -82,7 +83,9 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
 def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
     """Over the section's speeds."""
     low, high = section.speed_rpm or (FROM * pair.natural_speed, TO * pair.natural_speed)
-    return sweep_speeds(pair.model, speeds_to_periods(np.linspace(low, high, section.speeds), pair.teeth))
+    slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
+    periods = speeds_to_periods(np.linspace(low, high, section.speeds), pair.teeth)
+    return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)))
 
 
 def _written(
@@ -107,4 +110,22 @@ def _written(
 
             return response_picture(vibrating, swept, found, list(branch_rows(vibrating, swept)))
 
-        return [*failures, *draw([Picture(PICTURE, drawn)], folder).failures]
+        failures += draw([Picture(PICTURE, drawn)], folder).failures
+    return [*failures, *_warnings(vibrating, settings, known)]
+
+
+def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) -> list[str]:
+    """What a reader of the results has to know."""
+    found, deflection = [], vibrating.model.load / vibrating.mean_stiffness
+    if settings.backlash < deflection:
+        found.append(
+            f"dynamics.backlash_um: found {known.backlash_um:.3g} µm, less than the static deflection of "
+            f"{1e3 * deflection:.3g} µm: the back flanks catch the teeth at once, so that there is hardly free flight "
+            "and no jump; give the backlash of the pair"
+        )
+    if (share := known.heaviest_torque_share) is not None and share > 1.0:
+        found.append(
+            f"dynamics.torque_percents: the largest mesh force is {share:.3g} times that of the heaviest torque; "
+            "beyond that the force goes on straight. Add heavier ones until this is below 1"
+        )
+    return found

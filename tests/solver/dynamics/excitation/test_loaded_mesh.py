@@ -58,6 +58,14 @@ def test_force_surface_has_the_solved_forces_and_stiffnesses() -> None:
             assert slope == pytest.approx(mesh().stiffness[i, j], rel=0.02)
 
 
+def test_force_goes_on_with_the_stiffness_under_the_heaviest_torque() -> None:
+    """∂F/∂x at the last depth is the tangent stiffness there at each position: exact."""
+    side = MeshExcitation(np.zeros(len(ANGLES)), mesh()).force_surface()
+    d = side.depths[-1] - side.depths[-2]
+    slopes = (side.force[:, -1, 1:, 0] * (1.0, 2.0, 3.0)) @ d ** np.arange(3)
+    assert slopes == pytest.approx(mesh().stiffness[:, -1], rel=1e-9)
+
+
 def test_deflections_that_do_not_grow_are_refused() -> None:
     """An unloaded error above the loaded one: no force surface, the position and the load are named."""
     with pytest.raises(NoForceSurface, match="wanted more than under the load before"):

@@ -51,6 +51,26 @@ def test_resonance_leans_to_lower_speeds() -> None:
     assert 0.0 <= down - jumps[1][0] < speeds[1] - speeds[0]
 
 
+@pytest.mark.parametrize("window", [(0.6, 0.9), (0.9, 1.3)], ids=["ends in the fold", "begins in it"])
+def test_speeds_within_a_fold_have_all_motions(window: tuple[float, float]) -> None:
+    """Speeds of which one end lies between both folds: with the branch followed beyond them each has the motions of the
+    whole sweep, and a pair that runs down from within is on the upper one. 1e-8 of the deflection."""
+    whole = swept()
+    speeds = 60.0 / (TEETH * whole.periods)
+    inside = (speeds >= window[0] * RESONANCE) & (speeds <= window[1] * RESONANCE)
+    ends = float(whole.periods[0]), float(whole.periods[-1])
+    found = sweep_speeds(softening(0.15), whole.periods[inside], ends)
+    down, up = sorted(fold_speeds(whole.branch))
+    assert down < window[0] * RESONANCE < up or down < window[1] * RESONANCE < up
+    scale = np.array([1.0, NATURAL]) * STATIC
+    for one, other in zip(found.coexisting, np.array(whole.coexisting, dtype=object)[inside]):
+        assert [each.state.stable for each in one] == [each.state.stable for each in other]
+    for way in ("up", "down"):
+        whole_runs = [run for run, kept in zip(getattr(whole, way), inside) if kept]
+        for one, other in zip(getattr(found, way), whole_runs):
+            assert one.motion.state / scale == pytest.approx(other.motion.state / scale, abs=1e-8)
+
+
 def test_steady_states_repeat_by_scipy() -> None:
     """One more mesh period by SciPy's integrator leads back to each state, stable or not, to 1e-8 of the deflection."""
     model, found, scale = softening(0.15), swept(), np.array([1.0, NATURAL]) * STATIC

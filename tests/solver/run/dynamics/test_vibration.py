@@ -42,7 +42,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
     loads = load_scenes(one, one.dynamics.torque_percents)
-    assert run_dynamics(list(loads.values()), one.dynamics, folder, quiet=True) == []
+    (said,) = run_dynamics(list(loads.values()), one.dynamics, folder, quiet=True)
+    assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
 
 
@@ -87,6 +88,17 @@ def test_settings_follow_from_the_gears() -> None:
         z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=70.0
     )
     assert geometric_backlash(GearPair(gear, gear, 150.1)) == pytest.approx(0.2 * np.sin(np.radians(20.0)), rel=0.01)
+
+
+def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
+    """That of the reference centre distance, none: the key and the static deflection are named."""
+    one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
+    assert one.dynamics is not None
+    loads = load_scenes(one, one.dynamics.torque_percents)
+    (said,) = run_dynamics(list(loads.values()), one.dynamics, tmp_path, quiet=True)
+    known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
+    deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
+    assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
 
 
 @pytest.mark.parametrize(

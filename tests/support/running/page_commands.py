@@ -1,8 +1,9 @@
 """What stands in the pages' shell lines, done in seconds: page_commands.py NAME [ARGUMENT ...] is run as NAME.
 
-`evolvent run` and `evolvent loads` run as they are typed, on narrow gears with a coarse mesh. `docker run` runs the
-program of this checkout with the folders that it mounts; what needs an engine is run by .ci/run. `make` says what it
-would do; of a module of the evidence it is looked up that it is there, for it writes into the checkout.
+The commands of `evolvent` that compute run as they are typed, on narrow gears with a coarse mesh or at few positions.
+`docker run` runs the program of this checkout with the folders that it mounts; what needs an engine is run by .ci/run.
+`make` says what it would do; of a module of the evidence it is looked up that it is there, for it writes into the
+checkout.
 """
 
 from __future__ import annotations
@@ -18,12 +19,18 @@ CHEAP = (
     "output.pictures=false", "output.animation=false",
 )  # fmt: skip
 """Settings that stand behind those of a line: what it computes takes seconds then."""
+FEW = ("sweep.positions=6",)
+FEWER = {
+    "run": CHEAP, "loads": CHEAP, "excitation": FEW,
+    "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100]", "dynamics.mesh=\"tangent\""),
+}
+"""Command -> its settings."""
 NAMES = ("docker", "evolvent", "git", "make", "paraview", "python")
 
 
 def evolvent(words: list[str]) -> None:
     """The command line of this checkout."""
-    settings = [word for setting in CHEAP for word in ("--set", setting)] if words[:1] in (["run"], ["loads"]) else []
+    settings = [word for setting in FEWER.get("".join(words[:1]), ()) for word in ("--set", setting)]
     os.execv(sys.executable, [sys.executable, "-m", "evolvent", *words, *settings])
 
 

@@ -98,7 +98,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
 UNSUPPORTED: dict[str, str] = {
     "tip chamfer": "tip chamfers and rounded tip edges are not supported",
     "speed": "there is no time and no speed",
-    "speed of the load": "there is no time and no speed",
+    "speed of the load": "did you mean dynamics.speed_rpm",
     "shaft": "shafts are not modelled",
     "bearings": "bearings and shafts are not modelled",
     "oil": "lubrication is not supported",

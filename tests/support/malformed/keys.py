@@ -106,7 +106,7 @@ UNSUPPORTED: dict[str, str] = {
     "yield stress": "plasticity is not supported",
     "bevel gears": "spur and helical external pairs only",
     "internal gear": "internal gears are not supported",
-    "density": "dynamics is not supported",
+    "density": "a run is quasi-static",
     "roughness": "roughness is not supported",
     "pitch error": "all teeth are alike",
 }

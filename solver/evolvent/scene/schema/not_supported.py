@@ -7,9 +7,9 @@ import re
 NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"chamfer|edge_?break|tip_?round", "tip chamfers and rounded tip edges are not supported, tip_relief_um is"),
     (r"root_?relief", "root relief is not supported as a key; a chart as pinion.flank_csv can have it"),
-    (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed but in [dynamics]: each position is quasi-static"),
+    (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics]: quasi-static"),
     (r"power|kw", "there is no power without a speed: give the torque, load.torque_Nm"),
-    (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "dynamics is not supported: quasi-static"),
+    (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
     (r"bearing|housing", "bearings and shafts are not modelled: bores are held rigidly, "
      "pair.misalignment_um takes what tilts them"),
     (r"shaft|key_?way|hub", "shafts are not modelled: the bore, bore_diameter_mm, is held rigidly"),

@@ -29,12 +29,14 @@ from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.oscillator.mesh_law import MeshSide
-from evolvent.dynamics.oscillator.response import Response, response
-from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
-from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.response import Response
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.pair_model import Drive
+from evolvent.dynamics.results.response import largest_force, responses
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
@@ -44,6 +46,7 @@ PERCENT = (5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0)
 """Of 170 N·m: the torques of the force surface."""
 INERTIA = 7.65  # t·mm², which are 1e-3 kg·m²
 DAMPING_RATIO, BACKLASH = 0.03, 0.05  # of critical at the mean stiffness; mm along the line of action
+NOMINAL = PERCENT.index(100.0)
 PAPER = 3500.0  # r/min, of the measured resonance
 LOWEST, HIGHEST = 500.0, 1.6  # r/min; of the natural speed
 
@@ -72,6 +75,20 @@ class Figures:
     """Largest mesh force over the static one."""
 
 
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """The pair over the speed, with one model of its mesh."""
+
+    pair: Drive
+    """Its oscillator."""
+    speeds: Floats
+    """(n,) [r/min]."""
+    sweep: SpeedSweep
+    """Its motions."""
+    found: dict[str, list[Response]]
+    """Figures of those running "up" and "down", at each speed."""
+
+
 def main(
     out: Annotated[Path, typer.Option(help="folder of the table and the picture")] = Path("out/he2022_dynamics"),
     quick: Annotated[bool, typer.Option(help="fewer positions and speeds")] = False,
@@ -83,86 +100,62 @@ def main(
     excitation = excited(gears, 20 if quick else 40)
     if MPI.COMM_WORLD.rank > 0:
         return
-    nominal = PERCENT.index(100.0)
-    speeds = natural_speed(gears, excitation, nominal) * HIGHEST * np.linspace(0.0, 1.0, 101 if quick else 401)
-    speeds = speeds[speeds >= LOWEST]
-    laws = {"F(x, φ)": excitation.force_surface(), "k(φ) x": excitation.stiffness_side(nominal)}
-    swept = {name: over_speed(gears, excitation, side, speeds) for name, side in laws.items()}
-    table = [figures(name, gears, excitation, speeds, *both) for name, both in swept.items()]
+    laws = {"F(x, φ)": excitation.force_surface(), "k(φ) x": excitation.stiffness_side(NOMINAL)}
+    swept = {name: over_speed(gears, excitation, side, 101 if quick else 401) for name, side in laws.items()}
+    table = [figures(name, each) for name, each in swept.items()]
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "table.csv", "w", encoding="utf-8", newline="") as stream:
         writer = csv.DictWriter(stream, [field.name for field in fields(Figures)])
         writer.writeheader()
         writer.writerows(asdict(row) for row in table)
     print((out / "table.csv").read_text(encoding="utf-8"))
-    drawn(speeds, swept).savefig(out / "he2022_dynamics.png", dpi=150)
+    drawn(swept).savefig(out / "he2022_dynamics.png", dpi=150)
 
 
 def excited(gears: GearModel, positions: int) -> MeshExcitation:
     """Unloaded error and loaded mesh at equidistant positions of a pitch."""
-    angles = 2.0 * np.pi / gears.pair.pinion.z * np.arange(positions) / positions
+    angles = np.array(uniform_pitch(gears.pair.pinion.z, positions).angles)
     torques = [gears.load.torque * gears.width_factor * percent / 100.0 for percent in PERCENT]
     loaded = loaded_mesh([gears] * len(torques), torques, angles)
     return MeshExcitation(unloaded_error(RigidFlanks(gears.pair), angles, gears.load.on), loaded)
 
 
-def mass(gears: GearModel) -> float:
-    """m_e [t]."""
-    return equivalent_mass(gears.pair, (INERTIA, INERTIA))
+def over_speed(gears: GearModel, excitation: MeshExcitation, side: MeshSide, count: int) -> Swept:
+    """The pair with one law of its mesh, at as many speeds from 0 as are above the lowest."""
+    mean = float(excitation.loaded.stiffness[:, NOMINAL].mean())
+    mass = equivalent_mass(gears.pair, (INERTIA, INERTIA))
+    damping, load = 2.0 * DAMPING_RATIO * np.sqrt(mean * mass), float(excitation.loaded.forces[NOMINAL])
+    pair = Drive(TorsionalModel(mass, load, paper_law(side, BACKLASH), damping), mean, gears.pair.pinion.z)
+    speeds = pair.natural_speed * HIGHEST * np.linspace(0.0, 1.0, count)
+    speeds = speeds[speeds >= LOWEST]
+    sweep = sweep_speeds(pair.model, speeds_to_periods(speeds, pair.teeth))
+    return Swept(pair, speeds, sweep, responses(pair, sweep))
 
 
-def natural_speed(gears: GearModel, excitation: MeshExcitation, nominal: int) -> float:
-    """[r/min] of the pinion."""
-    mean = float(excitation.loaded.stiffness[:, nominal].mean())
-    return float(np.sqrt(mean / mass(gears)) / (2.0 * np.pi) * 60.0 / gears.pair.pinion.z)
-
-
-def over_speed(
-    gears: GearModel, excitation: MeshExcitation, side: MeshSide, speeds: Floats
-) -> tuple[TorsionalModel, SpeedSweep]:
-    """The pair with one law of its mesh, at speeds (n,) [r/min]."""
-    nominal = PERCENT.index(100.0)
-    mean, load = float(excitation.loaded.stiffness[:, nominal].mean()), float(excitation.loaded.forces[nominal])
-    damping = 2.0 * DAMPING_RATIO * np.sqrt(mean * mass(gears))
-    model = TorsionalModel(mass(gears), load, paper_law(side, BACKLASH), damping)
-    return model, sweep_speeds(model, speeds_to_periods(speeds, gears.pair.pinion.z))
-
-
-def responses(model: TorsionalModel, periods: Floats, runs: tuple[Running, ...]) -> list[Response]:
-    """Of each motion; one that does not repeat is taken over 16 mesh periods."""
-    return [
-        response(model, float(period), run.motion.state, run.repeats or LONGEST_REPEAT)
-        for period, run in zip(periods, runs)
-    ]
-
-
-def figures(
-    name: str, gears: GearModel, excitation: MeshExcitation, speeds: Floats, model: TorsionalModel, swept: SpeedSweep
-) -> Figures:
+def figures(name: str, swept: Swept) -> Figures:
     """The line of a model of the mesh."""
-    nominal = PERCENT.index(100.0)
-    mean, natural = excitation.loaded.stiffness[:, nominal].mean(), natural_speed(gears, excitation, nominal)
-    both = [responses(model, swept.periods, runs) for runs in (swept.up, swept.down)]
-    size = np.array([[each.equivalent_amplitude for each in runs] for runs in both])
-    force = max(each.largest_force for runs in both for each in runs)
-    jumps = [[speeds[i] for i, run in enumerate(runs) if run.jumped] for runs in (swept.up, swept.down)]
-    way, at = np.unravel_index(int(np.argmax(size)), size.shape)
+    mean, natural = 1e-3 * swept.pair.mean_stiffness, swept.pair.natural_speed
+    size = np.array([[each.equivalent_amplitude for each in runs] for runs in swept.found.values()])
+    up, down = (
+        float(max((speed for speed, run in zip(swept.speeds, runs) if run.jumped), default=np.nan))
+        for runs in (swept.sweep.up, swept.sweep.down)
+    )
+    at = int(np.argmax(size.max(axis=0)))
     return Figures(
-        name, 1e-3 * float(mean), natural, 1e-3 * float(mean) * (PAPER / natural) ** 2,
-        max(jumps[0], default=np.nan), max(jumps[1], default=np.nan), 1e3 * float(size[way, at]), float(speeds[at]),
-        force / model.load,
+        name, mean, natural, mean * (PAPER / natural) ** 2, up, down, 1e3 * float(size.max()), float(swept.speeds[at]),
+        largest_force(swept.found) / swept.pair.model.load,
     )  # fmt: skip
 
 
-def drawn(speeds: Floats, swept: dict[str, tuple[TorsionalModel, SpeedSweep]]) -> Figure:
+def drawn(swept: dict[str, Swept]) -> Figure:
     """Equivalent amplitude over the speed, up and down, with each model of the mesh."""
     with matplotlib.rc_context({"font.size": 10.0, "axes.grid": True, "grid.alpha": 0.3}):
         figure = Figure((9.0, 4.8), layout="constrained")
         axes = figure.add_subplot()
-        for (name, (model, found)), colour in zip(swept.items(), ("#1f4e9c", "#c0392b")):
-            for runs, style, way in ((found.up, "-", "running up"), (found.down, "--", "running down")):
-                sizes = [1e3 * each.equivalent_amplitude for each in responses(model, found.periods, runs)]
-                axes.plot(speeds, sizes, style, color=colour, lw=1.4, label=f"{name}, {way}")
+        for (name, each), colour in zip(swept.items(), ("#1f4e9c", "#c0392b")):
+            for way, style in (("up", "-"), ("down", "--")):
+                sizes = [1e3 * response.equivalent_amplitude for response in each.found[way]]
+                axes.plot(each.speeds, sizes, style, color=colour, lw=1.4, label=f"{name}, running {way}")
         axes.axvline(PAPER, color="0.5", lw=1.0, ls=":")
         axes.text(PAPER, 1.0, " measured resonance", va="top", fontsize=8.0, transform=axes.get_xaxis_transform())
         axes.set_xlabel("speed [r/min]")

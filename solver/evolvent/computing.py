@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,6 +23,7 @@ from evolvent.options import (
     given_path,
     given_percents,
 )  # fmt: skip
+from evolvent.scene.scene import Scene
 from evolvent.scene_argument import loaded_scene, require, require_room
 
 # commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
@@ -34,6 +36,10 @@ BOTH = (
 """Message on two options that exclude each other."""
 PETSC_OPTIONS = "EVOLVENT_PETSC_OPTIONS"
 """Environment variable that evolvent.fem.backend.petsc reads."""
+Percents = Annotated[
+    Any, typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents)
+]
+"""Torques."""
 RUN_EPILOG = f"""\b
 Examples:
   evolvent run demos/yang2022.toml --out out/yang2022 --level quick
@@ -98,10 +104,7 @@ def run(
 def loads(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="For a folder of each load.", parser=given_path)],
-    percent: Annotated[
-        Any,
-        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
-    ] = "5,10,25,50,75,100",
+    percent: Percents = "5,10,25,50,75,100",
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
@@ -117,13 +120,10 @@ def loads(
     with reported(parallel=True, advice=RESUME.format("loads")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
-        from evolvent.run.load_list import load_scenes, run_loads
+        from evolvent.run.load_list import run_loads
 
-        scenes = load_scenes(loaded, percent)
-        for each in scenes.values():
-            require_room(each, "run", force, MPI.COMM_WORLD)
-        for failure in run_loads(scenes, out, resume, quiet, overwrite, scene):
-            typer.echo(f"evolvent: warning: {failure}", err=True)
+        scenes = _scenes(loaded, percent, force)
+        _warn(run_loads(scenes, out, resume, quiet, overwrite, scene))
         if not quiet:
             typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")
 
@@ -133,10 +133,7 @@ def excitation(
     out: Annotated[
         Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
     ],
-    percent: Annotated[
-        Any,
-        typer.Option("--percent", metavar="LIST", help="In percent of the scene's torque.", parser=given_percents),
-    ] = "5,15,30,50,75,100,150,200",
+    percent: Percents = "5,15,30,50,75,100,150,200",
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
@@ -152,13 +149,9 @@ def excitation(
     with reported(parallel=True):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.dynamics.excitation import run_excitation
-        from evolvent.run.load_list import load_scenes
 
-        scenes = load_scenes(loaded, percent)
-        for each in scenes.values():
-            require_room(each, "run", force, MPI.COMM_WORLD)
-        for failure in run_excitation(list(scenes.values()), out, overwrite, quiet):
-            typer.echo(f"evolvent: warning: {failure}", err=True)
+        scenes = list(_scenes(loaded, percent, force).values())
+        _warn(run_excitation(scenes, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
 
@@ -183,14 +176,26 @@ def dynamics(
     with reported(parallel=True):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.dynamics.vibration import run_dynamics
-        from evolvent.run.load_list import load_scenes
         from evolvent.scene.schema.dynamics import DynamicsSection
 
         section = loaded.dynamics or DynamicsSection()
-        scenes = load_scenes(loaded, section.torque_percents)
-        for each in scenes.values():
-            require_room(each, "run", force, MPI.COMM_WORLD)
-        for failure in run_dynamics(list(scenes.values()), section, out, overwrite, quiet):
-            typer.echo(f"evolvent: warning: {failure}", err=True)
+        scenes = list(_scenes(loaded, section.torque_percents, force).values())
+        _warn(run_dynamics(scenes, section, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {out / 'pictures/vibration.png'}")
+
+
+def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:
+    """The scene under each part of its torque, see `load_scenes`, all of which have room. Raises SceneError."""
+    from evolvent.run.load_list import load_scenes
+
+    scenes = load_scenes(scene, percents)
+    for each in scenes.values():
+        require_room(each, "run", force, MPI.COMM_WORLD)
+    return scenes
+
+
+def _warn(sentences: Sequence[str]) -> None:
+    """Prints what a command has returned to be read."""
+    for sentence in sentences:
+        typer.echo(f"evolvent: warning: {sentence}", err=True)

@@ -49,6 +49,12 @@ class Stand:
         extra[gear] += δ
         return replace(self, extra=(extra[0], extra[1]))
 
+    @property
+    def transmission_error(self) -> float:
+        """r_b1 φ_1 − r_b2 φ_2 [mm]."""
+        pinion, wheel = self.pair.gears
+        return float(pinion.base_radius * self.extra[0] + wheel.base_radius * self.extra[1])
+
     def centre(self, gear: Member, d: int) -> Floats:
         """Centre (d,) of a gear [mm]."""
         return np.array([self.pair.centre_distance if gear == Member.WHEEL else 0.0, 0.0, 0.0])[:d]

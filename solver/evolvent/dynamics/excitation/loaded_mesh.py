@@ -14,9 +14,8 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_model import GearLoad, GearModel
 from evolvent.gears.sweep.contact_patch import ContactPatch
-from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, shared_position
+from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +67,9 @@ def _solved(models: Sequence[GearModel], angles: Floats, solved: Callable[[], No
             extra = near.contact.stand.extra if near else (0.0, 0.0)
             patch: ContactPatch | None = near.patch if near else None
             position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
-            found[i, j] = _transmission_error(model, position), position.stiffness * model.width_factor
+            stand = position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
+            found[i, j] = stand.transmission_error, position.stiffness * model.width_factor
             ahead[j] = lighter = position
             solved()
     return found
 
-
-def _transmission_error(model: GearModel, position: SharedPosition) -> float:
-    """r_b1 φ_1 − r_b2 φ_2 [mm]."""
-    turned = np.add(position.contact.stand.extra, free_rotation(model, position.smooth))
-    return float(sum(model.pair.gears[gear].base_radius * turned[gear] for gear in Member))

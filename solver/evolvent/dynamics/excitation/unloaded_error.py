@@ -9,7 +9,6 @@ each around the best point of the one before. Tip edges count, so that contact b
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,7 +28,6 @@ the relief the error is its slope times the last spacing, 1e-3 times 1e-6 mm."""
 FEET = 12
 """Steps in which the foot on the modified flank is found: each error is that before times the flank's slope, below
 0.02."""
-Depth = Callable[[Floats, Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,14 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState, residual, steady_state
+from evolvent.dynamics.oscillator.steady_state import (
+    NoSteadyState,
+    Scales,
+    SteadyState,
+    residual,
+    steady_state,
+    unscaled,
+)
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
@@ -46,11 +53,6 @@ class Branch:
     def periods(self) -> Floats:
         """Mesh periods (k,) [s]."""
         return np.array([point.period for point in self.points])
-
-    @cached_property
-    def states(self) -> Floats:
-        """(k, 2) s [mm] and ṡ [mm/s] at phase 0."""
-        return np.array([point.state for point in self.points])
 
     @cached_property
     def stable(self) -> Bools:
@@ -85,11 +87,9 @@ class _Track:
         """Residual (2,), derivatives (2, 3) by z, and the state at z (3,)."""
         period, state = float(np.exp(-SPEED_SCALE * z[2])), z[:2] * self.scales.array
         found, change = residual(self.model, self.scales, period, state)
-        derivatives = change.copy()
-        derivatives[:, :2] += np.eye(2)
-        derivatives *= self.scales.array[:, None] / np.append(self.scales.array, 1.0)
+        known = SteadyState(period, state, unscaled(change, self.scales))
         change[:, 2] *= -SPEED_SCALE
-        return found, change, SteadyState(period, state, derivatives)
+        return found, change, known
 
     def scaled(self, state: SteadyState) -> Floats:
         """z (3,) of a steady state."""
@@ -139,7 +139,7 @@ def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[t
                 yield fold.state, True
         if not ends[0] <= following.z[2] <= ends[1]:
             end = last_period if (following.z[2] > ends[1]) == rising else start.period
-            yield steady_state(track.model, end, _between(here.state, following.state, end)), False
+            yield steady_state(track.model, end, between(here.state, following.state, end)), False
             return
         yield following.state, False
         here = following
@@ -179,7 +179,7 @@ def _tangent(change: Floats, along: Floats) -> Floats:
     return np.asarray(vector if vector @ along >= 0.0 else -vector)
 
 
-def _between(one: SteadyState, other: SteadyState, period: float) -> Floats:
+def between(one: SteadyState, other: SteadyState, period: float) -> Floats:
     """State (2,) on a straight line between two, at a period."""
     share = (period - one.period) / (other.period - one.period)
     return np.asarray(one.state + share * (other.state - one.state))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evolvent.dynamics.oscillator.continuation import Branch, follow
+from evolvent.dynamics.oscillator.continuation import Branch, between, follow
 from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
 from evolvent.dynamics.oscillator.steady_state import Scales, SteadyState, steady_state
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
@@ -96,7 +96,7 @@ def _refined(model: TorsionalModel, branch: Branch, period: float) -> Iterator[O
     for i in branch.crossings(period):
         share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
         if 0.0 < i + share < last:
-            start = branch.states[i] + share * (branch.states[i + 1] - branch.states[i])
+            start = between(branch.points[i], branch.points[i + 1], period)
             yield OnBranch(float(i) + share, steady_state(model, period, start))
     if period == periods[last]:
         yield OnBranch(float(last), branch.points[last])

@@ -86,7 +86,7 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
     for _ in range(ITERATIONS):
         size = float(np.abs(found).max())
         if size <= TOLERANCE * max(1.0, float(np.abs(state / scales.array).max())):
-            return SteadyState(period, state, _unscaled(change, scales))
+            return SteadyState(period, state, unscaled(change, scales))
         move = np.linalg.lstsq(change[:, :2], -found, rcond=None)[0] * scales.array
         for _ in range(12):
             trial = state + move
@@ -103,8 +103,8 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
     )
 
 
-def _unscaled(change: Derivatives, scales: Scales) -> Derivatives:
-    """Of P by y and ln T."""
+def unscaled(change: Derivatives, scales: Scales) -> Derivatives:
+    """∂P/∂(y, ln T) (2, 3) from the derivatives of the scaled residual."""
     size = scales.array
     scaled = change.copy()
     scaled[:, :2] += np.eye(2)

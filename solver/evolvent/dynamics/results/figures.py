@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.results.drawing.style import INK, foot, png, sheet, styled
+from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque_colours
 from evolvent_meshes.arrays import Floats
-
-TORQUE_MAP = matplotlib.colormaps["YlGnBu"]
-"""Colours of torques, the darker the heavier; its lightest third has too little contrast on white."""
 
 
 def excitation_picture(excitation: MeshExcitation, torques: Sequence[float]) -> bytes:
@@ -33,7 +29,7 @@ def excitation_figure(excitation: MeshExcitation, torques: Sequence[float]) -> F
         (11.0, 7.6),
     )
     grid = figure.subplots(2, 2)
-    colours = [TORQUE_MAP(0.35 + 0.65 * rank / max(1, len(torques) - 1)) for rank in range(len(torques))]
+    colours = torque_colours(len(torques))
     phase = np.linspace(0.0, 1.0, len(loaded.angles) + 1)
     _over_pitch(grid[0, 0], phase, 1e3 * loaded.errors, colours, "transmission error [µm]")
     grid[0, 0].plot(phase, _closed(1e3 * excitation.unloaded_error), "--", color=INK, label="unloaded")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -165,11 +165,11 @@ def summary(drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: f
 
 
 def write_response(
-    folder: RunFolder, drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], known: DriveSummary
+    folder: RunFolder, rows: Iterable[ResponseRow], branch: Iterable[BranchRow], known: DriveSummary
 ) -> None:
     """Writes response.csv, branch.csv and dynamics.json. Raises WriteError, FolderError."""
-    folder.write_text(RESPONSE, csv_text([asdict(row) for row in response_rows(drive, swept, found)]))
-    folder.write_text(BRANCH, csv_text([asdict(row) for row in branch_rows(drive, swept)]))
+    folder.write_text(RESPONSE, csv_text([asdict(row) for row in rows]))
+    folder.write_text(BRANCH, csv_text([asdict(row) for row in branch]))
     folder.write_text(DYNAMICS, json.dumps(asdict(known), indent=1, ensure_ascii=False) + "\n")
 
 

@@ -64,8 +64,7 @@ class PositionResult:
     @property
     def transmission_error(self) -> float:
         """r_b1 φ_1 − r_b2 φ_2 [mm]."""
-        pinion, wheel = self.stand.pair.gears
-        return float(pinion.base_radius * self.stand.extra[0] + wheel.base_radius * self.stand.extra[1])
+        return self.stand.transmission_error
 
     @property
     def friction_loss(self) -> float:

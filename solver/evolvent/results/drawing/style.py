@@ -40,6 +40,8 @@ PRESSURE_MAP = LinearSegmentedColormap.from_list(
 """Sequential colours from zero to the largest pressure; their lightness decreases throughout."""
 FRICTION_MAP = LinearSegmentedColormap.from_list("evolvent_friction", ["#d97706", "#c2386b", "#6d3fa0", "#16213d"])
 """Colours of friction coefficients; even the lightest has a contrast of three to one on white."""
+TORQUE_MAP = matplotlib.colormaps["YlGnBu"]
+"""Colours of torques; its lightest third has too little contrast on white."""
 STYLE = {  # of matplotlib
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
@@ -97,6 +99,11 @@ def friction_colours(frictions: Sequence[float]) -> list[tuple[float, ...]]:
     """Colours of friction coefficients in their order, darker for more friction."""
     ranks = np.argsort(np.argsort(frictions)) / max(1, len(frictions) - 1)
     return [tuple(FRICTION_MAP(rank)) for rank in ranks]
+
+
+def torque_colours(count: int) -> list[tuple[float, ...]]:
+    """Colours of so many torques, the lightest first: the darker the heavier."""
+    return [tuple(TORQUE_MAP(0.35 + 0.65 * rank / max(1, count - 1))) for rank in range(count)]
 
 
 def dot_size(count: int) -> float:

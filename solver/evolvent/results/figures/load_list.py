@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import foot, friction_colours, png, sheet, styled
+from evolvent.results.drawing.style import foot, friction_colours, png, sheet, styled, torque_colours
 from evolvent.results.tables.load_table import ERROR, LoadResult
 
 PANELS = (
@@ -18,8 +17,6 @@ PANELS = (
     ("mesh_stiffness_N_per_mm_um", "mean tangent mesh stiffness [N/(mm·µm)]"),
 )
 """Key of the figure and label of its axis."""
-TORQUE_MAP = matplotlib.colormaps["YlGnBu"]
-"""Colours of torques, the darker the heavier; its lightest third has too little contrast on white."""
 
 
 def loads_picture(results: Sequence[LoadResult]) -> bytes:
@@ -67,8 +64,8 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
 
 def _draw_curves(axes: Axes, results: Sequence[LoadResult]) -> None:
     """Transmission error over the pitch, minus its mean, under each torque."""
-    for rank, each in enumerate(results):
-        colour, varying = TORQUE_MAP(0.35 + 0.65 * rank / max(1, len(results) - 1)), np.array(each.transmission_error)
+    for each, colour in zip(results, torque_colours(len(results))):
+        varying = np.array(each.transmission_error)
         axes.plot(each.angle, varying - varying.mean(), color=colour, marker=".", label=f"{each.row.torque_Nm:.4g} N·m")
     axes.set_xlabel("pinion rotation [°]")
     axes.set_ylabel("transmission error minus its mean [µm]")

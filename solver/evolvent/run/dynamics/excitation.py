@@ -16,6 +16,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.load_list import LoadList
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
@@ -65,7 +66,7 @@ def computed_excitation(
     gears.prepare(first, comm, meshed=lambda: progress.stage(CONDENSING))
     models = [gears.prepare(each, comm).model for each in problems]
     progress.stage(POSITIONS, positions * len(problems))
-    angles = 2.0 * np.pi / first.pair.pinion.z * np.arange(positions) / positions
+    angles = np.array(uniform_pitch(first.pair.pinion.z, positions).angles)
     loaded = loaded_mesh(models, [each.torque for each in problems], angles, comm, progress.advance)
     return MeshExcitation(unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on), loaded)
 

@@ -19,6 +19,7 @@ from evolvent.dynamics.results.response import (
     DriveSummary,
     branch_rows,
     largest_force,
+    response_rows,
     responses,
     summary,
     write_response,
@@ -97,18 +98,18 @@ def _written(
     vibrating = drive(problems[0].pair, excitation, percents.index(100.0), settings)
     progress.stage(SPEEDS)
     swept = _swept(vibrating, section)
-    found = responses(vibrating, swept)
+    found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
     progress.stage(OUTPUT)
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]))
     with locked(out):
         folder = RunFolder(out)
         failures = write_excitation(folder, excitation, problems)
-        write_response(folder, vibrating, swept, found, known)
+        write_response(folder, response_rows(vibrating, swept, found), branch, known)
 
         def drawn() -> bytes:
             from evolvent.dynamics.results.response_figure import response_picture  # matplotlib takes a second
 
-            return response_picture(vibrating, swept, found, list(branch_rows(vibrating, swept)))
+            return response_picture(vibrating, swept, found, branch)
 
         failures += draw([Picture(PICTURE, drawn)], folder).failures
     return [*failures, *_warnings(vibrating, settings, known)]

@@ -21,7 +21,8 @@ import numpy as np
 from evidence.scenes import spur_pair
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.gears.condensed_gear import condensed_gear
-from evolvent.gears.gear_model import GearLoad, GearModel
+from evolvent.gears.gear_load import GearLoad
+from evolvent.gears.gear_model import GearModel
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.run.context import peak_memory_MB

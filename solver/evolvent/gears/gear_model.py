@@ -14,6 +14,7 @@ from mpi4py import MPI
 from evolvent.fem.parallel.cores import Cores
 from evolvent.fem.parallel.ranks import shared, together
 from evolvent.gears.condensed_gear import GearBody, condensed_gear
+from evolvent.gears.gear_load import GearLoad, gear_load
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import LevelledMesh, SectorMesh, is_two_level, run_mesh
 from evolvent.gears.problem.flank_deviations import FlankChart
@@ -26,16 +27,6 @@ Mesher = Callable[[GearProblem, Member], SectorMesh]
 """Makes the sector mesh of the pinion or the wheel; with levels, the gear is condensed in levels."""
 Preparer = Callable[..., "Preparation"]
 """A function with the parameters of `prepare_model`."""
-
-
-@dataclass(frozen=True)
-class GearLoad:
-    """A constant torque on one gear; the other one is driven."""
-
-    torque: float
-    """[N·mm; per mm of face width in 2D]."""
-    on: Member = Member.PINION
-    """The gear with the torque."""
 
 
 @dataclass(frozen=True)
@@ -188,11 +179,6 @@ def _condensed(
         for member, bodies in two_level_pair(problem, levelled, counts, comm, cores).items():
             built[member] = {max(bodies) - count: body for count, body in bodies.items()}
     return built
-
-
-def gear_load(problem: GearProblem) -> GearLoad:
-    """The torque, per mm of face width where the problem is plane."""
-    return GearLoad(problem.torque / (problem.pair.face_width if problem.is_plane else 1.0), problem.torque_on)
 
 
 def _charted(body: GearBody, chart: FlankChart | None) -> GearBody:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Preparer
+from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
@@ -25,6 +26,7 @@ from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
 from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import operating_point
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import one_mesh_reason, skipped, switched_off, wanted_output
 
@@ -59,6 +61,9 @@ def run_scene(
         dolfinx_compat.silence_logs()
         solved = on_first(comm, lambda: scene_to_solve(scene, Archive(out, scene), resume))
         completed = on_first(comm, lambda: resume_point(solved, Archive(out, solved), resume))
+        point = operating_point(solved)
+        vibrating = None if point is None else UnderMeshForce(point, prepare or prepare_model)
+        prepare = vibrating or prepare
         with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
             _log_beginning(run, solved)
             _compute(run, solved, completed)

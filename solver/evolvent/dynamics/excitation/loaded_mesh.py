@@ -12,7 +12,8 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
-from evolvent.gears.gear_model import GearLoad, GearModel
+from evolvent.gears.gear_load import GearLoad
+from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.contact_patch import ContactPatch
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent_meshes.arrays import Floats

@@ -119,7 +119,8 @@ def _equilibrium(
     """Equilibrium of these flanks, started from a contact patch, and the stiffness without friction. Raises
     NotConverged."""
     geometry = contact.geometry
-    system = contact.system(model.load.on, model.load.torque, normal_only=history is None)
+    torque = model.load.at(contact.stand.angle)
+    system = contact.system(model.load.on, torque, normal_only=history is None)
     normal = normal_part(system)
     smooth = frictionless(normal, patch.at(geometry))
     stiffness = tangent_stiffness(normal, smooth)

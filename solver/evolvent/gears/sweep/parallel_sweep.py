@@ -168,5 +168,5 @@ class _RankedSweep:
         assert sent is not None
         if isinstance(sent, NearlyNormal):
             sent = contact.geometry.compliance(sent.k, rough=sent)
-        system = contact.system_with(sent, load.on, load.torque)
+        system = contact.system_with(sent, load.on, load.at(contact.stand.angle))
         return SharedPosition(contact, system, smooth, unsearched)

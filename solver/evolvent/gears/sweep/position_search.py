@@ -157,7 +157,7 @@ def shared_position(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the load "
                 "may bend the teeth further than the search looks: lower the torque"
             )
-        system = contact.system(model.load.on, model.load.torque, normal_only, threads)
+        system = contact.system(model.load.on, model.load.at(angle), normal_only, threads)
         if known is None:
             start = _initially_pressed(contact.geometry, before)
             smooth = frictionless(normal_part(system), start, tolerance=tolerance)
@@ -188,7 +188,7 @@ def searched_at(model: GearModel, place: SearchedAt, frictions: Sequence[float])
     stand = Stand(model.pair, place.angle, place.extra)
     contact = gear_contact(model.bodies, stand, list(model.teeth), place.half_width)
     normal_only = not any(map(model.has_friction_terms, frictions))
-    system = contact.system(model.load.on, model.load.torque, normal_only)
+    system = contact.system(model.load.on, model.load.at(place.angle), normal_only)
     start = _initially_pressed(contact.geometry, None)
     smooth = frictionless(normal_part(system), start)
     return SharedPosition(contact, system, smooth, unsearched_overlaps(contact.geometry, model.teeth))

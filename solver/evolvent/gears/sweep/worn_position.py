@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, frictionless, normal_part
 from evolvent.contact.newton.snes import NotConverged
@@ -20,7 +22,7 @@ errors within 3 nm of 5 µm; 24 searches instead of 400."""
 
 
 def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = None) -> SharedPosition | None:
-    """The same position with the present wear of the model's flanks.
+    """The same position with the present wear of the model's flanks and under its present torque.
 
     pressed: (q,) bool, points to start from, by default those that were pressed before.
 
@@ -28,7 +30,8 @@ def worn_on(model: GearModel, shared: SharedPosition, pressed: Bools | None = No
     searched again, or where no solution is found.
     """
     contact = shared.contact.with_wear(model.bodies)
-    system = replace(shared.system, operator=contact.operator)
+    torque = model.load.at(contact.stand.angle)
+    system = replace(shared.system, operator=contact.operator, load=np.array([torque]))
     smooth = _first_solution(normal_part(system), [pressed, shared.smooth.traction[:, 0] > 0.0])
     if smooth is None:
         return None

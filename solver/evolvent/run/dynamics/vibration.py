@@ -9,9 +9,8 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
-from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, geometric_backlash
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.response import (
     BRANCH,
     DYNAMICS,
@@ -33,16 +32,14 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.excitation import WRITTEN, check_results, computed_excitation, write_excitation
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
-from evolvent_meshes.gears.pair import GearPair
 
 PICTURE = "vibration.png"
 SPEEDS = "speeds"
 FROM, TO = 1.0 / 6.0, 1.6
 """Speeds that are swept by default, over the natural one."""
-KG_M2 = 1e3
-"""t·mm² per kg·m²."""
 
 
 def run_dynamics(
@@ -64,21 +61,6 @@ def run_dynamics(
     with Progress(hidden=quiet or comm.rank > 0) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
         return on_first(comm, lambda: _written(excitation, problems, section, out, progress))
-
-
-def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
-    """What the section says, with what follows from the gears where it says nothing."""
-    given = section.pinion_inertia_kg_m2, section.wheel_inertia_kg_m2
-    pinion, wheel = (
-        polar_moment(gear, section.density_kg_m3) if value is None else KG_M2 * value
-        for gear, value in zip(pair.gears, given)
-    )
-    backlash = geometric_backlash(pair) if section.backlash_um is None else 1e-3 * section.backlash_um
-    series = np.inf if section.series_stiffness_N_per_um is None else 1e3 * section.series_stiffness_N_per_um
-    return DriveSettings(
-        (pinion, wheel), section.damping_ratio, backlash, section.damped_apart, section.ground_damping_ratio,
-        float(series), section.mesh,
-    )  # fmt: skip
 
 
 def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:

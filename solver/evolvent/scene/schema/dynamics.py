@@ -28,7 +28,8 @@ def _inertia(gear: str) -> Any:
 
 
 class DynamicsSection(SceneSection):
-    """[dynamics]: torsional vibration of both gears on their mesh, over the speed. `evolvent dynamics` reads it."""
+    """[dynamics]: torsional vibration of both gears on their mesh, over the speed. `evolvent dynamics` reads it, and
+    `evolvent run` where it has an operating speed."""
 
     speed_rpm: tuple[float, float] | None = key(
         "lowest and highest speed of the pinion; by default from a sixth to 1.6 of the speed at which the mesh "
@@ -77,6 +78,17 @@ class DynamicsSection(SceneSection):
         "stiffness along the line of action of what gives way with the mesh, shafts and bearings, without inertia; by "
         "default nothing does",
         "a number from 0.001 to 1e9, in N/µm", "delete the key for the default", default=None, ge=1e-3, le=1e9,
+    )  # fmt: skip
+
+    operating_rpm: float | None = key(
+        "speed of the pinion at which `evolvent run` computes contact and wear, under the mesh force of the vibration; "
+        "by default under the constant torque",
+        f"a number above 0 up to {FASTEST:g}, in r/min", "delete the key for the default", default=None, gt=0,
+        le=FASTEST,
+    )  # fmt: skip
+    coming: Literal["up", "down"] = key(
+        "from which side the pair has come to that speed, where its vibration depends on it: running up or down",
+        '"up" or "down"', default="up",
     )  # fmt: skip
 
     @field_validator("speed_rpm", "torque_percents", mode="before")

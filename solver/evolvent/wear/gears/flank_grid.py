@@ -14,9 +14,11 @@ import scipy.sparse as sp
 from scipy.ndimage import binary_dilation
 
 from evolvent.gears.condensed_gear import GearBody
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.wear.archard import grid_interval
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -82,6 +84,11 @@ class FlankGrid:
         """The nodes between the edge margins."""
         low, high = inner_arcs(pair, gear)
         return self.node[:, (self.arcs >= low) & (self.arcs <= high)].ravel()
+
+    def chart(self, gear: GearParameters, depth: Floats) -> FlankChart:
+        """The chart over diameter and height of depths (n,) [mm] at the nodes of a gear's flank."""
+        base = gear.base_radius
+        return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * self.arcs), self.heights, depth[self.node].T)
 
     def slope_limited(self, depth: Floats, slope: float) -> Floats:
         """The largest depths (n,) [mm] not above these whose slope along arcs and heights is at most `slope`, and which

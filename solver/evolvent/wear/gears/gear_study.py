@@ -21,6 +21,7 @@ from evolvent.wear.block_stepping import (
     next_block,
 )
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -64,6 +65,8 @@ class StudyCheckpoint:
     next_length: length of the next block [cycles].
     searches: where the contact was searched, of all positions.
     rows: of all blocks so far.
+    vibrations: of the beginning and of all blocks; empty under a constant torque.
+    vibration: state (2,) of the present operation; None under a constant torque.
     """
 
     cycles: float
@@ -73,6 +76,8 @@ class StudyCheckpoint:
     next_length: float
     searches: tuple[SearchedAt, ...]
     rows: tuple[BlockRow, ...]
+    vibrations: tuple[VibrationRow, ...] = ()
+    vibration: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -82,11 +87,13 @@ class StudyState:
     state: of the wear.
     rows: of all blocks so far.
     report: whether the pair is to be written out.
+    vibrations: of the beginning and of all blocks; empty under a constant torque.
     """
 
     state: WearState[PitchState]
     rows: tuple[BlockRow, ...]
     report: bool
+    vibrations: tuple[VibrationRow, ...] = ()
 
 
 def study_states(
@@ -101,32 +108,40 @@ def study_states(
     rows: tuple[BlockRow, ...]
     if checkpoint is None:
         state, rows = initial_wear_state(gears, gears.begin, settings), ()
+        vibrations = _vibration(state)
     else:
-        state, rows = _resumed(gears, checkpoint), checkpoint.rows
-    yield StudyState(state, rows, checkpoint is None)
+        state, rows, vibrations = _resumed(gears, checkpoint), checkpoint.rows, checkpoint.vibrations
+    yield StudyState(state, rows, checkpoint is None, vibrations)
     while state.cycles < reports[-1] * (1.0 - ROUNDING):
         end = next(float(report) for report in reports if report > state.cycles * (1.0 + ROUNDING))
         block = next_block(gears, state, end, settings)
         state = block.state
-        rows = (*rows, _row(gears, block))
-        yield StudyState(state, rows, state.cycles >= end * (1.0 - ROUNDING))
+        rows, vibrations = (*rows, _row(gears, block)), (*vibrations, *_vibration(state))
+        yield StudyState(state, rows, state.cycles >= end * (1.0 - ROUNDING), vibrations)
 
 
 def checkpoint_of(gears: GearWear, study: StudyState) -> StudyCheckpoint:
     """The checkpoint of a state. All ranks call it."""
     state = study.state
-    searches = tuple(gears.searches(state.evaluation))
+    searches, operation = tuple(gears.searches(state.evaluation)), state.evaluation.operation
     return StudyCheckpoint(
-        state.cycles, state.depth, gears.mesh_depth, state.previous, state.next_length, searches, study.rows
-    )
+        state.cycles, state.depth, gears.mesh_depth, state.previous, state.next_length, searches, study.rows,
+        study.vibrations, None if operation is None else operation.state,
+    )  # fmt: skip
 
 
 def _resumed(gears: GearWear, checkpoint: StudyCheckpoint) -> WearState[PitchState]:
     """The state of a checkpoint, on the same meshes and from the same searches."""
     if checkpoint.mesh_depth.any():
         gears.update_meshes(checkpoint.mesh_depth)
-    evaluation = gears.resumed(checkpoint.depth, checkpoint.searches)
+    evaluation = gears.resumed(checkpoint.depth, checkpoint.searches, checkpoint.vibration)
     return WearState(checkpoint.cycles, checkpoint.depth, evaluation, checkpoint.previous, checkpoint.next_length)
+
+
+def _vibration(state: WearState[PitchState]) -> tuple[VibrationRow, ...]:
+    """The row of a state; none under a constant torque."""
+    operation = state.evaluation.operation
+    return () if operation is None else (VibrationRow.of(state.cycles, operation),)
 
 
 def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:

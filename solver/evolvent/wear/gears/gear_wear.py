@@ -7,7 +7,7 @@ computes what they wear off. Friction depends on the history, so the friction st
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -15,10 +15,12 @@ import scipy.sparse as sp
 from mpi4py import MPI
 
 from evolvent.contact.newton.snes import NotConverged
+from evolvent.dynamics.operating_point import OperatingPoint, Operation
 from evolvent.fem.material import contact_modulus
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import Pitch
 from evolvent.gears.sweep.position_result import PositionResult
@@ -50,6 +52,7 @@ class PitchState(CycleEvaluation):
     mesh_updates: number of mesh updates before.
     points: contact points of this rank's positions without friction.
     passage: their mesh passage.
+    operation: the vibration under whose mesh force it was solved; None under the constant torque.
     """
 
     positions: tuple[PositionResult, ...]
@@ -59,6 +62,7 @@ class PitchState(CycleEvaluation):
     mesh_updates: int
     points: tuple[ContactPoints, ...]
     passage: MeshPassage
+    operation: Operation | None = None
 
 
 class GearWear:
@@ -68,6 +72,7 @@ class GearWear:
     friction: friction coefficient of the contact solutions.
     law: Archard's coefficients of pinion and wheel.
     mesh_motion: when and how the meshes follow the wear; None: never.
+    operating: speed under whose mesh force the pair wears; None: under the constant torque.
     geometry: the gears as meshed at present.
     begin: (n,) depths of the flanks as charted at the beginning [mm].
 
@@ -76,7 +81,7 @@ class GearWear:
 
     def __init__(
         self, model: GearModel, pitch: Pitch, friction: float, law: Archard, comm: MPI.Comm = MPI.COMM_SELF,
-        mesh_motion: GearMeshMotion | None = None,
+        mesh_motion: GearMeshMotion | None = None, operating: OperatingPoint | None = None,
     ) -> None:  # fmt: skip
         """Raises InputError unless the positions are equal steps of one pitch, which make up one tooth's passage."""
         angles = np.array(pitch.angles)
@@ -87,7 +92,7 @@ class GearWear:
                 f"{np.degrees(np.ptp(angles)) if len(angles) else 0.0:.3f}°; take those of uniform_pitch"
             )
         self.pitch, self.friction, self.law, self.mesh_motion = pitch, friction, law, mesh_motion
-        self.geometry = MeshedPair.of(model)
+        self.operating, self.geometry = operating, MeshedPair.of(model)
         charted = [b.worn if b.worn is not None else np.zeros(len(b.flank.points)) for b in model.bodies]
         self.begin = np.concatenate(charted)
         self._comm, self._step = comm, step
@@ -137,11 +142,27 @@ class GearWear:
         are not searched again. Raises VolumeLost as well."""
         return self._evaluate(depth, previous, {})
 
-    def resumed(self, depth: Floats, searches: Sequence[SearchedAt]) -> PitchState:
-        """The pitch at depths (n,) with the contact searched where `searches`, one a position, say."""
-        model, frictions = self.geometry.with_gap(depth), [self.friction]
+    def resumed(self, depth: Floats, searches: Sequence[SearchedAt], vibration: Floats | None = None) -> PitchState:
+        """The pitch at depths (n,) with the contact searched where `searches`, one a position, say. vibration: the
+        state (2,) of the operation there."""
+        operation, model = self._loaded(depth, vibration)
+        frictions = [self.friction]
         shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._numbers])
-        return self._solve(model, shared, 0)
+        return self._solve(model, shared, 0, operation)
+
+    def chart(self, gear: Member, depth: Floats) -> FlankChart:
+        """The chart over diameter and height of depths [mm] at a gear's flank nodes."""
+        return self.grids[gear].chart(self.model.pair.gears[gear], depth)
+
+    def _loaded(self, depth: Floats, vibration: Floats | None) -> tuple[Operation | None, GearModel]:
+        """The gears at depths (n,) under their load, and the operation that it comes from, if it varies. vibration: as
+        it was on nearly the same flanks."""
+        model = self.geometry.with_gap(depth)
+        if self.operating is None:
+            return None, model
+        pinion, wheel = (self.chart(gear, nodal) for gear, nodal in zip(Member, self.by_gear(depth)))
+        operation = self.operating.on(model, (pinion, wheel), self._comm, vibration)
+        return operation, replace(model, load=operation.load)
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
         """Where the contact of each position was searched, of all ranks."""
@@ -189,9 +210,11 @@ class GearWear:
     def _evaluate(self, depth: Floats, previous: PitchState | None, pressed: Mapping[int, Bools]) -> PitchState:
         """pressed: by number of this rank's positions, (q,) which points are likely to be pressed."""
         reusable = previous is not None and previous.mesh_updates == self.mesh_updates
-        model, kept = self.geometry.with_gap(depth), previous.shared if previous is not None and reusable else ()
+        before = previous.operation if previous is not None else None
+        operation, model = self._loaded(depth, None if before is None else before.state)
+        kept = previous.shared if previous is not None and reusable else ()
         shared, searched = together(self._comm, lambda: self._prepared(model, kept, pressed))
-        return self._solve(model, shared, self._comm.allreduce(searched))
+        return self._solve(model, shared, self._comm.allreduce(searched), operation)
 
     def _prepared(
         self, model: GearModel, kept: Sequence[SharedPosition], pressed: Mapping[int, Bools]
@@ -211,7 +234,9 @@ class GearWear:
             positions.append(shared)
         return positions, searched
 
-    def _solve(self, model: GearModel, shared: Sequence[SharedPosition], searched: int) -> PitchState:
+    def _solve(
+        self, model: GearModel, shared: Sequence[SharedPosition], searched: int, operation: Operation | None
+    ) -> PitchState:
         """The pitch with friction, and its wear rate."""
         swept = self._sweep.solve(model, shared)
         passage = self._passage([result.contact for result in swept.results])
@@ -222,7 +247,7 @@ class GearWear:
         return PitchState(
             rate=rate, areas=self.areas, deformation=np.inf, ripple_decay=self._ripple_decay(rate, positions),
             positions=positions, work=work, shared=tuple(shared), searched=searched, mesh_updates=self.mesh_updates,
-            points=tuple(swept.smooth), passage=smooth,
+            points=tuple(swept.smooth), passage=smooth, operation=operation,
         )  # fmt: skip
 
     def _ripple_decay(self, rate: Floats, positions: Sequence[PositionResult]) -> float:

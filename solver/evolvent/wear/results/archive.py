@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
@@ -26,15 +25,17 @@ from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint
 from evolvent.wear.gears.gear_wear import GearWear
+from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
 FILE = "wear.npz"
-COUNTS = "refused", "searched", "refreshed"  # the integer columns of a BlockRow
+COUNTS = "refused", "searched", "refreshed", "repeats"  # the integer columns of rows
+R = TypeVar("R", BlockRow, VibrationRow)
 
 
 def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
-    """Writes OUT/wear.csv, one line per block, and then the checkpoint. Raises OSError."""
+    """Writes OUT/wear.csv and OUT/vibration.csv, one line per block, and then the checkpoint. Raises OSError."""
     previous = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0)
     arrays = {
         "fingerprint": archive.fingerprint, "cycles": checkpoint.cycles, "depth": checkpoint.depth,
@@ -42,7 +43,11 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         "last_rate": previous.rate, "last_length": previous.length,
         "searches": np.array([(s.angle, *s.extra, s.half_width) for s in checkpoint.searches]),
         "rows": np.array([list(asdict(row).values()) for row in checkpoint.rows]),
+        "vibrations": np.array([list(asdict(row).values()) for row in checkpoint.vibrations]),
+        "vibration": np.zeros(0) if checkpoint.vibration is None else checkpoint.vibration,
     }  # fmt: skip
+    if checkpoint.vibrations:
+        archive.files.write_text("vibration.csv", csv_text([asdict(row) for row in checkpoint.vibrations]))
     if checkpoint.rows:
         archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
     archive.write_arrays(FILE, arrays)
@@ -59,14 +64,16 @@ def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
     searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
     return StudyCheckpoint(
         float(arrays["cycles"]), arrays["depth"], arrays["known"], previous, float(arrays["length"]), searches,
-        tuple(map(_row, arrays["rows"].tolist())),
+        tuple(_row(BlockRow, values) for values in arrays["rows"].tolist()),
+        tuple(_row(VibrationRow, values) for values in arrays["vibrations"].tolist()),
+        arrays["vibration"] if len(arrays["vibration"]) else None,
     )  # fmt: skip
 
 
-def _row(values: list[float]) -> BlockRow:
-    named = zip([field.name for field in fields(BlockRow)], values, strict=True)
+def _row(kind: type[R], values: list[float]) -> R:
+    named = zip([field.name for field in fields(kind)], values, strict=True)
     typed: dict[str, Any] = {name: int(value) if name in COUNTS else value for name, value in named}
-    return BlockRow(**typed)
+    return kind(**typed)
 
 
 def worn_folder(out: Path, cycles: float) -> Path:
@@ -82,17 +89,11 @@ def write_worn(scene: Scene, folder: Path, gears: GearWear, depth: Floats) -> Sc
     files = RunFolder(folder)
     worn: dict[str, object] = {"wear": None}
     for gear, nodal in zip(Member, gears.by_gear(depth)):
-        path = files.write_text(f"flank_{gear.label}.csv", chart_of(gears, gear, nodal).text())
+        path = files.write_text(f"flank_{gear.label}.csv", gears.chart(gear, nodal).text())
         worn[gear.label] = getattr(scene, gear.label).model_copy(update={"flank_csv": str(path)})
     worn_scene = scene.model_copy(update=worn)
     write_scene(worn_scene, files)
     return worn_scene
-
-
-def chart_of(gears: GearWear, gear: Member, depth: Floats) -> FlankChart:
-    """The chart over diameter and height of depths (n,) [mm] at a gear's flank nodes."""
-    grid, base = gears.grids[gear], gears.model.pair.gears[gear].base_radius
-    return FlankChart(2.0 * np.sqrt(base**2 + 2.0 * base * grid.arcs), grid.heights, depth[grid.node].T)
 
 
 def write_pitch(

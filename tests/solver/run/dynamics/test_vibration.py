@@ -11,8 +11,9 @@ import pytest
 
 from evolvent.cli import main
 from evolvent.dynamics.pair_model import geometric_backlash
-from evolvent.run.dynamics.vibration import drive_settings, run_dynamics
+from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.load_list import load_scenes
+from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
 from evolvent_meshes.gears.gear import GearParameters

@@ -1,0 +1,163 @@
+"""The mesh force of a pair that runs at one speed, on flanks as they are: what contact and wear are computed under.
+
+Excitation, oscillator and motion follow from the condensed gears and the flanks' charts. At the first flanks the motion
+is that of a pair which has run up to the speed, or down to it; at later ones, such as worn flanks, it is what the last
+motion becomes.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from mpi4py import MPI
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
+from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
+from evolvent.dynamics.oscillator.torsional_model import History, history
+from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.gears.gear_load import GearLoad, TorqueCourse
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
+
+LOG = logging.getLogger("evolvent")
+Charts = tuple[FlankChart | None, FlankChart | None]
+"""Deviations of pinion and wheel flank; None: as designed."""
+Motion = SteadyState | Settled
+SLOWEST, FASTEST = 1.0 / 6.0, 1.6
+"""Where a pair that runs up or down comes from, over its natural speed."""
+RUN_SPEEDS = 200
+"""Speeds on its way: 0.4 % of the natural speed apart near resonance, a tenth of its peak's width at a damping ratio of
+0.03."""
+SAMPLES = 240
+"""Of the mesh force in a pitch, at least."""
+LEAST_FORCE = 1e-3
+"""Of the static one. Where flanks part the contact is solved under this force: none at all would leave open where the
+gears stand."""
+
+
+@dataclass(frozen=True, eq=False)
+class Operation:
+    """A pair that runs at a speed."""
+
+    excitation: MeshExcitation
+    """Of its mesh."""
+    drive: Drive
+    """Its oscillator."""
+    period: float
+    """Of the mesh [s]."""
+    motion: Motion
+    """Where its vibration has settled."""
+    paths: tuple[History, ...]
+    """Each mesh period after which the motion repeats; sixteen where it does not."""
+    load: GearLoad
+    """The mesh force of a mesh period, the mean of these, as a torque that repeats with the mesh."""
+    lifted: float
+    """Share of the mesh period in which `load` is `LEAST_FORCE`, because the force is less."""
+
+    @property
+    def state(self) -> Floats:
+        """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+        return self.motion.state
+
+    @property
+    def repeats(self) -> int:
+        """Mesh periods after which the motion repeats, 0 where it does not, see `Settled`."""
+        return self.motion.repeats if isinstance(self.motion, Settled) else 1
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """A speed, and what the mesh force at it depends on beside the flanks."""
+
+    settings: DriveSettings
+    """Inertia, damping, backlash, and the model of the mesh."""
+    speed: float
+    """Of the pinion [r/min]."""
+    coming: Literal["up", "down"]
+    """From lower or from higher speeds, where the motion depends on it."""
+    shares: tuple[float, ...]
+    """Torques of the force surface over the pair's, ascending; 1 among them."""
+    positions: int
+    """Of the pitch, for the excitation."""
+
+    def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Floats | None = None) -> Operation:
+        """The operation of condensed gears; their own torque is the static one. Collective.
+
+        charts: all that is missing of the designed flanks.
+        before: the motion's state (2,) at phase 0 on nearly the same flanks; None: where the pair has just come to the
+        speed.
+
+        Raises NotConverged, SearchError, NoForceSurface, NoSteadyState.
+        """
+        excitation = self._excitation(model, charts, comm)
+        # every rank follows the motion: it takes less than sending it
+        pair = drive(model.pair, excitation, self.shares.index(1.0), self.settings)
+        period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
+        motion = self._arrived(pair, period) if before is None else _followed(pair, period, before)
+        paths = _paths(pair, period, motion)
+        course, lifted = _course(model.pair, pair, paths)
+        return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted)
+
+    def _excitation(self, model: GearModel, charts: Charts, comm: MPI.Comm) -> MeshExcitation:
+        angles = np.array(uniform_pitch(model.pair.pinion.z, self.positions).angles)
+        torque = model.load.torque * model.width_factor
+        torques = [share * torque for share in self.shares]
+        static = replace(model, load=GearLoad(model.load.torque, model.load.on))
+        loaded = loaded_mesh([static] * len(torques), torques, angles, comm)
+        return MeshExcitation(unloaded_error(RigidFlanks(model.pair, charts), angles, model.load.on), loaded)
+
+    def _arrived(self, pair: Drive, period: float) -> Motion:
+        """The motion of a pair that has run up, or down, to the speed; one that is slower, or faster, than where it
+        would come from settles from rest."""
+        other = (SLOWEST if self.coming == "up" else FASTEST) * pair.natural_speed
+        if (self.speed <= other) == (self.coming == "up"):
+            return settled(pair.model, period, static_state(pair.model))
+        periods = speeds_to_periods(np.linspace(other, self.speed, RUN_SPEEDS), pair.teeth)
+        motion: Motion = settled(pair.model, float(periods[0]), static_state(pair.model))
+        for each in periods[1:]:
+            motion = _followed(pair, float(each), motion.state)
+        return motion
+
+
+def _followed(pair: Drive, period: float, before: Floats) -> Motion:
+    """What a motion becomes where the excitation has changed a little."""
+    try:
+        found = steady_state(pair.model, period, before)
+    except NoSteadyState:
+        found = None
+    if found is not None and found.stable:
+        return found
+    return settled(pair.model, period, before)
+
+
+def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:
+    """The mesh periods of a motion."""
+    repeats = motion.repeats or LONGEST_REPEAT if isinstance(motion, Settled) else 1
+    if repeats > 1:
+        LOG.warning(
+            "the vibration does not repeat with every mesh: contact is computed under the mean force of %d meshes",
+            repeats,
+        )
+    state, paths = motion.state, []
+    for _ in range(repeats):
+        paths.append(history(pair.model, period, state, np.arange(SAMPLES) / SAMPLES))
+        state = np.array([paths[-1].displacement[-1], paths[-1].velocity[-1]])
+    return tuple(paths)
+
+
+def _course(gears: GearPair, pair: Drive, paths: tuple[History, ...]) -> tuple[TorqueCourse, float]:
+    """The mean force of these mesh periods over the static one, and the share of it that is lifted to LEAST_FORCE."""
+    phases = np.arange(SAMPLES) / SAMPLES
+    force = np.mean([np.interp(phases, path.phases, path.force) for path in paths], axis=0) / pair.model.load
+    low = force < LEAST_FORCE
+    return TorqueCourse(np.where(low, LEAST_FORCE, force), gears.pinion.z), float(np.mean(low))

@@ -1,0 +1,103 @@
+"""The rooms of the project, from the top down, with what each may import (tests/project/test_structure.py)."""
+
+from __future__ import annotations
+
+ROOMS: dict[str, tuple[str, ...]] = {
+    "meshes": (),
+    "meshes.mesh": ("meshes",),
+    "meshes.gears": ("meshes",),
+    "meshes.sector": ("meshes", "meshes.mesh", "meshes.gears"),
+    "meshes.shapes": ("meshes", "meshes.mesh"),
+    "fem.parallel": ("meshes",),
+    "fem.backend": ("meshes", "meshes.mesh"),
+    "fem": ("meshes", "meshes.mesh", "fem.parallel", "fem.backend"),
+    "fem.condensation": ("meshes", "fem.parallel", "fem.backend"),
+    "contact": ("meshes",),
+    "contact.search": ("meshes", "fem"),
+    "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
+    "contact.newton": ("meshes", "fem.backend", "contact.nitsche"),
+    "contact.two_level": ("meshes", "meshes.mesh", "fem", "fem.condensation", "contact.nitsche"),
+    "contact.problem": ("meshes", "fem", "fem.condensation", "contact.nitsche"),
+    "contact.step": (
+        "meshes", "meshes.mesh", "fem", "contact.search", "contact.nitsche", "contact.newton", "contact.problem",
+    ),
+    "contact.solution": (
+        "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
+    ),
+    "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
+    "gears.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "gears.problem"),
+    "gears.ring": ("meshes", "fem.condensation", "contact.nitsche", "contact.newton"),
+    "gears.two_level": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.newton", "contact.two_level",
+        "gears.meshing", "gears.ring",
+    ),
+    "gears": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.parallel", "fem.condensation",
+        "contact.nitsche", "gears.problem", "gears.meshing", "gears.ring", "gears.two_level",
+    ),
+    "gears.contact": (
+        "meshes", "meshes.gears", "fem", "fem.parallel", "contact.search", "contact.nitsche", "contact.newton",
+        "gears.ring", "gears",
+    ),
+    "gears.sweep": (
+        "meshes", "meshes.gears", "fem.parallel", "contact.search", "contact.newton", "gears", "gears.contact",
+    ),
+    "gears.pressure": ("meshes", "meshes.gears", "fem", "contact", "gears", "gears.contact", "gears.sweep"),
+    "gears.solution": (
+        "meshes", "fem.backend", "contact.problem", "contact.step", "gears.problem", "gears", "gears.sweep",
+        "gears.pressure",
+    ),
+    "dynamics.oscillator": ("meshes",),
+    "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
+    "dynamics": (
+        "meshes.*", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
+        "dynamics.oscillator",
+    ),
+    "scene.schema": ("meshes",),
+    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "dynamics", "scene.schema"),
+    "scene.checking": (
+        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure", "scene",
+        "scene.schema",
+    ),
+    "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
+    "results": (
+        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
+    ),
+    "results.error_bars": ("meshes", "results.archive", "results"),
+    "results.tables": (
+        "meshes.gears", "gears.pressure", "gears.solution", "scene", "scene.checking", "results.archive", "results",
+        "results.error_bars",
+    ),
+    "results.fields": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
+        "gears.sweep", "gears.pressure", "results.archive", "results",
+    ),
+    "results.drawing": ("meshes", "scene", "results.archive", "results"),
+    "results.figures": (
+        "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
+        "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
+    ),
+    "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
+    "wear.gears": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
+        "gears.contact", "gears.sweep", "gears.solution", "dynamics", "dynamics.oscillator", "wear",
+    ),
+    "wear.results": (
+        "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
+        "results.*", "wear", "wear.gears",
+    ),
+    "dynamics.results": (
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.tables",
+        "results.drawing",
+    ),
+    "run": (
+        "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
+        "dynamics", "scene", "scene.schema", "results.*", "wear.*",
+    ),
+    "run.dynamics": (
+        "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",
+        "results.archive", "results.drawing", "dynamics.*", "run",
+    ),
+    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
+}  # fmt: skip
+"""Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

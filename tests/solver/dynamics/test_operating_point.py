@@ -1,0 +1,101 @@
+"""The mesh force at one speed, under which contact is computed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Literal
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from evolvent.dynamics.operating_point import LEAST_FORCE, OperatingPoint, Operation
+from evolvent.dynamics.oscillator.response import response
+from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.under_mesh_force import UnderMeshForce
+from evolvent.gears.gear_model import GearModel
+from evolvent.scene.gear_problem import gear_problem
+from tests.support.gear_cases import model_of, spur_scene
+
+INERTIA = 7.65  # t·mm², He et al. 2022
+SCENE = spur_scene("mesh.level=quick")
+POINT = OperatingPoint(DriveSettings((INERTIA, INERTIA), 0.03, 0.05), 3000.0, "up", (0.25, 1.0, 2.0), 10)
+
+
+@cache
+def model() -> GearModel:
+    return model_of(SCENE)
+
+
+@cache
+def operation(speed: float, coming: Literal["up", "down"] = "up") -> Operation:
+    point = replace(POINT, speed=speed, coming=coming)
+    return point.on(model(), (None, None), MPI.COMM_SELF)
+
+
+def test_a_slow_pair_is_loaded_by_its_torque() -> None:
+    """At 2 r/min inertia does nothing. Exact: the torque itself; what is left are forces of the order of (ω/ω_n)², of
+    its harmonics, 1e-3."""
+    found = operation(2.0)
+    course = found.load.course
+    assert course is not None and found.repeats == 1 and found.lifted == 0.0
+    assert course.shares == pytest.approx(np.ones(240), abs=1e-3)
+
+
+def test_mean_force_is_the_load() -> None:
+    """Over a mesh period of a steady motion the momentum does not change: the mean of the mesh force, damping included,
+    is F_0, 1e-3 by the trapezoidal rule."""
+    course = operation(3000.0).load.course
+    assert course is not None
+    assert course.shares.mean() == pytest.approx(1.0, abs=1e-3)
+    assert np.ptp(course.shares) > 0.2
+
+
+def test_motion_is_that_of_the_sweep_over_the_speed() -> None:
+    """Problem: a speed at which running up and down differ. Exact: the motions of `sweep_speeds` there, its last speed
+    running up, its first running down."""
+    pair = operation(4000.0).drive
+    speed = 0.9 * pair.natural_speed
+    ways: tuple[tuple[Literal["up", "down"], tuple[float, float]], ...] = (
+        ("up", (pair.natural_speed / 6.0, speed)),
+        ("down", (speed, 1.6 * pair.natural_speed)),
+    )
+    for coming, ends in ways:
+        found = operation(speed, coming)
+        swept = sweep_speeds(pair.model, speeds_to_periods(np.linspace(*ends, 30), pair.teeth))
+        wanted = swept.up[-1] if coming == "up" else swept.down[0]
+        size, exact = (
+            response(pair.model, found.period, state).equivalent_amplitude
+            for state in (found.state, wanted.motion.state)
+        )
+        assert size == pytest.approx(exact, rel=1e-6)
+    assert np.abs(operation(speed, "up").state - operation(speed, "down").state).max() > 1e-4
+
+
+def test_motion_goes_on_from_the_last_one() -> None:
+    """On the same flanks a motion that is given is kept: that of a pair which has run down stays what it is for one
+    that would have run up, within Newton's tolerance."""
+    speed = 0.9 * operation(4000.0).drive.natural_speed
+    down = operation(speed, "down")
+    kept = replace(POINT, speed=speed).on(model(), (None, None), MPI.COMM_SELF, down.state)
+    assert kept.state == pytest.approx(down.state, rel=1e-8)
+
+
+def test_where_flanks_part_a_least_force_is_left() -> None:
+    """At resonance the flanks part for some of the time: that share of the load's course is LEAST_FORCE."""
+    found = operation(0.92 * operation(4000.0).drive.natural_speed, "down")
+    course = found.load.course
+    assert course is not None
+    assert found.paths[0].apart > 0.05
+    assert found.lifted == pytest.approx(found.paths[0].apart, abs=0.02)
+    assert course.shares.min() == LEAST_FORCE
+
+
+def test_coarser_gears_get_the_same_course() -> None:
+    """The gears of a companion mesh are loaded by the mesh force of the first gears: the same object."""
+    prepare = UnderMeshForce(POINT)
+    first, second = (prepare(gear_problem(SCENE), MPI.COMM_SELF).model.load for _ in range(2))
+    assert prepare.operation is not None and first.course is prepare.operation.load.course
+    assert second.course is first.course

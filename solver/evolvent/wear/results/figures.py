@@ -32,6 +32,7 @@ from evolvent.results.figures.scene3d import flank_picture
 from evolvent.results.figures.stress import TOOTH_ANGLE
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.report import WornPair, WornRun
+from evolvent.wear.results.vibration_figure import vibration_over_cycles
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -58,6 +59,15 @@ def _figures(study: WornRun) -> Iterator[tuple[str, Draw]]:
     yield "23_force_as_worn", force_on_tooth
     yield "24_transmission_error_as_worn", transmission_error
     yield "25_worn_teeth", worn_teeth
+    if study.vibrations:
+        yield "26_vibration_as_worn", vibration
+
+
+def vibration(study: WornRun) -> Figure:
+    """Figure of the vibration at the operating speed over the cycles."""
+    dynamics = study.scene.dynamics
+    assert dynamics is not None and dynamics.operating_rpm is not None
+    return vibration_over_cycles(study.vibrations, dynamics.operating_rpm)
 
 
 def wearing(study: WornRun) -> dict[Member, float]:

@@ -18,6 +18,7 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
+from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent.wear.results.archive import read_checkpoint, worn_folder
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member
@@ -129,11 +130,13 @@ class WornRun:
     scene: its scene.
     rows: of all blocks.
     pairs: at the beginning and at each report.
+    vibrations: at the beginning and after each block; empty under a constant torque.
     """
 
     scene: Scene
     rows: tuple[BlockRow, ...]
     pairs: tuple[WornPair, ...]
+    vibrations: tuple[VibrationRow, ...] = ()
 
 
 def read_worn(folder: Path) -> WornRun:
@@ -154,7 +157,7 @@ def read_worn(folder: Path) -> WornRun:
             charts = [FlankChart(c.diameters, c.heights, np.zeros_like(c.depth)) for c in charts]
         volume = volumes[float(ends[np.argmin(np.abs(ends - cycles))])]
         pairs.append(WornPair(cycles, read_run(pair_folder), (charts[0], charts[1]), volume))
-    return WornRun(scene, study.rows, tuple(pairs))
+    return WornRun(scene, study.rows, tuple(pairs), study.vibrations)
 
 
 def _worn(scene: Scene, folder: Path, gear: Member) -> FlankChart:

@@ -106,8 +106,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.solution", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
-        "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",
-        "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene",
+        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

@@ -102,10 +102,10 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
     force is not smooth."""
     y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
     path = np.empty((len(stops), 5))
-    *shares, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
+    apart, behind, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
     s, v, side, force, error = path.T
     smallest, largest = min(low, float(force.min())), max(high, float(force.max()))
-    return History(stops, s, v, side.astype(np.int64), force, error, *shares, smallest, largest)
+    return History(stops, s, v, side.astype(np.int64), force, error, apart, behind, smallest, largest)
 
 
 def _with_derivatives(state: Floats) -> Floats:

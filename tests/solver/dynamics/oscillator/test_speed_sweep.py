@@ -62,8 +62,8 @@ def test_jumps_are_at_the_folds() -> None:
 
 def test_a_motion_that_doubles_its_period_leaves_without_a_fold() -> None:
     """Near twice the resonance a stiffness that varies by a quarter makes the steady state lose its stability by a
-    multiplier of −1. Where the pair leaves the branch, both ways, the multipliers of the steady states 1e-6 of the speed
-    before and behind are below and above 1 in size; the motion beyond repeats after two meshes."""
+    multiplier of −1. Where the pair leaves the branch, both ways, the multipliers of the steady states 1e-6 of the
+    speed before and behind are below and above 1 in size; the motion beyond repeats after two meshes."""
     model, speeds = softening(0.25), np.linspace(1.5, 2.6, 56) * RESONANCE
     found = sweep_speeds(model, speeds_to_periods(speeds, TEETH))
     for runs in (found.up, found.down[::-1]):

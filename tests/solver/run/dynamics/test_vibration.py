@@ -24,7 +24,7 @@ from tests.support.running.processes import Run, on_ranks
 
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]", "dynamics.speeds=60",
-    "dynamics.speed_rpm=[2500,7000]", "dynamics.base_pitch_deviation_um=5",
+    "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
 )  # fmt: skip
 
 
@@ -68,10 +68,10 @@ def test_pairs_jump_at_the_folds(out: Path) -> None:
     """Running up, the jump is at the first speed above a fold; branch.csv marks as many as dynamics.json names."""
     folds = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))["folds_rpm"]
     assert sum(line["fold"] == "True" for line in rows(out / "branch.csv")) == len(folds) > 0
-    speeds = np.linspace(2500.0, 7000.0, 60)
+    speeds = np.linspace(1700.0, 7000.0, 60)
     jumps = [float(line["speed_rpm"]) for line in rows(out / "response.csv")[:60] if line["jumped"] == "True"]
-    assert len(jumps) == 1
-    assert any(0.0 <= jumps[0] - fold <= speeds[1] - speeds[0] for fold in folds)
+    assert jumps
+    assert all(any(0.0 <= jump - fold <= speeds[1] - speeds[0] for fold in folds) for jump in jumps)
     for name in ("vibration.png", "waterfall.png"):
         assert (out / "pictures" / name).stat().st_size > 20_000
     assert (out / "excitation.csv").exists()
@@ -82,7 +82,7 @@ def test_jumps_are_named_by_their_way(out: Path) -> None:
     """As many speeds as response.csv marks jumps, each within the step before the mark, in the order of the way; they
     are folds of this pair."""
     known = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))
-    step = 4500.0 / 59.0
+    step = 5300.0 / 59.0
     for way, sign in (("up", 1.0), ("down", -1.0)):
         lines = [line for line in rows(out / "response.csv") if line["way"] == way and line["jumped"] == "True"]
         marked = [float(line["speed_rpm"]) for line in lines][:: int(sign)]
@@ -125,7 +125,7 @@ def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     """Speeds of histories join the sweep, one of its own counts once; each motion closes after its repeats, its largest
     force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against the
     ground), to 1e-3 by the trapezoidal rule."""
-    one = scene("dynamics.histories_rpm=[2500,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
+    one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
     assert one.dynamics is not None
     loads = load_scenes(one, one.dynamics.torque_percents)
     run_dynamics(list(loads.values()), one.dynamics, tmp_path, quiet=True)
@@ -133,7 +133,7 @@ def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     assert len(response) == 2 * 21
     lines = rows(tmp_path / "histories.csv")
     static = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))["static_force_N"]
-    for speed in ("2500", "3900"):
+    for speed in ("1700", "3900"):
         for way in ("up", "down"):
             motion = [line for line in lines if (line["speed_rpm"], line["way"]) == (speed, way)]
             phase, force, s = (

@@ -14,7 +14,9 @@ from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.tables import markdown
+from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
+from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
@@ -30,8 +32,9 @@ Schema = dict[str, Any]
 
 UNITS = {
     "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_N_s_per_mm": "N·s/mm", "_mm2_per_N": "mm²/N",
-    "_mm_per_rad": "mm/rad", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m", "_N": "N", "_MPa": "MPa",
-    "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB", "_s": "s",
+    "_mm_per_rad": "mm/rad", "_mm_per_s": "mm/s", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m",
+    "_N": "N", "_MPa": "MPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB",
+    "_Hz": "Hz", "_ms": "ms", "_s": "s",
 }  # fmt: skip
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (
@@ -102,6 +105,8 @@ SECTIONS = (
     ("`harmonics.csv`", HarmonicRow, "Of `evolvent excitation`: as many as half the positions, at most five."),
     ("`response.csv`", ResponseRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
     ("`branch.csv`", BranchRow, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),
+    ("`spectrum.csv`", SpectrumRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
+    ("`histories.csv`", HistoryRow, "Of `evolvent dynamics`, where `dynamics.histories_rpm` names speeds."),
     ("`dynamics.json`", DriveSummary, ""),
     ("`wear.csv`", BlockRow, ""),
     ("`wear.json`", WearReport, ""),

@@ -170,8 +170,8 @@ def dynamics(
 ) -> None:
     """Compute the vibration of a pair over the speed.
 
-    The excitation by its mesh, then steady states, jumps, and the motions of a pair that runs up and down, as the
-    section [dynamics] of the scene says.
+    The excitation by its mesh, then steady states, jumps, spectra and the motions of a pair that runs up and down, with
+    the dynamic factor of ISO 6336-1 beside, as the section [dynamics] of the scene says.
     """
     with reported(parallel=True):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
@@ -182,7 +182,8 @@ def dynamics(
         scenes = list(_scenes(loaded, section.torque_percents, force).values())
         _warn(run_dynamics(scenes, section, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {out / 'pictures/vibration.png'}")
+            pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
+            typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -95,7 +95,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
-        "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",
+        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",
         "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),

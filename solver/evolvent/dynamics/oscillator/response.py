@@ -12,8 +12,23 @@ from evolvent_meshes.arrays import Floats
 SAMPLES = 256
 """Of a mesh period, for harmonics."""
 HARMONICS = 5
+HIGHEST_ORDER = 8
+"""Of the spectrum, in mesh orders."""
 IN_RMS = 3
 """Harmonics in the equivalent amplitude of Kahraman and Blankenship's measurements (He et al. 2022, Eq. 14)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Lines of a motion at the mesh orders 1/r, 2/r, ... up to `HIGHEST_ORDER`, r the mesh periods that it was taken
+    over; half orders belong to a motion that repeats after two meshes."""
+
+    orders: Floats
+    """(n,) frequencies over that of the mesh."""
+    total: Floats
+    """(n,) amplitudes of s [mm]."""
+    force: Floats
+    """(n,) of the mesh force [N]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +49,8 @@ class Response:
     """Share of the time out of contact."""
     behind: float
     """Share of the time on the back flanks."""
+    spectrum: Spectrum
+    """Between the mesh harmonics, too."""
 
     @property
     def equivalent_amplitude(self) -> float:
@@ -49,20 +66,29 @@ class Response:
 def response(model: TorsionalModel, period: float, state: Floats, repeats: int = 1) -> Response:
     """Of the motion from a state (2,) at phase 0, over the mesh periods [s] after which it repeats."""
     wanted = np.arange(SAMPLES) / SAMPLES
-    paths: list[History] = []
-    for _ in range(repeats):
-        paths.append(history(model, period, state, wanted))
-        state = np.array([paths[-1].displacement[-1], paths[-1].velocity[-1]])
+    paths = histories(model, period, state, repeats, wanted)
     at = np.searchsorted(paths[0].phases, wanted - 1e-12)
     total, error, force = (
         np.concatenate([getattr(path, name)[at] for path in paths]) for name in ("displacement", "error", "force")
     )
-    forces = np.concatenate([path.force for path in paths])
-    s, x, F = (_amplitudes(values, repeats) for values in (total, total - error, force))
+    s, x, F = (_amplitudes(values) for values in (total, total - error, force))
+    mesh = slice(repeats - 1, HARMONICS * repeats, repeats)
+    count = HIGHEST_ORDER * repeats
+    spectrum = Spectrum(np.arange(1, count + 1) / repeats, s[:count], F[:count])
+    largest, smallest = max(path.largest_force for path in paths), min(path.smallest_force for path in paths)
     apart, behind = (float(np.mean([getattr(path, name) for path in paths])) for name in ("apart", "behind"))
-    return Response(s, x, F, float(forces.max()), float(forces.min()), apart, behind)
+    return Response(s[mesh], x[mesh], F[mesh], largest, smallest, apart, behind, spectrum)
 
 
-def _amplitudes(values: Floats, repeats: int) -> Floats:
-    """(5,) of the mesh harmonics of values that repeat after so many meshes."""
-    return np.abs(np.fft.rfft(values)[repeats : HARMONICS * repeats + 1 : repeats]) * (2.0 / len(values))
+def histories(model: TorsionalModel, period: float, state: Floats, repeats: int, phases: Floats) -> list[History]:
+    """Of so many mesh periods [s] after a state (2,) at phase 0, each at these phases (k,) at least."""
+    paths: list[History] = []
+    for _ in range(repeats):
+        paths.append(history(model, period, state, phases))
+        state = np.array([paths[-1].displacement[-1], paths[-1].velocity[-1]])
+    return paths
+
+
+def _amplitudes(values: Floats) -> Floats:
+    """(n // 2,) of the lines 1, 2, ... of values (n,) of one repeat."""
+    return np.abs(np.fft.rfft(values)[1:]) * (2.0 / len(values))

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from evolvent.dynamics.oscillator.continuation import Branch, between, follow
 from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
@@ -20,6 +21,8 @@ from evolvent_meshes.arrays import Floats
 
 SAME = 1e-6
 """Distance of two states that are one, in static deflections."""
+STABILITY_ACCURACY = 1e-9
+"""Of the mesh period at which a branch loses its stability."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +43,14 @@ class Running:
     """A steady state, or a motion that does not repeat with every mesh."""
     place: float | None
     """On the branch; None where it is not on it."""
-    jumped: bool
-    """Whether it did not get there along the branch."""
+    left_at: float | None
+    """Mesh period [s] at which it has left the branch since the speed before: of the fold, or where stability is lost
+    otherwise. None where it has not."""
+
+    @property
+    def jumped(self) -> bool:
+        """Whether it has left the branch since the speed before."""
+        return self.left_at is not None
 
     @property
     def repeats(self) -> int:
@@ -113,18 +122,19 @@ def _run(
         before = found[-1]
         along = None if before.place is None else _along(branch, before.place, states)
         if along is not None:
-            found.append(Running(along.state, along.place, False))
+            found.append(Running(along.state, along.place, None))
             continue
         motion = settled(model, float(period), before.motion.state)
-        found.append(_landed(model, motion, states, before.place is not None))
+        left_at = _left_at(model, branch, before, states, float(period), rising)
+        found.append(_landed(model, motion, states, left_at))
     return found
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:
     """At the first speed. stable: the state that the pair would have come from outside in first."""
     if stable:
-        return Running(stable[0].state, stable[0].place, False)
-    return Running(settled(model, period, static_state(model)), None, False)
+        return Running(stable[0].state, stable[0].place, None)
+    return Running(settled(model, period, static_state(model)), None, None)
 
 
 def _along(branch: Branch, place: float, states: Sequence[OnBranch]) -> OnBranch | None:
@@ -137,10 +147,46 @@ def _along(branch: Branch, place: float, states: Sequence[OnBranch]) -> OnBranch
     return None
 
 
-def _landed(model: TorsionalModel, motion: Settled, states: Sequence[OnBranch], left: bool) -> Running:
-    """Where a motion ended. left: whether it left the branch just now."""
+def _left_at(
+    model: TorsionalModel, branch: Branch, before: Running, states: Sequence[OnBranch], period: float, rising: bool
+) -> float | None:
+    """Mesh period [s] at which the branch ends for a pair that follows it to a speed beyond its end; None where the
+    pair was not on it.
+
+    states: on the branch at that speed.
+    period: of that speed, which stands where no end is found before it.
+    """
+    if before.place is None or not isinstance(before.motion, SteadyState):
+        return None
+    first, last = max(int(np.ceil(before.place)) - 1, 0), before.motion
+    step = 1 if (branch.periods[first + 1] < branch.periods[first]) == rising else -1
+    i = first + 1 if step > 0 else int(np.floor(before.place))
+    while 0 <= i < len(branch.points) and (branch.periods[i] > period) == rising:
+        if i in branch.folds:
+            return float(branch.periods[i])
+        if not branch.stable[i]:
+            return _unstable_from(model, last, branch.points[i])
+        last, i = branch.points[i], i + step
+    ahead = [each for each in states if (each.place - before.place) * step > 0.0]
+    beyond = min(ahead, key=lambda each: abs(each.place - float(before.place or 0.0)), default=None)
+    return _unstable_from(model, last, beyond.state) if beyond and not beyond.state.stable else period
+
+
+def _unstable_from(model: TorsionalModel, stable: SteadyState, unstable: SteadyState) -> float:
+    """Mesh period [s] between those of two states of a branch without a fold between them, at which the larger of
+    Floquet's multipliers is 1."""
+
+    def excess(period: float) -> float:
+        found = steady_state(model, period, between(stable, unstable, period))
+        return float(np.abs(found.multipliers).max()) - 1.0
+
+    return float(brentq(excess, stable.period, unstable.period, rtol=STABILITY_ACCURACY))
+
+
+def _landed(model: TorsionalModel, motion: Settled, states: Sequence[OnBranch], left_at: float | None) -> Running:
+    """Where a motion ended. left_at: as in `Running`."""
     scale = Scales.of(model).array
     for each in states:
         if motion.repeats == 1 and each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
-            return Running(each.state, each.place, left)
-    return Running(motion, None, left)
+            return Running(each.state, each.place, left_at)
+    return Running(motion, None, left_at)

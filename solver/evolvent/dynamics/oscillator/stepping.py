@@ -130,20 +130,25 @@ def cross(o: Oscillator, leaving: bool, y: Floats) -> None:
 
 
 @njit(cache=True, error_model="numpy")
+def mesh_force(o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats) -> float:
+    """Of the mesh with its damping [N], in a region."""
+    return o.load - o.ground * y[1] - o.mass * acceleration(o, region, front, back, τ, T, y[0], y[1])[0]
+
+
+@njit(cache=True, error_model="numpy")
 def record(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats, row: Floats
 ) -> None:  # fmt: skip
     """A line of the path of `advance`."""
-    a = acceleration(o, region, front, back, τ, T, y[0], y[1])[0]
     row[0], row[1], row[2] = y[0], y[1], np.sign(region)
-    row[3] = o.load - o.ground * y[1] - o.mass * a
+    row[3] = mesh_force(o, region, front, back, τ, T, y)
     row[4] = offset_at(o.front, front, τ)[0]
 
 
 @njit(cache=True, error_model="numpy")
 def advance(
     o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float, y: Floats, path: Floats
-) -> tuple[float, float]:
+) -> tuple[float, float, float, float]:
     """Integrates the state y (8,) from the first to the last of the phases stops (k + 1,), in place.
 
     cells: (k, 2) phase intervals of both sides.
@@ -151,11 +156,14 @@ def advance(
     path: (k + 1, 5) takes s, v, the side that touches, the mesh force and e of the loaded flanks at all stops; of
     length 0 where they are not wanted.
 
-    Returns the phases [mesh periods] spent out of contact and on the back flanks.
+    Returns the phases [mesh periods] spent out of contact and on the back flanks, and the smallest and the largest
+    mesh force [N] just before and just after contact begins or ends, where the damping force jumps; ∞ and −∞ where it
+    does neither.
     """
     stages, out = np.empty((STAGES, SIZE)), np.empty(SIZE)
     begin, left = np.empty((2, 2)), np.empty((2, 2))
     region, apart, behind = region_at(o, cells[0, 0], cells[0, 1], stops[0], T, y), 0.0, 0.0
+    smallest, largest = np.inf, -np.inf
     for k in range(len(cells)):
         front, back = cells[k, 0], cells[k, 1]
         if len(path):
@@ -189,7 +197,10 @@ def advance(
                 following = beyond(region, border)
                 if region == FREE or following == FREE:
                     cross(o, following == FREE, y)
+                    before = mesh_force(o, region, front, back, τ, T, y)
+                    after = mesh_force(o, following, front, back, τ, T, y)
+                    smallest, largest = min(smallest, before, after), max(largest, before, after)
                 region = following
     if len(path):
         record(o, region, cells[-1, 0], cells[-1, 1], stops[-1], T, y, path[-1])
-    return apart, behind
+    return apart, behind, smallest, largest

@@ -77,6 +77,11 @@ class History:
     """Share of the period out of contact."""
     behind: float
     """Share of it on the back flanks."""
+    smallest_force: float
+    """Smallest mesh force [N] of these phases and of both sides of each instant at which contact begins or ends, where
+    the damping force jumps."""
+    largest_force: float
+    """Largest one of these [N]."""
 
     @property
     def separated(self) -> Bools:
@@ -97,9 +102,10 @@ def history(model: TorsionalModel, period: float, state: Floats, phases: Floats 
     force is not smooth."""
     y, (stops, cells) = _with_derivatives(state), model.law.stops(phases)
     path = np.empty((len(stops), 5))
-    shares = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
+    apart, behind, low, high = advance(model.oscillator, stops, cells, period, _longest(model, period), y, path)
     s, v, side, force, error = path.T
-    return History(stops, s, v, side.astype(np.int64), force, error, *shares)
+    smallest, largest = min(low, float(force.min())), max(high, float(force.max()))
+    return History(stops, s, v, side.astype(np.int64), force, error, apart, behind, smallest, largest)
 
 
 def _with_derivatives(state: Floats) -> Floats:

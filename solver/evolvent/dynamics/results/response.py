@@ -8,12 +8,14 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
+from evolvent_meshes.arrays import Floats
 
 RESPONSE, BRANCH, DYNAMICS = "response.csv", "branch.csv", "dynamics.json"
 UM = 1e3  # µm per mm
@@ -47,14 +49,25 @@ class ResponseRow:
     harmonic_5_um: float
     """Fifth."""
     force_harmonic_1_N: float
-    """Of the mesh force, first mesh harmonic."""
+    """Amplitude of the mesh harmonic of the mesh force, like the next four; between them: spectrum.csv."""
+    force_harmonic_2_N: float
+    """Second."""
+    force_harmonic_3_N: float
+    """Third."""
+    force_harmonic_4_N: float
+    """Fourth."""
+    force_harmonic_5_N: float
+    """Fifth."""
     largest_force_N: float
-    """Largest mesh force, damping included."""
+    """Largest mesh force, damping included, on both sides of the instants at which contact begins or ends."""
     smallest_force_N: float
     """Smallest one: below 0 where back flanks press, or the damper pulls."""
     dynamic_factor: float
     """Largest mesh force of this motion over the static one; with the damping that the scene gives, and of all teeth in
     contact: not K_v of ISO 6336-1."""
+    dynamic_factor_iso: float
+    """K_v of ISO 6336-1:2006, Method B, at this speed: by the deviations and the mass that the scene gives, without its
+    damping; the same up and down."""
     separated_share: float
     """Share of the time in which no flanks touch."""
     back_contact_share: float
@@ -106,11 +119,23 @@ class DriveSummary:
     mesh_frequency_Hz: float
     """At the natural speed."""
     folds_rpm: tuple[float, ...]
-    """Speeds at which the branch of steady states turns back, in the order along it: a pair that runs up leaves it at
-    the first of each two, one that runs down at the second, where both are stable up to there (branch.csv)."""
+    """Speeds at which the branch of steady states turns back, in the order along it."""
+    jumps_up_rpm: tuple[float, ...]
+    """Speeds at which a pair that runs up leaves the branch: at a fold, or where the steady state loses its stability
+    otherwise; in the order in which it comes there."""
+    jumps_down_rpm: tuple[float, ...]
+    """The same of a pair that runs down."""
     heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
     on straight. Null with another model of the mesh."""
+    iso_single_stiffness_N_per_mm_um: float
+    """c' of ISO 6336-1:2006, clause 9, per mm of face width, like the next one."""
+    iso_mesh_stiffness_N_per_mm_um: float
+    """c_γα of the same; a secant of solid discs, not the stiffness that was computed."""
+    iso_resonance_speed_rpm: float
+    """n_E1 of ISO 6336-1:2006, clause 6: of the pinion, by that stiffness and the mass above."""
+    iso_relief_term: float
+    """B_k of the same: what tip relief leaves of the deflection, 1 without one."""
 
 
 def speed_of(drive: Drive, period: float) -> float:
@@ -129,20 +154,25 @@ def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
     }
 
 
-def response_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]]) -> Iterator[ResponseRow]:
+def response_rows(
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], iso: MethodB
+) -> Iterator[ResponseRow]:
     """Up, then down, at ascending speeds."""
     for way, runs in (("up", swept.up), ("down", swept.down)):
         for period, run, each in zip(swept.periods, runs, found[way]):
-            yield _row(drive, way, float(period), run, each)
+            speed = speed_of(drive, float(period))
+            yield ResponseRow(
+                speed, way, run.repeats, run.jumped, UM * each.equivalent_amplitude,
+                UM * each.elastic_equivalent_amplitude, *_five(UM * each.total), *_five(each.force),
+                each.largest_force, each.smallest_force, each.largest_force / drive.model.load, iso.factor(speed),
+                each.apart, each.behind,
+            )  # fmt: skip
 
 
-def _row(drive: Drive, way: str, period: float, run: Running, each: Response) -> ResponseRow:
-    first, second, third, fourth, fifth = (UM * float(value) for value in each.total)
-    return ResponseRow(
-        speed_of(drive, period), way, run.repeats, run.jumped, UM * each.equivalent_amplitude,
-        UM * each.elastic_equivalent_amplitude, first, second, third, fourth, fifth, float(each.force[0]),
-        each.largest_force, each.smallest_force, each.largest_force / drive.model.load, each.apart, each.behind,
-    )  # fmt: skip
+def _five(amplitudes: Floats) -> tuple[float, float, float, float, float]:
+    """Of the mesh harmonics."""
+    first, second, third, fourth, fifth = (float(value) for value in amplitudes)
+    return first, second, third, fourth, fifth
 
 
 def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
@@ -152,7 +182,14 @@ def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
         yield BranchRow(speed_of(drive, state.period), UM * size, bool(stable), i in swept.branch.folds)
 
 
-def summary(drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float) -> DriveSummary:
+def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
+    """Speeds [r/min] at which a pair leaves the branch on its way through motions."""
+    return tuple(speed_of(drive, run.left_at) for run in runs if run.left_at is not None)
+
+
+def summary(
+    drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB
+) -> DriveSummary:
     """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
     pinion, wheel = settings.inertias
     folds = tuple(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
@@ -160,7 +197,9 @@ def summary(drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: f
         1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness, drive.natural_speed,
         drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
         settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
-        largest / heaviest if settings.mesh == "force_surface" else None,
+        jumps(drive, swept.up), jumps(drive, swept.down[::-1]),
+        largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
+        iso.resonance_speed, iso.relief_term,
     )  # fmt: skip
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive
@@ -17,22 +19,23 @@ from evolvent_meshes.arrays import Floats
 
 SUPERHARMONICS = (1, 2, 3, 4)
 """Parts of the natural speed that are marked."""
+ISO = "K_v of ISO 6336-1"
 
 
 def response_picture(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow]
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
 ) -> bytes:
     """PNG of `response_figure`."""
     with styled():
-        return png(response_figure(drive, swept, found, branch))
+        return png(response_figure(drive, swept, found, branch, iso))
 
 
 def response_figure(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow]
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
 ) -> Figure:
-    """Equivalent amplitude, dynamic factor and separated share over the speed, up and down, and the unstable steady
-    states between."""
-    speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
+    """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
+    and the unstable steady states between."""
+    speeds, accuracy = np.array([speed_of(drive, float(period)) for period in swept.periods]), iso.accuracy
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
         f"Natural speed {drive.natural_speed:.0f} r/min at the mean tangent stiffness of "
@@ -51,13 +54,15 @@ def response_figure(
             axes.plot(speeds, values, style, color=colour, label=f"running {way}")
             _mark_unrepeated(axes, speeds, values, runs)
     _draw_branch(amplitude, branch)
+    _draw_iso(factor, speeds, iso)
     for axes in (amplitude, factor, apart):
         for part in SUPERHARMONICS:
             axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
-    factor.set_ylabel("largest mesh force over\nthe static one (not K_v)")
+    factor.set_ylabel("largest mesh force\nover the static one")
+    factor.legend(*_iso_alone(factor), loc="upper left")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
     amplitude.legend(loc="upper left")
@@ -65,8 +70,24 @@ def response_figure(
         figure,
         "Dotted: the natural speed and its half, third and quarter. Hollow: a motion that does not repeat with every "
         "mesh.",
+        f"K_v of ISO 6336-1, Method B: for base pitch and profile deviations of {accuracy.base_pitch_deviation:.3g} "
+        f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
     )
     return figure
+
+
+def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:
+    """K_v, and the range of its main resonance."""
+    begin, end = (iso.resonance_speed * ratio for ratio in iso.main_resonance)
+    fine = np.linspace(speeds[0], speeds[-1], 1000)
+    axes.plot(fine, [iso.factor(float(speed)) for speed in fine], color=INK, lw=0.9, label=ISO)
+    axes.axvspan(begin, end, color=FAINT, alpha=0.12, lw=0.0, zorder=0)
+
+
+def _iso_alone(axes: Axes) -> tuple[list[Artist], list[str]]:
+    """Of a legend: the other curves are named in the panel above."""
+    handles, labels = axes.get_legend_handles_labels()
+    return [handles[labels.index(ISO)]], [ISO]
 
 
 def _folds(drive: Drive, swept: SpeedSweep) -> str:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
+from evolvent.dynamics.iso_stiffness import outside_range
+from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows, motions, write_histories
 from evolvent.dynamics.results.response import (
     BRANCH,
     DYNAMICS,
     RESPONSE,
+    BranchRow,
     DriveSummary,
     branch_rows,
     largest_force,
@@ -23,6 +28,7 @@ from evolvent.dynamics.results.response import (
     summary,
     write_response,
 )
+from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows, write_spectrum
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -35,11 +41,15 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent_meshes.arrays import Floats
 
-PICTURE = "vibration.png"
+PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
+TABLES = RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES
 SPEEDS = "speeds"
 FROM, TO = 1.0 / 6.0, 1.6
 """Speeds that are swept by default, over the natural one."""
+SAME_SPEED = 1e-9
+"""Part by which speeds differ that are one."""
 
 
 def run_dynamics(
@@ -55,7 +65,8 @@ def run_dynamics(
     Raises as `run_excitation`, and NoSteadyState.
     """
     comm = MPI.COMM_WORLD
-    on_first(comm, lambda: check_results(out, (*WRITTEN, RESPONSE, BRANCH, DYNAMICS, f"pictures/{PICTURE}"), overwrite))
+    written = (*WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS)))
+    on_first(comm, lambda: check_results(out, written, overwrite))
     dolfinx_compat.silence_logs()
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     with Progress(hidden=quiet or comm.rank > 0) as progress:
@@ -63,11 +74,26 @@ def run_dynamics(
         return on_first(comm, lambda: _written(excitation, problems, section, out, progress))
 
 
+def accuracy(section: DynamicsSection) -> Accuracy:
+    """What the section says for K_v of ISO 6336-1."""
+    return Accuracy(
+        section.base_pitch_deviation_um, section.profile_deviation_um, section.tolerance_class, section.flank_surface,
+        section.contact_endurance_MPa,
+    )  # fmt: skip
+
+
+def sweep_list(natural_speed: float, section: DynamicsSection) -> Floats:
+    """Ascending speeds (n,) [r/min]: the section's, evenly spaced, and those of its histories, each once."""
+    low, high = section.speed_rpm or (FROM * natural_speed, TO * natural_speed)
+    even, wanted = np.linspace(low, high, section.speeds), np.array(section.histories_rpm)
+    others = [speed for speed in even if not np.isclose(speed, wanted, rtol=SAME_SPEED, atol=0.0).any()]
+    return np.sort(np.concatenate([others, wanted]))
+
+
 def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
     """Over the section's speeds."""
-    low, high = section.speed_rpm or (FROM * pair.natural_speed, TO * pair.natural_speed)
     slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
-    periods = speeds_to_periods(np.linspace(low, high, section.speeds), pair.teeth)
+    periods = speeds_to_periods(sweep_list(pair.natural_speed, section), pair.teeth)
     return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)))
 
 
@@ -75,26 +101,57 @@ def _written(
     excitation: MeshExcitation, problems: Sequence[GearProblem], section: DynamicsSection, out: Path, progress: Progress
 ) -> list[str]:
     """Sweeps the speeds and writes everything. On rank 0 alone."""
-    percents = sorted(section.torque_percents)
-    settings = drive_settings(problems[0].pair, section)
-    vibrating = drive(problems[0].pair, excitation, percents.index(100.0), settings)
+    percents, first = sorted(section.torque_percents), problems[0]
+    settings = drive_settings(first.pair, section)
+    vibrating = drive(first.pair, excitation, percents.index(100.0), settings)
+    moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
+    iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
     progress.stage(SPEEDS)
     swept = _swept(vibrating, section)
     found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
+    moving = motions(vibrating, swept, section.histories_rpm)
     progress.stage(OUTPUT)
-    known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]))
+    known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
     with locked(out):
         folder = RunFolder(out)
         failures = write_excitation(folder, excitation, problems)
-        write_response(folder, response_rows(vibrating, swept, found), branch, known)
+        write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
+        write_spectrum(folder, spectrum_rows(vibrating, swept, found))
+        if moving:
+            write_histories(folder, history_rows(moving))
+        failures += draw(list(_pictures(vibrating, swept, found, branch, moving, iso)), folder).failures
+    return [*failures, *_warnings(vibrating, settings, known), *_iso_warnings(first)]
 
-        def drawn() -> bytes:
-            from evolvent.dynamics.results.response_figure import response_picture  # matplotlib takes a second
 
-            return response_picture(vibrating, swept, found, branch)
+def _pictures(
+    vibrating: Drive,
+    swept: SpeedSweep,
+    found: dict[str, list[Response]],
+    branch: Sequence[BranchRow],
+    moving: Sequence[Motion],
+    iso: MethodB,
+) -> Iterator[Picture]:
+    """Vibration over the speed, spectrum running up, and motions at speeds where any are wanted."""
 
-        failures += draw([Picture(PICTURE, drawn)], folder).failures
-    return [*failures, *_warnings(vibrating, settings, known)]
+    def over_speed() -> bytes:
+        from evolvent.dynamics.results.response_figure import response_picture  # matplotlib takes a second
+
+        return response_picture(vibrating, swept, found, branch, iso)
+
+    def waterfall() -> bytes:
+        from evolvent.dynamics.results.waterfall_figure import waterfall_picture
+
+        return waterfall_picture(vibrating, swept, found["up"])
+
+    def over_time() -> bytes:
+        from evolvent.dynamics.results.histories_figure import histories_picture
+
+        return histories_picture(moving, vibrating.model.load)
+
+    yield Picture(PICTURE, over_speed)
+    yield Picture(WATERFALL, waterfall)
+    if moving:
+        yield Picture(PORTRAITS, over_time)
 
 
 def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) -> list[str]:
@@ -111,4 +168,14 @@ def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) ->
             f"dynamics.torque_percents: the largest mesh force is {share:.3g} times that of the heaviest torque; "
             "beyond that the force goes on straight. Add heavier ones until this is below 1"
         )
+    return found
+
+
+def _iso_warnings(problem: GearProblem) -> list[str]:
+    """What of the gears K_v of ISO 6336-1 is not made for, or does not see."""
+    found = []
+    if (what := outside_range(problem.pair)) is not None:
+        found.append(f"dynamic_factor_iso: the tooth stiffness of ISO 6336-1 is not made for these gears: {what}")
+    if any(chart is not None for chart in problem.flanks):
+        found.append("dynamic_factor_iso: it has the tip relief of the design, not that of flank_csv")
     return found

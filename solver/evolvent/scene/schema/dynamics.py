@@ -6,13 +6,14 @@ from typing import Any, Literal, Self
 
 from pydantic import field_validator, model_validator
 
-from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.errors import NOTHING, InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, key
 
 MOST_SPEEDS = 5000
 FASTEST = 1e6
 """Highest speed [r/min]."""
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
+HISTORIES = f"a list of up to 6 different speeds above 0 up to {FASTEST:g}, in r/min"
 PERCENTS = "different numbers above 0 up to 1000, 100 among them"
 
 
@@ -91,7 +92,38 @@ class DynamicsSection(SceneSection):
         '"up" or "down"', default="up",
     )  # fmt: skip
 
-    @field_validator("speed_rpm", "torque_percents", mode="before")
+    histories_rpm: tuple[float, ...] = key(
+        "speeds of the pinion of which the motion over time is written and drawn; they join those of `speeds`",
+        HISTORIES, "take the speeds of interest from response.csv", default=(), max_length=6,
+    )  # fmt: skip
+    base_pitch_deviation_um: float = key(
+        "f_pb, deviation of the transverse base pitch, the larger of both gears, for K_v of ISO 6336-1 beside the "
+        "computed factor; 0: perfect pitches",
+        "a number from 0 to 1000, in µm", "it is f_pt cos α_t of ISO 1328-1", default=0.0, ge=0, le=1000,
+    )  # fmt: skip
+    profile_deviation_um: float = key(
+        "f_fα, profile form deviation, likewise; 0: perfect profiles", "a number from 0 to 1000, in µm", default=0.0,
+        ge=0, le=1000,
+    )  # fmt: skip
+    tolerance_class: int | None = key(
+        "of ISO 1328-1, the coarser of both gears, likewise; from 6 on tip relief does not count; by default it does",
+        "a whole number from 1 to 12", "give base_pitch_deviation_um and profile_deviation_um, too: they do not follow "
+        "from it here",
+        default=None, ge=1, le=12,
+    )  # fmt: skip
+    flank_surface: Literal["hardened", "through_hardened", "cast_iron"] = key(
+        "which running-in ISO 6336-1 reckons with: surface hardened or nitrided teeth, through hardened or normalised "
+        "ones, or grey cast iron",
+        '"hardened", "through_hardened" or "cast_iron"',
+        default="hardened",
+    )
+    contact_endurance_MPa: float | None = key(
+        "σ_Hlim, allowable stress number, likewise: of through hardened teeth it decides the running-in, and of teeth "
+        "without tip relief the relief that wear gives them; by default there is none",
+        "a number from 100 to 3000, in MPa", "ISO 6336-5 has it", default=None, ge=100, le=3000,
+    )  # fmt: skip
+
+    @field_validator("speed_rpm", "torque_percents", "histories_rpm", mode="before")
     @classmethod
     def _list_is_tuple(cls, value: Any) -> Any:
         return tuple(value) if isinstance(value, list) else value
@@ -105,4 +137,18 @@ class DynamicsSection(SceneSection):
         if not all(0.0 < each <= 1000.0 for each in given) or len(set(given)) < len(given) or 100.0 not in given:
             remedy = "add 100, the torque itself, and give each once"
             raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, remedy))
+        histories = self.histories_rpm
+        if not all(0.0 < each <= FASTEST for each in histories) or len(set(histories)) < len(histories):
+            raise validation_error(InputProblem("histories_rpm", shown(histories), HISTORIES, "give each once"))
+        return self
+
+    @model_validator(mode="after")
+    def _endurance(self) -> Self:
+        if self.flank_surface == "through_hardened" and self.contact_endurance_MPa is None:
+            raise validation_error(
+                InputProblem(
+                    "contact_endurance_MPa", NOTHING, "σ_Hlim, with flank_surface = \"through_hardened\"",
+                    "give it in MPa; ISO 6336-5 has it",
+                )
+            )  # fmt: skip
         return self

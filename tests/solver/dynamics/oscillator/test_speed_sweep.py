@@ -51,6 +51,32 @@ def test_resonance_leans_to_lower_speeds() -> None:
     assert 0.0 <= down - jumps[1][0] < speeds[1] - speeds[0]
 
 
+def test_jumps_are_at_the_folds() -> None:
+    """Running up the pair leaves the branch at the upper fold, running down at the lower one: exactly those mesh
+    periods, wherever the speeds of the sweep are."""
+    found = swept()
+    down, up = sorted(fold_speeds(found.branch))
+    left = [[60.0 / (TEETH * run.left_at) for run in runs if run.left_at] for runs in (found.up, found.down)]
+    assert left == [[pytest.approx(up, rel=1e-12)], [pytest.approx(down, rel=1e-12)]]
+
+
+def test_a_motion_that_doubles_its_period_leaves_without_a_fold() -> None:
+    """Near twice the resonance a stiffness that varies by a quarter makes the steady state lose its stability by a
+    multiplier of −1. Where the pair leaves the branch, both ways, the multipliers of the steady states 1e-6 of the
+    speed before and behind are below and above 1 in size; the motion beyond repeats after two meshes."""
+    model, speeds = softening(0.25), np.linspace(1.5, 2.6, 56) * RESONANCE
+    found = sweep_speeds(model, speeds_to_periods(speeds, TEETH))
+    for runs in (found.up, found.down[::-1]):
+        (at,) = [i for i, run in enumerate(runs) if run.jumped]
+        before, run = runs[at - 1], runs[at]
+        assert run.repeats == 2 and run.left_at is not None
+        state, inside = before.motion.state, []
+        for factor in (-1e-6, 1e-6):
+            one = steady_state(model, run.left_at * (1.0 + factor), state)
+            inside.append(float(np.abs(one.multipliers).max()) < 1.0)
+        assert sorted(inside) == [False, True]
+
+
 @pytest.mark.parametrize("window", [(0.6, 0.9), (0.9, 1.3)], ids=["ends in the fold", "begins in it"])
 def test_speeds_within_a_fold_have_all_motions(window: tuple[float, float]) -> None:
     """Speeds of which one end lies between both folds: with the branch followed beyond them each has the motions of the

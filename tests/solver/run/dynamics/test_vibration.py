@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from evolvent.cli import main
 from evolvent.dynamics.pair_model import geometric_backlash
@@ -24,7 +25,7 @@ from tests.support.running.processes import Run, on_ranks
 
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]", "dynamics.speeds=60",
-    "dynamics.speed_rpm=[2500,7000]",
+    "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
 )  # fmt: skip
 
 
@@ -68,12 +69,83 @@ def test_pairs_jump_at_the_folds(out: Path) -> None:
     """Running up, the jump is at the first speed above a fold; branch.csv marks as many as dynamics.json names."""
     folds = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))["folds_rpm"]
     assert sum(line["fold"] == "True" for line in rows(out / "branch.csv")) == len(folds) > 0
-    speeds = np.linspace(2500.0, 7000.0, 60)
+    speeds = np.linspace(1700.0, 7000.0, 60)
     jumps = [float(line["speed_rpm"]) for line in rows(out / "response.csv")[:60] if line["jumped"] == "True"]
-    assert len(jumps) == 1
-    assert any(0.0 <= jumps[0] - fold <= speeds[1] - speeds[0] for fold in folds)
-    assert (out / "pictures/vibration.png").stat().st_size > 20_000
+    assert jumps
+    assert all(any(0.0 <= jump - fold <= speeds[1] - speeds[0] for fold in folds) for jump in jumps)
+    for name in ("vibration.png", "waterfall.png"):
+        assert (out / "pictures" / name).stat().st_size > 20_000
     assert (out / "excitation.csv").exists()
+    assert not (out / "histories.csv").exists()
+
+
+def test_jumps_are_named_by_their_way(out: Path) -> None:
+    """As many speeds as response.csv marks jumps, each within the step before the mark, in the order of the way; they
+    are folds of this pair."""
+    known = json.loads((out / "dynamics.json").read_text(encoding="utf-8"))
+    step = 5300.0 / 59.0
+    for way, sign in (("up", 1.0), ("down", -1.0)):
+        lines = [line for line in rows(out / "response.csv") if line["way"] == way and line["jumped"] == "True"]
+        marked = [float(line["speed_rpm"]) for line in lines][:: int(sign)]
+        jumps = known[f"jumps_{way}_rpm"]
+        assert len(jumps) == len(marked) > 0
+        assert all(0.0 <= sign * (mark - jump) <= step for mark, jump in zip(marked, jumps))
+        assert set(jumps) <= set(known["folds_rpm"])
+
+
+def test_dynamic_factor_of_the_standard_stands_beside(out: Path) -> None:
+    """dynamic_factor_iso is K_v of Method B worked by hand: with f_pb = 5 µm, 7.5 % of it run in, B_p = c' 4.625/w and
+    B_k = 1; the same up and down. The line load w is F cos α/b."""
+    known, lines = json.loads((out / "dynamics.json").read_text(encoding="utf-8")), rows(out / "response.csv")
+    line_load = known["static_force_N"] * np.cos(np.radians(20.0)) / 20.0
+    B_p = known["iso_single_stiffness_N_per_mm_um"] * 4.625 / line_load
+    for line, other in zip(lines[:60], lines[60:]):
+        N, factor = float(line["speed_rpm"]) / known["iso_resonance_speed_rpm"], float(line["dynamic_factor_iso"])
+        if N <= 1.15:
+            exact = 1.0 + N * (0.32 * B_p + 0.23) if N <= 0.85 else 1.0 + 0.32 * B_p + 0.90
+            assert factor == pytest.approx(exact, rel=1e-8)
+        assert other["dynamic_factor_iso"] == line["dynamic_factor_iso"]
+    assert known["iso_relief_term"] == 1.0
+
+
+def test_spectrum_has_the_harmonics(out: Path) -> None:
+    """The lines of whole orders are the harmonics of response.csv, at order times speed times teeth."""
+    lines, spectrum = rows(out / "response.csv"), rows(out / "spectrum.csv")
+    assert len(spectrum) == 120 * 8
+    for i in range(120):
+        for order in range(1, 6):
+            line = spectrum[8 * i + order - 1]
+            assert (line["speed_rpm"], line["way"]) == (lines[i]["speed_rpm"], lines[i]["way"])
+            assert line["force_N"] == lines[i][f"force_harmonic_{order}_N"]
+            assert line["transmission_error_um"] == lines[i][f"harmonic_{order}_um"]
+            frequency = order * float(line["speed_rpm"]) * 50.0 / 60.0
+            assert float(line["frequency_Hz"]) == pytest.approx(frequency, rel=1e-7)
+
+
+def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
+    """Speeds of histories join the sweep, one of its own counts once; each motion closes after its repeats, its largest
+    force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against the
+    ground), to 1e-3 by the trapezoidal rule."""
+    one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
+    assert one.dynamics is not None
+    loads = load_scenes(one, one.dynamics.torque_percents)
+    run_dynamics(list(loads.values()), one.dynamics, tmp_path, quiet=True)
+    response = {(line["speed_rpm"], line["way"]): line for line in rows(tmp_path / "response.csv")}
+    assert len(response) == 2 * 21
+    lines = rows(tmp_path / "histories.csv")
+    static = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))["static_force_N"]
+    for speed in ("1700", "3900"):
+        for way in ("up", "down"):
+            motion = [line for line in lines if (line["speed_rpm"], line["way"]) == (speed, way)]
+            phase, force, s = (
+                np.array([float(line[name]) for line in motion]) for name in ("phase", "force_N", "transmission_error_um")
+            )
+            assert (np.diff(phase) > 0.0).all() and phase[-1] == float(response[speed, way]["repeats"])
+            assert s[-1] == pytest.approx(s[0], abs=1e-5)
+            largest = float(response[speed, way]["largest_force_N"])
+            assert 0.98 * largest <= force.max() <= largest * (1.0 + 1e-8)
+            assert trapezoid(force, phase) / phase[-1] == pytest.approx(static, rel=1e-3)
+    assert (tmp_path / "pictures/histories.png").stat().st_size > 20_000
 
 
 def test_settings_follow_from_the_gears() -> None:
@@ -111,6 +183,10 @@ def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
         ("dynamics.damping_ratio=0", "dynamics.damping_ratio"),
         ("dynamics.pinion_inertia_kg_m2=-1", "dynamics.pinion_inertia_kg_m2"),
         ('dynamics.mesh="cubic"', "dynamics.mesh"),
+        ("dynamics.histories_rpm=[3000,3000]", "dynamics.histories_rpm"),
+        ("dynamics.histories_rpm=[-1]", "dynamics.histories_rpm"),
+        ("dynamics.tolerance_class=13", "dynamics.tolerance_class"),
+        ('dynamics.flank_surface="through_hardened"', "dynamics.contact_endurance_MPa"),
     ],
 )
 def test_wrong_keys_are_named(setting: str, key: str) -> None:

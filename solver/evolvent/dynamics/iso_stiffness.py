@@ -1,0 +1,82 @@
+"""Stiffness of tooth pairs by ISO 6336-1:2006, clause 9, Method B: from the tooth form, without computing the gears.
+
+It is a secant at heavy load, of teeth on solid discs, per mm of face width.
+"""
+
+from __future__ import annotations
+
+import math
+
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
+
+CONSTANT = 0.04723
+PER_TOOTH = 0.15551, 0.25791
+PER_SHIFT = -0.00635, -0.00193
+PER_SHIFT_AND_TOOTH = -0.11654, -0.24188
+PER_SHIFT_SQUARED = 0.00529, 0.00182
+"""Coefficients C_1 to C_9 of q' [mm µm/N], of the smaller and of the larger gear."""
+MEASURED = 0.8
+"""C_M: measured stiffness over that of the theory."""
+LIGHT = 100.0
+"""Line load [N/mm] below which the stiffness falls with its fourth root."""
+STEEL, LIKE_STEEL = 206e3, 0.05
+"""Modulus [MPa] of the steel that the formula is for, and the part by which that of others may differ to be steel."""
+SHIFTS = -0.5, 2.0
+"""Sums of profile shift coefficients for which the formula is made."""
+
+
+def flexibility(pair: GearPair) -> float:
+    """q' [mm µm/N], least flexibility of a tooth pair: a polynomial of profile shifts and virtual numbers of teeth."""
+    total = CONSTANT
+    for i, gear in enumerate(by_size(pair)):
+        x, z_n = gear.profile_shift, virtual_teeth(gear)
+        total += PER_TOOTH[i] / z_n + PER_SHIFT[i] * x + PER_SHIFT_AND_TOOTH[i] * x / z_n + PER_SHIFT_SQUARED[i] * x * x
+    return total
+
+
+def virtual_teeth(gear: GearParameters) -> float:
+    """z_n = z/(cos² β_b cos β)."""
+    return float(gear.z / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle)))
+
+
+def rack_factor(gear: GearParameters) -> float:
+    """C_B = [1 + 0.5 (1.2 − h_fP/m_n)] [1 − 0.02 (20° − α_n)] of the basic rack."""
+    return (1.0 + 0.5 * (1.2 - gear.dedendum_coefficient)) * (1.0 - 0.02 * (20.0 - gear.normal_pressure_angle_deg))
+
+
+def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
+    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_B the mean of both gears.
+
+    C_R, of the blank, is 1: solid discs, or webs as wide as the face.
+
+    line_load: K_A F_t/b [N/mm]; below 100 c' is less by (line_load/100)^0.25.
+    moduli: of both gears [MPa]. Other metals than steel have c' in proportion to 2 E_1 E_2/(E_1 + E_2).
+    """
+    racks = 0.5 * (rack_factor(pair.pinion) + rack_factor(pair.wheel))
+    steel = MEASURED * racks * math.cos(pair.pinion.helix_angle) / flexibility(pair)
+    light = min(line_load / LIGHT, 1.0) ** 0.25
+    if all(abs(modulus / STEEL - 1.0) <= LIKE_STEEL for modulus in moduli):
+        return steel * light
+    return steel * light * 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]) / STEEL
+
+
+def mesh_stiffness(single: float, transverse_contact_ratio: float) -> float:
+    """c_γα = c' (0.75 ε_α + 0.25) [N/(mm µm)], mean over the mesh; up to 10 % too much where ε_α is below 1.2."""
+    return single * (0.75 * transverse_contact_ratio + 0.25)
+
+
+def by_size(pair: GearPair) -> tuple[GearParameters, GearParameters]:
+    """The standard's pinion and wheel: the gear with fewer teeth first, of equal ones that with the larger shift."""
+    smaller, larger = sorted(pair.gears, key=lambda gear: (gear.z, -gear.profile_shift))
+    return smaller, larger
+
+
+def outside_range(pair: GearPair) -> str | None:
+    """What of a pair the formula of q' is not made for, as found and wanted; None where it is."""
+    smaller, larger = (gear.profile_shift for gear in by_size(pair))
+    if smaller < larger:
+        return f"profile shifts {smaller:.3g} of the smaller and {larger:.3g} of the larger gear, wanted not less on it"
+    if not SHIFTS[0] <= smaller + larger <= SHIFTS[1]:
+        return f"a sum of profile shifts of {smaller + larger:.3g}, wanted {SHIFTS[0]} to {SHIFTS[1]}"
+    return None

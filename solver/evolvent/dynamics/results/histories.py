@@ -1,0 +1,101 @@
+"""Motions at chosen speeds over one repeat: their table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.response import SAMPLES, histories
+from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
+from evolvent.dynamics.oscillator.torsional_model import History
+from evolvent.dynamics.pair_model import Drive
+from evolvent.dynamics.results.response import UM, speed_of
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import csv_text
+from evolvent_meshes.arrays import Floats
+
+HISTORIES = "histories.csv"
+
+
+@dataclass(frozen=True)
+class HistoryRow:
+    """A line of histories.csv: an instant of a motion."""
+
+    speed_rpm: float
+    """Of the pinion, one of dynamics.histories_rpm."""
+    way: str
+    """up or down, as in response.csv."""
+    phase: float
+    """In mesh periods, over the periods after which the motion repeats; sixteen of one that does not."""
+    time_ms: float
+    """Since phase 0."""
+    transmission_error_um: float
+    """s, the dynamic transmission error with the unloaded one in it."""
+    elastic_um: float
+    """s − e: how far the loaded flanks are beyond first contact; below 0 they are apart."""
+    velocity_mm_per_s: float
+    """ds/dt."""
+    force_N: float
+    """Of the mesh, damping included; where contact begins or ends it jumps between two lines."""
+    contact: int
+    """1 where the loaded flanks touch, −1 where the back flanks do, 0 where none do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What a pair does at a speed, one mesh period after the other."""
+
+    speed: float
+    """Of the pinion [r/min]."""
+    way: str
+    """up or down."""
+    period: float
+    """Of the mesh [s]."""
+    repeats: int
+    """As in `Running`."""
+    paths: tuple[History, ...]
+    """Its mesh periods, until it repeats."""
+
+    @property
+    def phases(self) -> Floats:
+        """(n,) from 0 [mesh periods], each once."""
+        inner = [path.phases[:-1] + ahead for ahead, path in enumerate(self.paths)]
+        return np.append(np.concatenate(inner), float(len(self.paths)))
+
+    def over(self, name: str) -> Floats:
+        """A field of the paths at these phases (n,)."""
+        inner = [getattr(path, name)[:-1] for path in self.paths]
+        return np.append(np.concatenate(inner), getattr(self.paths[-1], name)[-1])
+
+
+def motions(drive: Drive, swept: SpeedSweep, speeds: Sequence[float]) -> list[Motion]:
+    """Up and down at each of these speeds of the sweep [r/min]."""
+    known = np.array([speed_of(drive, float(period)) for period in swept.periods])
+    found, phases = [], np.arange(SAMPLES) / SAMPLES
+    for speed in speeds:
+        i = int(np.argmin(np.abs(known - speed)))
+        period = float(swept.periods[i])
+        for way, run in (("up", swept.up[i]), ("down", swept.down[i])):
+            count = run.repeats or LONGEST_REPEAT
+            paths = histories(drive.model, period, run.motion.state, count, phases)
+            found.append(Motion(float(known[i]), way, period, run.repeats, tuple(paths)))
+    return found
+
+
+def history_rows(found: Iterable[Motion]) -> Iterator[HistoryRow]:
+    """One motion after the other."""
+    for motion in found:
+        columns = (motion.over(name) for name in ("displacement", "error", "velocity", "force", "side"))
+        for phase, s, e, velocity, force, side in zip(motion.phases, *columns):
+            yield HistoryRow(
+                motion.speed, motion.way, float(phase), 1e3 * float(phase) * motion.period, UM * float(s),
+                UM * float(s - e), float(velocity), float(force), int(side),
+            )  # fmt: skip
+
+
+def write_histories(folder: RunFolder, rows: Iterable[HistoryRow]) -> None:
+    """Writes histories.csv. Raises WriteError, FolderError."""
+    folder.write_text(HISTORIES, csv_text([asdict(row) for row in rows]))

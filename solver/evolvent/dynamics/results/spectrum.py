@@ -1,0 +1,48 @@
+"""Table of a pair's spectrum over the speed: the lines of its mesh force and of its transmission error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+
+from evolvent.dynamics.oscillator.response import Response
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
+from evolvent.dynamics.pair_model import Drive
+from evolvent.dynamics.results.response import UM, speed_of
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import csv_text
+
+SPECTRUM = "spectrum.csv"
+
+
+@dataclass(frozen=True)
+class SpectrumRow:
+    """A line of spectrum.csv: a line of the spectrum at a speed."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    way: str
+    """up or down, as in response.csv."""
+    order: float
+    """Frequency over that of the mesh: whole up to 8; halves of a motion that repeats after two meshes, and so on. One
+    that does not repeat has lines a sixteenth apart, of sixteen mesh periods without a window."""
+    frequency_Hz: float
+    """Order times pinion speed times its teeth."""
+    force_N: float
+    """Amplitude of the mesh force, damping included."""
+    transmission_error_um: float
+    """Amplitude of s, the dynamic transmission error with the unloaded one in it."""
+
+
+def spectrum_rows(drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]]) -> Iterator[SpectrumRow]:
+    """Up, then down, at ascending speeds, each with ascending orders."""
+    for way, responses in found.items():
+        for period, each in zip(swept.periods, responses, strict=True):
+            speed, lines = speed_of(drive, float(period)), each.spectrum
+            for order, force, total in zip(lines.orders, lines.force, lines.total):
+                yield SpectrumRow(speed, way, float(order), float(order / period), float(force), UM * float(total))
+
+
+def write_spectrum(folder: RunFolder, rows: Iterable[SpectrumRow]) -> None:
+    """Writes spectrum.csv. Raises WriteError, FolderError."""
+    folder.write_text(SPECTRUM, csv_text([asdict(row) for row in rows]))

@@ -1,0 +1,105 @@
+"""Picture of a pair's spectrum while it runs up: frequency over speed, coloured by the amplitude of the mesh force."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from evolvent.dynamics.oscillator.response import HIGHEST_ORDER, Response
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
+from evolvent.dynamics.pair_model import Drive
+from evolvent.dynamics.results.response import jumps, speed_of
+from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
+from evolvent_meshes.arrays import Floats
+
+LOWEST = 1e-3
+"""Amplitude over the static force from which on lines are drawn."""
+BEYOND_NATURAL = 3.2
+"""Highest frequency, over the natural one."""
+WHOLE, PART = 5.5, 3.0
+"""Widths of lines of whole orders and of those between them [pt]."""
+
+
+def waterfall_picture(drive: Drive, swept: SpeedSweep, found: list[Response]) -> bytes:
+    """PNG of `waterfall_figure`."""
+    with styled():
+        return png(waterfall_figure(drive, swept, found))
+
+
+def waterfall_figure(drive: Drive, swept: SpeedSweep, found: list[Response]) -> Figure:
+    """found: running up, at each speed."""
+    speeds = np.array([speed_of(drive, float(period)) for period in swept.periods])
+    natural, load = 1e-3 * drive.natural_speed * drive.teeth / 60.0, drive.model.load
+    mesh = 1e-3 / swept.periods
+    top = min(HIGHEST_ORDER * float(mesh[-1]), max(BEYOND_NATURAL * natural, 2.2 * float(mesh[-1])))
+    figure = sheet("Spectrum of the mesh force while running up", _strongest(speeds, found, load), (11.0, 6.6))
+    axes = figure.subplots()
+    drawn = _draw_lines(axes, speeds, mesh, found, load)
+    axes.axhline(natural, color=INK, lw=1.0, ls="--", zorder=1)
+    axes.text(speeds[-1], natural, "natural frequency ", va="bottom", ha="right", fontsize=9, color=INK)
+    for speed in jumps(drive, swept.up):
+        axes.axvline(speed, color=FAINT, lw=1.0, ls=":", zorder=1)
+    axes.set_xlim(speeds[0], speeds[-1])
+    axes.set_ylim(0.0, top)
+    axes.grid(visible=False)
+    _draw_orders(axes, speeds, mesh, top)
+    axes.set_xlabel("speed of the pinion [r/min]")
+    axes.set_ylabel("frequency [kHz]")
+    figure.colorbar(drawn, ax=axes, pad=0.06, label="amplitude of the mesh force [N]")
+    foot(
+        figure,
+        "Numbers: orders of the mesh. Narrow lines between them: a motion that does not repeat with every mesh.",
+        f"Dotted: jumps. Thin grey: below {LOWEST * load:.2g} N. All lines, running down, too: spectrum.csv.",
+    )
+    return figure
+
+
+def _strongest(speeds: Floats, found: list[Response], load: float) -> str:
+    """The line with the largest amplitude."""
+    i = int(np.argmax([each.spectrum.force.max() for each in found]))
+    lines = found[i].spectrum
+    k = int(np.argmax(lines.force))
+    return (
+        f"Strongest line: {lines.force[k]:.0f} N, {100.0 * lines.force[k] / load:.0f} % of the static force, order "
+        f"{lines.orders[k]:.3g} at {speeds[i]:.0f} r/min."
+    )
+
+
+def _draw_lines(axes: Axes, speeds: Floats, mesh: Floats, found: list[Response], load: float) -> LineCollection:
+    """Each line as a piece along its order, halfway to the speeds beside; the strongest on top. mesh: frequencies (n,)
+    [kHz]."""
+    middle = 0.5 * (speeds[1:] + speeds[:-1])
+    ends = np.column_stack([np.append(speeds[0], middle), np.append(middle, speeds[-1])])
+    pieces, sizes, widths = [], [], []
+    for end, speed, frequency, each in zip(ends, speeds, mesh, found):
+        lines = each.spectrum
+        for order, force in zip(lines.orders, lines.force):
+            if force >= LOWEST * load:
+                pieces.append(np.column_stack([end, order * frequency * end / speed]))
+                sizes.append(float(force))
+                widths.append(WHOLE if order == round(order) else PART)
+    rank = np.argsort(sizes)
+    drawn = LineCollection(
+        [pieces[i] for i in rank], array=np.array(sizes)[rank], cmap=PRESSURE_MAP, linewidths=np.array(widths)[rank],
+        norm=LogNorm(LOWEST * load, max([*sizes, load])), capstyle="projecting", zorder=2,
+    )  # fmt: skip
+    axes.add_collection(drawn)
+    return drawn
+
+
+def _draw_orders(axes: Axes, speeds: Floats, mesh: Floats, top: float) -> None:
+    """Lines of the orders, and their numbers where these leave the picture, at its right or its upper side."""
+    for order in range(1, HIGHEST_ORDER + 1):
+        axes.plot(speeds, order * mesh, color=FAINT, lw=0.6, alpha=0.6, zorder=1)
+        share = top / (order * float(mesh[-1]))
+        if share >= 1.0:
+            axes.annotate(
+                f"{order}", (speeds[-1], order * mesh[-1]), xytext=(5, 0), textcoords="offset points", va="center"
+            )
+        elif share * speeds[-1] > speeds[0]:
+            axes.annotate(
+                f"{order}", (share * speeds[-1], top), xytext=(0, 3), textcoords="offset points", ha="center"
+            )

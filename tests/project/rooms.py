@@ -80,11 +80,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "wear": ("meshes", "meshes.mesh", "fem", "fem.backend", "fem.condensation", "contact.*"),
     "wear.gears": (
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "contact.newton", "gears.problem", "gears",
-        "gears.contact", "gears.sweep", "gears.solution", "dynamics", "dynamics.oscillator", "wear",
+        "gears.contact", "gears.sweep", "gears.solution", "dynamics", "wear",
     ),
     "wear.results": (
         "meshes", "meshes.gears", "fem", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
-        "results.*", "wear", "wear.gears",
+        "results.*", "dynamics", "wear", "wear.gears",
     ),
     "dynamics.results": (
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.tables",
@@ -92,7 +92,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
-        "dynamics", "scene", "scene.schema", "results.*", "wear.*",
+        "dynamics", "dynamics.results", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",

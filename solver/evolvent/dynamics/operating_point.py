@@ -17,10 +17,11 @@ from mpi4py import MPI
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.oscillator.response import histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
-from evolvent.dynamics.oscillator.torsional_model import History, history
+from evolvent.dynamics.oscillator.torsional_model import History
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.gears.gear_load import GearLoad, TorqueCourse
 from evolvent.gears.gear_model import GearModel
@@ -148,11 +149,7 @@ def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:
             "the vibration does not repeat with every mesh: contact is computed under the mean force of %d meshes",
             repeats,
         )
-    state, paths = motion.state, []
-    for _ in range(repeats):
-        paths.append(history(pair.model, period, state, np.arange(SAMPLES) / SAMPLES))
-        state = np.array([paths[-1].displacement[-1], paths[-1].velocity[-1]])
-    return tuple(paths)
+    return tuple(histories(pair.model, period, motion.state, repeats, np.arange(SAMPLES) / SAMPLES))
 
 
 def _course(gears: GearPair, pair: Drive, paths: tuple[History, ...]) -> tuple[TorqueCourse, float]:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from evolvent.dynamics.operating_point import Operation
+from evolvent.dynamics.results.operation import PICTURE, write_operation
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
@@ -16,11 +18,12 @@ from evolvent.gears.meshing.modifications import modification_warnings, tip_edge
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
+from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.fields.deformation import deformation_of
 from evolvent.run.coarse_run import companion_of
 from evolvent.run.context import RunContext, run_context
 from evolvent.run.folder_checks import check_folder, foreign_files
-from evolvent.run.output import ExtraResults, write_output
+from evolvent.run.output import ExtraResults, log_pictures, write_output
 from evolvent.run.pitch_run import sweep_scene
 from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
 from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
@@ -67,6 +70,8 @@ def run_scene(
         with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
             _log_beginning(run, solved)
             _compute(run, solved, completed)
+            if vibrating is not None and vibrating.operation is not None:
+                _write_operation(run, solved, vibrating.operation)
 
 
 def _log_beginning(run: RunContext, scene: Scene) -> None:
@@ -110,3 +115,22 @@ def _compute(run: RunContext, scene: Scene, completed: ResumePoint | None) -> No
     if scene.wear is not None:
         run.on_first(lambda: write_wear(run, scene))
     run.on_first(run.folder.remove_parts)
+
+
+def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> None:
+    """Writes the mesh force under which contact was computed, and where it comes from. Collective."""
+
+    def drawn() -> bytes:
+        from evolvent.dynamics.results.operation_figure import operation_picture  # matplotlib takes a second to import
+
+        return operation_picture(operation)
+
+    def written() -> None:
+        assert scene.dynamics is not None
+        loaded = gear_problem(scene)
+        radius = loaded.pair.gears[loaded.torque_on].base_radius
+        write_operation(run.folder, operation, scene.dynamics.coming, radius)
+        if wanted_output(scene).pictures:
+            log_pictures(draw([Picture(PICTURE, drawn)], run.folder), run.log)
+
+    run.on_first(written)

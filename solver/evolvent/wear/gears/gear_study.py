@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.sweep.position_search import SearchedAt
 from evolvent.wear.block_stepping import (
     Block,
@@ -21,7 +22,6 @@ from evolvent.wear.block_stepping import (
     next_block,
 )
 from evolvent.wear.gears.gear_wear import GearWear, PitchState
-from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -141,7 +141,7 @@ def _resumed(gears: GearWear, checkpoint: StudyCheckpoint) -> WearState[PitchSta
 def _vibration(state: WearState[PitchState]) -> tuple[VibrationRow, ...]:
     """The row of a state; none under a constant torque."""
     operation = state.evaluation.operation
-    return () if operation is None else (VibrationRow.of(state.cycles, operation),)
+    return () if operation is None else (VibrationRow.after(state.cycles, operation),)
 
 
 def _row(gears: GearWear, block: Block[PitchState]) -> BlockRow:

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt
@@ -25,7 +26,6 @@ from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint
 from evolvent.wear.gears.gear_wear import GearWear
-from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -47,7 +47,8 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         "vibration": np.zeros(0) if checkpoint.vibration is None else checkpoint.vibration,
     }  # fmt: skip
     if checkpoint.vibrations:
-        archive.files.write_text("vibration.csv", csv_text([asdict(row) for row in checkpoint.vibrations]))
+        rows = [{"cycles": row.cycles, **asdict(row)} for row in checkpoint.vibrations]  # the cycles first
+        archive.files.write_text("vibration.csv", csv_text(rows))
     if checkpoint.rows:
         archive.files.write_text("wear.csv", csv_text([asdict(row) for row in checkpoint.rows]))
     archive.write_arrays(FILE, arrays)

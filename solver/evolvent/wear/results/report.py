@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import trapezoid
 
+from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.results.archive.archive import Archive, ArchiveError
 from evolvent.results.archive.run_folder import RunFolder
@@ -18,7 +19,6 @@ from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.scene.scene import GEARS, Scene, load_scene
 from evolvent.wear.gears.flank_grid import inner_arcs
 from evolvent.wear.gears.gear_study import BlockRow
-from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent.wear.results.archive import read_checkpoint, worn_folder
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.member import Member

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.results.drawing.style import FAINT, PINION, WHEEL, foot, sheet
-from evolvent.wear.gears.vibration_row import VibrationRow
 from evolvent_meshes.arrays import Floats
 
 

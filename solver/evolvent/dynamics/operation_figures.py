@@ -1,0 +1,72 @@
+"""Figures of a pair that runs at one speed, and what they become as it wears."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.dynamics.operating_point import Operation
+from evolvent.dynamics.oscillator.response import response
+from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
+
+UM = 1e3  # µm per mm
+
+
+@dataclass(frozen=True)
+class OperationFigures:
+    """A pair at its operating speed: operation.json."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    natural_speed_rpm: float
+    """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness."""
+    mean_stiffness_N_per_um: float
+    """Tangent mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in
+    series."""
+    unloaded_peak_to_peak_um: float
+    """Of the unloaded transmission error."""
+    static_peak_to_peak_um: float
+    """Of the transmission error under the static torque."""
+    equivalent_amplitude_um: float
+    """√ΣA_r² of the first three mesh harmonics of s = r_b1 θ_1 − r_b2 θ_2, the unloaded transmission error in it."""
+    static_force_N: float
+    """Torque over base radius."""
+    largest_force_N: float
+    """Largest mesh force, damping included."""
+    smallest_force_N: float
+    """Smallest one: below 0 where back flanks press, or the damper pulls."""
+    separated_share: float
+    """Share of the time in which no flanks touch."""
+    lifted_share: float
+    """Share of the pitch in which the contact is computed under a thousandth of the static force, because flanks part
+    or the mesh force is less."""
+    repeats: int
+    """Mesh periods after which the motion repeats; 0 where it does not within sixteen. Where they are several, the
+    contact is computed under their mean force."""
+
+    @staticmethod
+    def of(operation: Operation) -> OperationFigures:
+        """Of a pair's operation."""
+        pair, excitation = operation.drive, operation.excitation
+        number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
+        found = response(pair.model, operation.period, operation.state, operation.repeats or LONGEST_REPEAT)
+        return OperationFigures(
+            60.0 / (pair.teeth * operation.period), pair.natural_speed, 1e-3 * pair.mean_stiffness,
+            UM * float(np.ptp(excitation.unloaded_error)), UM * float(np.ptp(excitation.loaded.errors[:, number])),
+            UM * found.equivalent_amplitude, pair.model.load, found.largest_force, found.smallest_force, found.apart,
+            operation.lifted, operation.repeats,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class VibrationRow(OperationFigures):
+    """A line of vibration.csv: the pair as worn after some cycles."""
+
+    cycles: float
+    """Revolutions of the pinion."""
+
+    @staticmethod
+    def after(cycles: float, operation: Operation) -> VibrationRow:
+        """After so many revolutions of the pinion."""
+        return VibrationRow(**asdict(OperationFigures.of(operation)), cycles=cycles)

@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.tables import markdown
+from evolvent.dynamics.operation_figures import OperationFigures, VibrationRow
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
 from evolvent.dynamics.results.spectrum import SpectrumRow
@@ -106,9 +107,11 @@ SECTIONS = (
     ("`response.csv`", ResponseRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
     ("`branch.csv`", BranchRow, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),
     ("`spectrum.csv`", SpectrumRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
-    ("`histories.csv`", HistoryRow, "Of `evolvent dynamics`, where `dynamics.histories_rpm` names speeds."),
+    ("`histories.csv`", HistoryRow, "At the speeds of `dynamics.histories_rpm`, or at the operating one."),
     ("`dynamics.json`", DriveSummary, ""),
+    ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
     ("`wear.csv`", BlockRow, ""),
+    ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
     ("`wear.json`", WearReport, ""),
     ("`wear.json`, `reports`, each entry", PairReport, ""),
     ("`wear.json`, `pinion` and `wheel` of a report", GearReport, ""),

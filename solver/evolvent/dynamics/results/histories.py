@@ -25,7 +25,7 @@ class HistoryRow:
     """A line of histories.csv: an instant of a motion."""
 
     speed_rpm: float
-    """Of the pinion, one of dynamics.histories_rpm."""
+    """Of the pinion, one of dynamics.histories_rpm, or dynamics.operating_rpm."""
     way: str
     """up or down, as in response.csv."""
     phase: float

@@ -171,6 +171,7 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
 
     return [
         _one(f"torque held on the {scene.load.on}", "T", "N·m", 3, scene.load.torque_Nm),
+        *_operating_rows(scene),
         Row("friction coefficients", "μ", "", (", ".join(f"{value:g}" for value in scene.contact.friction),)),
         _one("normal force on the flanks", "F_bn", "N", 1, estimate.normal_force),
         _one("contact line length, shortest", "", "mm", 2, shortest),
@@ -183,6 +184,14 @@ def _load_rows(scene: Scene, estimate: HertzEstimate) -> list[Row]:
         pressure("at the end of engagement, mean length", end),
         *(_paper_rows(estimate) if scene.output.compare == "yang2022" else ()),
     ]
+
+
+def _operating_rows(scene: Scene) -> list[Row]:
+    """The speed under whose mesh force contact is computed."""
+    dynamics = scene.dynamics
+    if dynamics is None or dynamics.operating_rpm is None:
+        return []
+    return [_one(f"  varied by vibration at, running {dynamics.coming}", "n", "r/min", 1, dynamics.operating_rpm)]
 
 
 def _paper_rows(estimate: HertzEstimate) -> list[Row]:

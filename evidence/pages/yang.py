@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evidence.pages.yang_figures import kept
+from evidence.pages.yang_figures import level_figures
 from evidence.tables import markdown
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, LEVELS_PER_WIDTH
 from evolvent.results.archive.error_bar_data import plus_minus
@@ -14,7 +14,7 @@ POINTS = Path(__file__).with_name("yang_points.md")
 
 def beside_hertz(docs: Path, level: str) -> str:
     """How far the peaks at mid-face stand from Hertz for their own line load."""
-    f = kept(docs, level)
+    f = level_figures(docs, level)
     return (
         f"{f['over_hertz_median_percent']:+.1f} % in the median, nine in ten within "
         f"{f['off_hertz_nine_in_ten_percent']:.1f} %, at most {f['off_hertz_largest_percent']:.0f} % off, "
@@ -50,7 +50,7 @@ def levels(docs: Path) -> str:
 
 def points(docs: Path) -> str:
     """The paper's statements beside what was found at level standard: yang_points.md with its figures."""
-    f = kept(docs, "standard")
+    f = level_figures(docs, "standard")
     bars = {"largest": plus_minus(f["largest_MPa"], f["low_largest_bar_MPa"], 0)}
     for side in ("low", "high"):
         for name, unit in (("transmission_error", "um"), ("efficiency", "percent")):

@@ -7,14 +7,13 @@ pitch point. `python -m evidence.pages` then writes them into the pages.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from evidence.checkout import DOCS
-from evidence.tables import read_rows, write_rows
+from evidence.pages import kept
+from evidence.pages.kept import Named
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import between, pooled_peaks
 from evolvent.results.drawing.teeth import YANG
@@ -30,17 +29,6 @@ from evolvent.results.tables.summary_rows import FrictionRow
 KEPT = "yang2022"
 NEAR_PITCH_LINE = 0.25  # modules of roll distance
 NEAR_TIP_deg = 22.0  # a tooth's own rotation from which its contact is near the pinion's tip
-
-
-@dataclass(frozen=True)
-class YangFigure:
-    """A figure of a run; its name ends in its unit."""
-
-    name: str
-    value: float
-
-
-Named = Iterator[tuple[str, float]]
 
 
 def figures(run: RunData) -> Named:
@@ -122,19 +110,12 @@ def _whole_pair(run: RunData, name: str, index: int, row: FrictionRow) -> Named:
 
 def keep(run: RunData, docs: Path) -> Path:
     """The figures of a run, in place of those at the same mesh level. Raises OSError."""
-    path = docs / KEPT / f"{run.scene.mesh.level}.csv"
-    write_rows(path, [YangFigure(name, value) for name, value in figures(run)])
-    return path
+    return kept.keep(docs / KEPT / f"{run.scene.mesh.level}.csv", figures(run))
 
 
-def kept(docs: Path, level: str) -> dict[str, float]:
+def level_figures(docs: Path, level: str) -> dict[str, float]:
     """What was kept. Raises ValueError where nothing was."""
-    values = {row.name: row.value for row in read_rows(docs / KEPT / f"{level}.csv", YangFigure)}
-    if not values:
-        raise ValueError(
-            f"{docs / KEPT}: wanted {level}.csv, found none; `python -m evidence.pages.yang_figures OUT` writes it"
-        )
-    return values
+    return kept.kept(docs / KEPT / f"{level}.csv", "python -m evidence.pages.yang_figures OUT")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from evidence.benchmarks.pages.page import parts
 from evidence.pages.generated import generated
 from evidence.pages.outputs import described, unit
 from evidence.pages.promises import PROMISES, measured, promises
-from evidence.pages.yang_figures import kept
+from evidence.pages.yang_figures import level_figures
 from tests.support.checkout import ROOT
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
@@ -114,7 +114,7 @@ def test_words_about_yang_s_pair_fit_its_figures() -> None:
     """What docs/yang2022.md says in words of the figures that were kept: the largest pressure below the pitch line and
     before it is passed, friction raises the stress before the pitch point and lowers it after, tooth 1 falls with
     friction, C and D are alike and change more than A, A more than B."""
-    f = kept(ROOT / "docs", "standard")
+    f = level_figures(ROOT / "docs", "standard")
     assert f["largest_xi_mm"] < 0.0 and f["largest_deg"] < 0.0 < f["crossing_deg"]
     assert f["change_after_low_percent"] < 0.0 < f["change_before_high_percent"]
     assert all(f[f"tooth_1_{name}_change_percent"] < 0.0 for name in ("largest", "average"))

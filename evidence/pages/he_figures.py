@@ -1,0 +1,158 @@
+"""`python -m evidence.pages.he_figures OUT [--few]`: computes and keeps the figures of docs/he2022.md.
+
+The vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact at
+2000 r/min, and the pair worn by 1.6 million meshes with its vibration. `python -m evidence.pages` then writes the page.
+--few: few positions and speeds, to see that it runs; nothing is kept.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from evidence.checkout import DEMOS, DOCS
+from evidence.pages import kept
+from evidence.pages.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
+from evidence.pages.kept import Named
+from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
+from evolvent.results.engagement import engagement
+from evolvent.results.run_data import read_run
+from evolvent.scene.scene import Scene, load_scene
+
+KEPT = "he2022/figures.csv"
+COMMAND = "python -m evidence.pages.he_figures OUT"
+PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
+"""Measured resonance; the speed of the paper's Figures 14b to 22."""
+BORES = 40, 70, 100  # mm
+REPORTS = 0, 200000, 400000, 800000, 1600000
+POINT_A = 77.0
+"""Radius [mm] of the paper's point A."""
+PAPER_MODEL = 'dynamics.mesh="tangent"', "dynamics.damped_apart=true"
+
+
+def figures(runs: HeRuns) -> Named:
+    """(name, value) of each figure. Raises RunFailed."""
+    scene = load_scene(DEMOS / "he2022_dynamics.toml")
+    surface = Vibration.read(runs.run("dynamics", "surface", VIBRATION))
+    mass, stiffness = surface.facts["equivalent_mass_kg"], surface.facts["mean_stiffness_N_per_um"]
+    teeth = scene.pinion.teeth
+    wanted = 1e-6 * mass * (2.0 * math.pi * PAPER_RPM * teeth / 60.0) ** 2
+    series = 1.0 / (1.0 / wanted - 1.0 / stiffness)
+    yield "equivalent_mass_kg", mass
+    yield "contact_ratio", scene.gear_pair().transverse_contact_ratio
+    yield "stiffness_at_paper_speed_N_per_um", wanted
+    yield "series_N_per_um", series
+    yield from _iso(scene, mass, teeth)
+    for bore in BORES:
+        name, both = f"bore_{bore}", [f"{gear}.bore_diameter_mm={bore}" for gear in ("pinion", "wheel")]
+        k = _mean_stiffness(runs.run("excitation", name, VIBRATION, *both), scene.load.torque_Nm)
+        yield f"{name}_N_per_um", k
+        yield f"{name}_rpm", _natural(k, mass, teeth)
+    at_paper_speed = f"dynamics.series_stiffness_N_per_um={series:.6g}"
+    cases = {
+        "paper": PAPER_MODEL,
+        "matched": (at_paper_speed,),
+        "paper_matched": (at_paper_speed, *PAPER_MODEL),
+        "damped": ("dynamics.damping_ratio=0.15",),
+    }
+    yield from _over_speed("surface", surface)
+    for name, settings in cases.items():
+        yield from _over_speed(name, Vibration.read(runs.run("dynamics", name, VIBRATION, *settings)))
+    yield from _contact(runs, scene)
+    yield from _worn(runs)
+
+
+def _natural(stiffness: float, mass: float, teeth: int) -> float:
+    """Natural speed [r/min] at a stiffness [N/µm] and a mass [kg]."""
+    return math.sqrt(1e6 * stiffness / mass) / (2.0 * math.pi) * 60.0 / teeth
+
+
+def _mean_stiffness(folder: Path, torque: float) -> float:
+    """Tangent stiffness under a torque [N·m], mean over the pitch [N/µm]."""
+    rows = read_csv(folder / "excitation.csv")
+    found = [float(r["tangent_stiffness_N_per_um"]) for r in rows if math.isclose(float(r["torque_Nm"]), torque)]
+    return float(np.mean(found))
+
+
+def _iso(scene: Scene, mass: float, teeth: int) -> Named:
+    """Mesh stiffness by ISO 6336-1, and the natural speed that it gives."""
+    pair = scene.gear_pair()
+    tangential = 1e3 * scene.load.torque_Nm / (0.5 * pair.pinion.reference_diameter)
+    single = single_stiffness(pair, tangential / pair.face_width)
+    both = mesh_stiffness(single, pair.transverse_contact_ratio)
+    yield "iso_single_N_per_mm_um", single
+    yield "iso_mesh_N_per_mm_um", both
+    yield "iso_N_per_um", both * pair.face_width
+    yield "iso_rpm", _natural(both * pair.face_width, mass, teeth)
+
+
+def _over_speed(name: str, case: Vibration) -> Named:
+    """Natural speed, jumps, peaks and superharmonics; these by the order of s that resonates, running up."""
+    natural = float(case.facts["natural_speed_rpm"])
+    yield f"{name}_natural_rpm", natural
+    for way in ("up", "down"):
+        jumps = [jump for jump in case.facts[f"jumps_{way}_rpm"] if jump > 0.7 * natural]
+        yield f"{name}_jump_{way}_rpm", float(max(jumps, default=math.nan))
+        yield f"{name}_jumps_{way}", float(len(case.facts[f"jumps_{way}_rpm"]))
+    yield f"{name}_peak_rpm", case.peak("equivalent_amplitude_um", 0.7 * natural, 1.3 * natural, "down")
+    yield f"{name}_amplitude_um", case.largest("equivalent_amplitude_um")
+    yield f"{name}_force_ratio", case.largest("dynamic_factor")
+    yield f"{name}_separated_percent", 100.0 * case.largest("separated_share")
+    for order in (2, 3, 4):
+        at = case.peak(f"harmonic_{order}_um", 0.85 * natural / order, 1.15 * natural / order)
+        yield f"{name}_order_{order}_rpm", at
+        yield f"{name}_order_{order}_off_percent", 100.0 * (at * order / natural - 1.0)
+
+
+def _contact(runs: HeRuns, scene: Scene) -> Named:
+    """One tooth's engagement under the constant torque and at the operating speed."""
+    pair = scene.gear_pair()
+    gear, pitch_point = pair.pinion, pair.pitch_point_roll_lengths[0]
+    at_A = (math.sqrt(POINT_A**2 - gear.base_radius**2) - pitch_point) / gear.base_radius
+    for name, settings in (("static", ()), ("dynamic", (f"dynamics.operating_rpm={OPERATING_RPM:g}",))):
+        folder = runs.run("run", f"contact_{name}", VIBRATION, "mesh.level=standard", *settings)
+        curve = engagement(read_run(folder), 0)
+        known = np.isfinite(curve.max_pressure)
+        yield f"{name}_largest_MPa", float(np.max(curve.max_pressure[known]))
+        yield f"{name}_at_A_MPa", float(np.interp(at_A, curve.angle[known], curve.max_pressure[known]))
+        yield f"{name}_force_at_A_N", float(np.interp(at_A, curve.angle, curve.force))
+        yield f"{name}_engagement_deg", float(np.degrees(np.subtract(*curve.ends[::-1])))
+    for figure, value in read_json(folder / "operation.json").items():
+        yield f"dynamic_{figure}", float(value)
+
+
+def _worn(runs: HeRuns) -> Named:
+    """The pair at the paper's cycles, and its vibration over the speed there."""
+    folder = runs.run("run", "wear", WEAR)
+    rows = {float(row["cycles"]): row for row in read_csv(folder / "vibration.csv")}
+    depths = {report["cycles"]: report["pinion"] for report in read_json(folder / "wear.json")["reports"]}
+    for cycles in REPORTS:
+        name = f"worn_{cycles}"
+        for figure, text in rows[min(rows, key=lambda known: abs(known - cycles))].items():
+            yield f"{name}_{figure}", float(text)
+        report = depths[min(depths, key=lambda known: abs(known - cycles))]
+        yield f"{name}_deepest_um", report["deepest_um"]
+        yield f"{name}_at_diameter_mm", report["at_diameter_mm"]
+        scene = folder / f"worn_{cycles}" / "scene.toml" if cycles else WEAR
+        swept = Vibration.read(runs.run("dynamics", f"dynamics_{name}", scene))
+        yield f"{name}_separated_percent", 100.0 * swept.largest("separated_share")
+        yield f"{name}_amplitude_um", swept.largest("equivalent_amplitude_um")
+        natural = float(swept.facts["natural_speed_rpm"])
+        yield f"{name}_peak_rpm", swept.peak("equivalent_amplitude_um", 0.7 * natural, 1.3 * natural, "down")
+
+
+def main() -> None:
+    """Computes, and keeps unless there are few positions."""
+    few = "--few" in sys.argv
+    found = figures(HeRuns(Path(sys.argv[1]), FEW if few else ()))
+    if few:
+        print(dict(found))
+    else:
+        print(kept.keep(DOCS / KEPT, found))
+
+
+if __name__ == "__main__":
+    main()

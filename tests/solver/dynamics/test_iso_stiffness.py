@@ -24,7 +24,8 @@ def he_pair() -> GearPair:
 
 
 def example_pair() -> GearPair:
-    """Example 1 of ISO/TR 6336-30:2017: 17/103 teeth, m_n = 8 mm, β = 15.8°, basic rack D of ISO 53."""
+    """Example 1 of ISO/TR 6336-30:2017, as quoted in github.com/gfsReboucas/Drivetrain, MATISO_6336.m: 17/103 teeth,
+    m_n = 8 mm, β = 15.8°, basic rack D of ISO 53."""
     given: dict[str, Any] = {
         "normal_module": 8.0, "helix_angle_deg": 15.8, "face_width": 100.0, "dedendum_coefficient": 1.4,
         "bore_diameter": 60.0,

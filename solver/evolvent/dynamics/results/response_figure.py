@@ -62,7 +62,7 @@ def response_figure(
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")
-    factor.legend(*_iso_alone(factor), loc="upper left")
+    factor.legend(*_iso_alone(factor), loc="upper right")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
     amplitude.legend(loc="upper left")

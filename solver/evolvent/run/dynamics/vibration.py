@@ -120,7 +120,7 @@ def _written(
         if moving:
             write_histories(folder, history_rows(moving))
         failures += draw(list(_pictures(vibrating, swept, found, branch, moving, iso)), folder).failures
-    return [*failures, *_warnings(vibrating, settings, known), *_iso_warnings(first)]
+    return [*failures, *_warnings(vibrating, settings, known), *_branch_warnings(swept), *_iso_warnings(first)]
 
 
 def _pictures(
@@ -169,6 +169,18 @@ def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) ->
             "beyond that the force goes on straight. Add heavier ones until this is below 1"
         )
     return found
+
+
+def _branch_warnings(swept: SpeedSweep) -> list[str]:
+    """Steady states whose branch was not found."""
+    apart = sum(run.place is None and run.repeats == 1 for run in (*swept.up, *swept.down))
+    if not apart:
+        return []
+    return [
+        f"dynamics.json, branch.csv: {apart} of {2 * len(swept.periods)} motions repeat with every mesh, but lie on no "
+        "branch that was found from the lowest speed: jumps from and between them are seen in response.csv alone; "
+        "begin at another speed (dynamics.speed_rpm)"
+    ]
 
 
 def _iso_warnings(problem: GearProblem) -> list[str]:

@@ -122,10 +122,22 @@ def test_spectrum_has_the_harmonics(out: Path) -> None:
             assert float(line["frequency_Hz"]) == pytest.approx(frequency, rel=1e-7)
 
 
+def test_motions_on_no_branch_are_said(tmp_path: Path) -> None:
+    """Hardly damped, with a stiffness, the branch of the lowest speed turns back to it without coming to the others:
+    that their jumps are not named is said."""
+    given = ('dynamics.mesh="tangent"', "dynamics.damping_ratio=0.01", "dynamics.speed_rpm=[1500,10500]")
+    one = scene(*given, "dynamics.speeds=20", "sweep.positions=20", "dynamics.torque_percents=[100]")
+    assert one.dynamics is not None
+    (said,) = run_dynamics(list(load_scenes(one, (100.0,)).values()), one.dynamics, tmp_path, quiet=True)
+    assert said.startswith("dynamics.json, branch.csv: ") and "on no branch" in said
+    branch = [float(line["speed_rpm"]) for line in rows(tmp_path / "branch.csv")]
+    assert max(branch) < 10500.0
+
+
 def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     """Speeds of histories join the sweep, one of its own counts once; each motion closes after its repeats, its largest
-    force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against the
-    ground), to 1e-3 by the trapezoidal rule."""
+    force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against
+    the ground), to 1e-3 by the trapezoidal rule."""
     one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
     assert one.dynamics is not None
     loads = load_scenes(one, one.dynamics.torque_percents)
@@ -137,9 +149,8 @@ def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     for speed in ("1700", "3900"):
         for way in ("up", "down"):
             motion = [line for line in lines if (line["speed_rpm"], line["way"]) == (speed, way)]
-            phase, force, s = (
-                np.array([float(line[name]) for line in motion]) for name in ("phase", "force_N", "transmission_error_um")
-            )
+            names = "phase", "force_N", "transmission_error_um"
+            phase, force, s = (np.array([float(line[name]) for line in motion]) for name in names)
             assert (np.diff(phase) > 0.0).all() and phase[-1] == float(response[speed, way]["repeats"])
             assert s[-1] == pytest.approx(s[0], abs=1e-5)
             largest = float(response[speed, way]["largest_force_N"])

@@ -12,6 +12,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, geometric_backlash
+from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.response import (
     BRANCH,
     DYNAMICS,
@@ -30,7 +31,13 @@ from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.dynamics.excitation import WRITTEN, check_results, computed_excitation, write_excitation
+from evolvent.run.dynamics.excitation import (
+    WRITTEN,
+    check_results,
+    companion_of,
+    computed_excitation,
+    write_excitation,
+)
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -63,7 +70,8 @@ def run_dynamics(
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     with Progress(hidden=quiet or comm.rank > 0) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
-        return on_first(comm, lambda: _written(excitation, problems, section, out, progress))
+        companion = companion_of(excitation, problems, scenes[0], comm, progress)
+        return on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress))
 
 
 def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
@@ -90,8 +98,9 @@ def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
 
 
 def _written(
-    excitation: MeshExcitation, problems: Sequence[GearProblem], section: DynamicsSection, out: Path, progress: Progress
-) -> list[str]:
+    excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
+    out: Path, progress: Progress,
+) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything. On rank 0 alone."""
     percents = sorted(section.torque_percents)
     settings = drive_settings(problems[0].pair, section)
@@ -103,7 +112,7 @@ def _written(
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]))
     with locked(out):
         folder = RunFolder(out)
-        failures = write_excitation(folder, excitation, problems)
+        failures = write_excitation(folder, excitation, companion, problems)
         write_response(folder, response_rows(vibrating, swept, found), branch, known)
 
         def drawn() -> bytes:

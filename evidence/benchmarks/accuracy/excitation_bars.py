@@ -1,20 +1,19 @@
 """Error bars of the excitation against true errors: of every position, and of the pitch's mean, peak-to-peak value and
 mesh harmonics, under several torques. Meshes and references are those of `error_bars`.
 
-All meshes are solved at the same positions, so that only the mesh's part of the bars is tried; `spacing` tries the
-other one.
+The references have several times the positions, those of the cases among them: figures of the pitch are held against
+the pitch, not against the same samples of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import BarProblem, BarRow, reference_mesh
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.harmonics import mesh_harmonics
 from evolvent.dynamics.results.curves import CoarseExcitation, PitchCurve, pitch_curves
 from evolvent.gears.gear_model import Mesher
 from evolvent.gears.load_list import LoadList
@@ -25,19 +24,18 @@ from evolvent.run.dynamics.excitation import loaded_pitch
 from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats
+from evolvent.scene.scene import Scene, scene_from_text
 
 PERCENTS = 25.0, 100.0, 200.0
 """Torques, in percent of the scene's."""
-HARMONICS = 2
-"""Mesh harmonics that are looked at; the narrow helical pair's six positions hold no more."""
+FINER = 4
+"""Positions of the reference over those of the cases."""
 
 
 def measure_excitation_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[BarRow]:
     """One row a case, torque and figure. problem: of a pair without flank modifications, so that there is no unloaded
     transmission error."""
-    at = problem.with_mesh(problem.reference)
+    at = _with_positions(problem.with_mesh(problem.reference))
     best, second = (_excitation(at, percents, reference_mesh(problem, problem.halvings - last)) for last in (0, 1))
     for case in problem.cases:
         scene = problem.with_mesh(case)
@@ -53,25 +51,26 @@ def _rows(
 ) -> Iterator[BarRow]:
     """All figures of all quantities under one torque."""
     for quantity, curve in tried.items():
-        best, second = exact[quantity].values, nearly[quantity].values
-        for columns in zip(curve.values, curve.bars, np.abs(curve.values - best), np.abs(best - second)):
-            yield BarRow(case, quantity, 0.0, *map(float, columns))
-        for name, figure in _figures().items():
-            value, error = figure(curve.values), abs(figure(curve.values) - figure(best))
-            off = abs(figure(best) - figure(second))
-            yield BarRow(case, f"{quantity}, {name}", 0.0, value, curve.mesh_error(figure), error, off)
+        best, second = exact[quantity], nearly[quantity]
+        places = zip(curve.values, curve.bars, best.values[::FINER], second.values[::FINER])
+        mean, size = (
+            [float(figure(each.values)) for each in (curve, best, second)] for figure in (np.mean, np.ptp)
+        )
+        figures: list[tuple[str, float, float, float, float]] = [
+            *((quantity, *place) for place in places),
+            (f"{quantity}, mean", mean[0], curve.mean_error, mean[1], mean[2]),
+            (f"{quantity}, peak to peak", size[0], curve.peak_to_peak_error, size[1], size[2]),
+        ]
+        amplitudes = zip(curve.harmonics[0], curve.amplitude_errors, best.harmonics[0], second.harmonics[0])
+        figures += [(f"{quantity}, harmonics", *each) for each in amplitudes]
+        for figure, value, bar, reference, other in figures:
+            errors = abs(value - reference), abs(reference - other)
+            yield BarRow(case, figure, 0.0, float(value), float(bar), *map(float, errors))
 
 
-def _figures() -> dict[str, Callable[[Floats], float]]:
-    """Of a pitch."""
-
-    def amplitude(harmonic: int) -> Callable[[Floats], float]:
-        return lambda values: float(mesh_harmonics(values, harmonic)[0][-1])
-
-    known: dict[str, Callable[[Floats], float]] = {
-        "mean": lambda values: float(np.mean(values)), "peak to peak": lambda values: float(np.ptp(values)),
-    }  # fmt: skip
-    return known | {f"harmonic {r}": amplitude(r) for r in range(1, HARMONICS + 1)}
+def _with_positions(scene: Scene) -> Scene:
+    """The scene at `FINER` times its positions."""
+    return scene_from_text(scene.resolved_toml(), [f"sweep.positions={FINER * scene.sweep.positions}"])
 
 
 def _excitation(scene: Scene, percents: Sequence[float], mesh: Mesher) -> MeshExcitation:

@@ -1,8 +1,10 @@
 """What varies over the pitch in an excitation, in the units of its tables, with error bars.
 
 The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`): from the same positions under
-the same torques on elements of twice the size. Figures of the whole pitch have the error of sampling it, too; so has
-the unloaded transmission error, which has no other.
+the same torques on elements of twice the size. Peak-to-peak values and harmonics do not depend on the mean: of them,
+curves are compared without it. Figures of the whole pitch have the error of sampling it, too; so has the unloaded
+transmission error, which has no other. Where a tooth pair has just come into contact or has not quite, the tangent
+stiffness of a position is known only to belong to one of both states.
 """
 
 from __future__ import annotations
@@ -39,6 +41,9 @@ QUANTITIES: dict[str, Callable[[MeshExcitation], Floats]] = {
 BENDS = {UNLOADED: KINK, LOADED: KINK, TANGENT: JUMP, SECANT: KINK}
 """Error of a step's mean over the bend of the step, see `position_spacing`: the tangent stiffness jumps where a tooth
 pair comes into contact, the others have kinks there."""
+VARYING_FACTOR = {1: 2.0, 2: 1.0}
+"""Order of the cells -> 1/(2^p − 1) for peak-to-peak values and harmonics, which depend on when teeth come into
+contact; p = 0.6 and 1, as for the loss. With 0.5 at order 2, a quarter of the bars of He's pair were too small."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +72,8 @@ class PitchCurve:
     """(n,) in its unit."""
     coarse: Floats | None
     """(n,) the same on elements of twice the size; None where that is not known."""
-    factor: float
-    """Error over the difference of both, 1/(2^p − 1)."""
+    order: int
+    """Of the cells."""
 
     @property
     def bars(self) -> Floats:
@@ -77,10 +82,19 @@ class PitchCurve:
 
     def mesh_error(self, figure: Reduction) -> float:
         """Error of a figure by the mesh; NaN where it is not known."""
+        return STIFFNESS_FACTOR[self.order] * self._difference(figure, 0.0)
+
+    def varying_error(self, figure: Reduction) -> float:
+        """The same of a figure that does not depend on the mean of the curve."""
+        return VARYING_FACTOR[self.order] * self._difference(figure, 1.0)
+
+    def _difference(self, figure: Reduction, less: float) -> float:
+        """See `estimation.difference`. less: part of the means that both curves are without."""
         if self.coarse is None:
             return float("nan")
         place = np.arange(len(self.values), dtype=float)
-        return self.factor * difference(figure, Curve(place, self.values), Curve(place, self.coarse))
+        first, second = (Curve(place, each - less * each.mean()) for each in (self.values, self.coarse))
+        return difference(figure, first, second)
 
     @cached_property
     def mean_error(self) -> float:
@@ -92,7 +106,7 @@ class PitchCurve:
         """Of the largest less the smallest value."""
         size = float(np.ptp(self.values))
         halves = [abs(float(np.ptp(self.values[kept])) - size) for kept in self._halves]
-        return self.mesh_error(lambda values: float(np.ptp(values))) + max(
+        return self.varying_error(lambda values: float(np.ptp(values))) + max(
             float(np.mean(halves)), missed_peaks(self.values)
         )
 
@@ -105,7 +119,7 @@ class PitchCurve:
     def amplitude_errors(self) -> Floats:
         """Of these amplitudes."""
         amplitudes = self.harmonics[0]
-        mesh = [self.mesh_error(partial(_amplitude, r)) for r in range(1, self._count + 1)]
+        mesh = [self.varying_error(partial(_amplitude, r)) for r in range(1, self._count + 1)]
         halves = [np.abs(_thinned_amplitudes(self.values, kept, self._count) - amplitudes) for kept in self._halves]
         return np.array(mesh) + np.maximum(np.mean(halves, axis=0), 2.0 * self._bent)
 
@@ -127,18 +141,17 @@ class PitchCurve:
 def unloaded_curve(excitation: MeshExcitation) -> PitchCurve:
     """The unloaded transmission error, which is exact at its positions."""
     values = 1e3 * excitation.unloaded_error
-    return PitchCurve(UNLOADED, values, values, 0.0)
+    return PitchCurve(UNLOADED, values, values, NO_COMPANION.order)
 
 
 def pitch_curves(excitation: MeshExcitation, companion: CoarseExcitation) -> Iterator[dict[str, PitchCurve]]:
     """The curves of all `QUANTITIES` by their names, of each torque, the lightest first."""
-    coarse = companion.excitation
-    factor = STIFFNESS_FACTOR[companion.order]
+    coarse, order = companion.excitation, companion.order
     whole = {name: values(excitation) for name, values in QUANTITIES.items()}
     known = {name: None if coarse is None else values(coarse) for name, values in QUANTITIES.items()}
     for j in range(len(excitation.loaded.forces)):
         yield {
-            name: PitchCurve(name, values[:, j], None if (other := known[name]) is None else other[:, j], factor)
+            name: PitchCurve(name, values[:, j], None if (other := known[name]) is None else other[:, j], order)
             for name, values in whole.items()
         }
 

@@ -87,16 +87,16 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "dynamics", "wear", "wear.gears",
     ),
     "dynamics.results": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive", "results.tables",
-        "results.drawing",
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive",
+        "results.error_bars", "results.tables", "results.drawing",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
         "dynamics", "dynamics.results", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
-        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears", "gears.sweep", "scene", "scene.schema",
-        "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
+        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

@@ -145,13 +145,19 @@ def solved(scene: Scene, mesh: Mesher = run_mesh) -> RunData:
 
 
 def _reference(problem: BarProblem, halvings: int) -> RunData:
+    return solved(problem.with_mesh(problem.reference), reference_mesh(problem, halvings))
+
+
+def reference_mesh(problem: BarProblem, halvings: int) -> Mesher:
+    """Makes the sectors of the reference."""
+
     def mesh(gears: GearProblem, member: Member) -> MeshData:
         fine = gear_mesh(gears, member, adapted=_finer_body) if problem.fine_body else gear_mesh(gears, member)
         for _ in range(halvings):
             fine = halved(fine)
         return fine
 
-    return solved(problem.with_mesh(problem.reference), mesh)
+    return mesh
 
 
 def _finer_body(resolution: SectorResolution) -> SectorResolution:

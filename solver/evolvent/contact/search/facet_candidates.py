@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -71,24 +72,28 @@ class _Layers:
         across = self.beside + radius2.max()
         count = math.ceil(float((height / across).max()) / 2.0)
         step = height / count
-        parts = [self._slab(tree, centre2, low, step, np.hypot(0.5 * step, across), k) for k in range(count)]
-        i1, i2 = (np.concatenate(each) for each in zip(*parts))
+        i1, i2 = self._in_slabs(tree, centre2, low, step, np.hypot(0.5 * step, across), count)
         distance, along = centre2[i2] - self.centre[i1], self.normal[i1]
         radii = self.radius[i1] + radius2[i2]
         keep = _balls_meet(distance, along, radii, self.beside[i1] + radius2[i2], self.reach)
         order = np.lexsort((i2[keep], i1[keep]))
         return i1[keep][order], i2[keep][order]
 
-    def _slab(
-        self, tree: cKDTree, centre2: Floats, low: Floats, step: Floats, radius: Floats, number: int
+    def _in_slabs(
+        self, tree: cKDTree, centre2: Floats, low: Floats, step: Floats, radius: Floats, count: int
     ) -> tuple[Ints, Ints]:
-        """Pairs whose distance along the normal is from low + number · step to one step more."""
-        middle = self.centre + (low + (number + 0.5) * step)[:, None] * self.normal
-        near = tree.query_ball_point(middle, SLIGHTLY_MORE * radius)
-        i1 = np.repeat(np.arange(len(near)), [len(n) for n in near])
-        i2 = np.concatenate([np.asarray(n, dtype=np.int64) for n in near])
-        along = np.einsum("pd,pd->p", centre2[i2] - self.centre[i1], self.normal[i1])
-        keep = np.floor((along - low[i1]) / step[i1]) == number
+        """Pairs, each once: in the slab whose distance along the normal is from low + number · step to one step more.
+
+        One query asks for the balls of all slabs: most hold nothing, so that arrays of each slab take longer than it.
+        """
+        along = low + (np.arange(count)[:, None] + 0.5) * step
+        middles = self.centre + along[..., None] * self.normal
+        near = tree.query_ball_point(middles.reshape(-1, middles.shape[-1]), np.tile(SLIGHTLY_MORE * radius, count))
+        held = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
+        number, i1 = np.divmod(np.repeat(np.arange(len(near)), held), len(low))
+        i2 = np.fromiter(chain.from_iterable(near), dtype=np.int64, count=len(i1))
+        distance = np.einsum("pd,pd->p", centre2[i2] - self.centre[i1], self.normal[i1])
+        keep = np.floor((distance - low[i1]) / step[i1]) == number
         return i1[keep], i2[keep]
 
 

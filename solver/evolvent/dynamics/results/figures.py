@@ -9,20 +9,39 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.results.curves import (
+    LOADED,
+    NO_COMPANION,
+    TANGENT,
+    CoarseExcitation,
+    PitchCurve,
+    pitch_curves,
+    unloaded_curve,
+)
 from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque_colours
 from evolvent_meshes.arrays import Floats
 
+BARS = (
+    "Bands: estimated error by the mesh, see excitation.csv; bars: of the peak-to-peak value, by the spacing of the "
+    "positions, too."
+)
 
-def excitation_picture(excitation: MeshExcitation, torques: Sequence[float]) -> bytes:
+
+def excitation_picture(
+    excitation: MeshExcitation, torques: Sequence[float], companion: CoarseExcitation = NO_COMPANION
+) -> bytes:
     """PNG of `excitation_figure`."""
     with styled():
-        return png(excitation_figure(excitation, torques))
+        return png(excitation_figure(excitation, torques, companion))
 
 
-def excitation_figure(excitation: MeshExcitation, torques: Sequence[float]) -> Figure:
+def excitation_figure(
+    excitation: MeshExcitation, torques: Sequence[float], companion: CoarseExcitation = NO_COMPANION
+) -> Figure:
     """Transmission error and stiffness over the pitch under each torque, the force over the deflection, and the
-    peak-to-peak transmission error over the torque. torques: (m,) [N·m], ascending."""
-    loaded = excitation.loaded
+    peak-to-peak transmission error over the torque, with error bars from the companion. torques: (m,) [N·m],
+    ascending."""
+    loaded, curves = excitation.loaded, list(pitch_curves(excitation, companion))
     figure = sheet(
         "Excitation by the mesh: transmission error and mesh stiffness over a pitch, without friction",
         f"{len(torques)} torques from {torques[0]:.4g} to {torques[-1]:.4g} N·m{_least(excitation, torques)}.",
@@ -31,21 +50,15 @@ def excitation_figure(excitation: MeshExcitation, torques: Sequence[float]) -> F
     grid = figure.subplots(2, 2)
     colours = torque_colours(len(torques))
     phase = np.linspace(0.0, 1.0, len(loaded.angles) + 1)
-    _over_pitch(grid[0, 0], phase, 1e3 * loaded.errors, colours, "transmission error [µm]")
-    grid[0, 0].plot(phase, _closed(1e3 * excitation.unloaded_error), "--", color=INK, label="unloaded")
+    _over_pitch(grid[0, 0], phase, [each[LOADED] for each in curves], colours, "transmission error [µm]")
+    grid[0, 0].plot(phase, _closed(unloaded_curve(excitation).values), "--", color=INK, label="unloaded")
     grid[0, 0].legend(loc="best")
-    _over_pitch(grid[0, 1], phase, 1e-3 * loaded.stiffness, colours, "tangent mesh stiffness [N/µm]")
+    _over_pitch(grid[0, 1], phase, [each[TANGENT] for each in curves], colours, "tangent mesh stiffness [N/µm]")
     grid[0, 1].set_ylim(bottom=0.0)
-    for i in range(0, len(loaded.angles), max(1, len(loaded.angles) // 4)):
-        x, force = np.append(0.0, 1e3 * excitation.depths[i]), np.append(0.0, 1e-3 * loaded.forces)
-        grid[1, 0].plot(x, force, marker=".", label=f"{phase[i]:.2g} pitch")
-    grid[1, 0].set_xlabel("deflection beyond first contact [µm]")
-    grid[1, 0].set_ylabel("mesh force [kN]")
-    grid[1, 0].set_xlim(left=0.0)
-    grid[1, 0].set_ylim(bottom=0.0)
-    grid[1, 0].legend(loc="best")
-    _draw_harris(grid[1, 1], excitation, torques, colours)
-    foot(figure, "Colours of curves: the torques at lower right. Secant stiffness: excitation.csv; harmonics.csv.")
+    _draw_force(grid[1, 0], excitation, phase)
+    _draw_harris(grid[1, 1], [unloaded_curve(excitation), *(each[LOADED] for each in curves)], torques, colours)
+    said = "Colours of curves: the torques at lower right. Secant stiffness: excitation.csv; harmonics.csv."
+    foot(figure, *([said] if companion.excitation is None else [said, BARS]))
     return figure
 
 
@@ -58,20 +71,40 @@ def _least(excitation: MeshExcitation, torques: Sequence[float]) -> str:
     return f"; of these the peak-to-peak transmission error is least at {torques[least]:.4g} N·m, {size[least]:.3g} µm"
 
 
-def _over_pitch(axes: Axes, phase: Floats, values: Floats, colours: Sequence[object], label: str) -> None:
-    """Values (n, m) over the pitch, closed to its end, a curve for each torque."""
-    for column, colour in zip(values.T, colours):
-        axes.plot(phase, _closed(column), color=colour, marker=".", markersize=3.0)
+def _over_pitch(
+    axes: Axes, phase: Floats, curves: Sequence[PitchCurve], colours: Sequence[object], label: str
+) -> None:
+    """Values over the pitch, closed to its end, a curve for each torque, in a band of its error."""
+    for curve, colour in zip(curves, colours):
+        values, bars = _closed(curve.values), _closed(curve.bars)
+        axes.fill_between(phase, values - bars, values + bars, color=colour, alpha=0.25, linewidth=0.0)
+        axes.plot(phase, values, color=colour, marker=".", markersize=3.0)
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel("pinion rotation [pitch]")
     axes.set_ylabel(label)
 
 
-def _draw_harris(axes: Axes, excitation: MeshExcitation, torques: Sequence[float], colours: Sequence[object]) -> None:
-    """Peak-to-peak transmission error over the torque, the unloaded one at 0."""
-    size = 1e3 * np.ptp(excitation.loaded.errors, axis=0)
-    axes.plot([0.0, *torques], [1e3 * np.ptp(excitation.unloaded_error), *size], color=INK, lw=1.0, zorder=1)
-    axes.scatter(torques, size, 36.0, color=colours, zorder=3)
+def _draw_force(axes: Axes, excitation: MeshExcitation, phase: Floats) -> None:
+    """Force over the deflection, at four positions."""
+    loaded = excitation.loaded
+    for i in range(0, len(loaded.angles), max(1, len(loaded.angles) // 4)):
+        x, force = np.append(0.0, 1e3 * excitation.depths[i]), np.append(0.0, 1e-3 * loaded.forces)
+        axes.plot(x, force, marker=".", label=f"{phase[i]:.2g} pitch")
+    axes.set_xlabel("deflection beyond first contact [µm]")
+    axes.set_ylabel("mesh force [kN]")
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="best")
+
+
+def _draw_harris(
+    axes: Axes, curves: Sequence[PitchCurve], torques: Sequence[float], colours: Sequence[object]
+) -> None:
+    """Peak-to-peak transmission error over the torque. curves: unloaded, then under each torque."""
+    size, bars = (np.array(each) for each in zip(*((np.ptp(c.values), c.peak_to_peak_error) for c in curves)))
+    axes.plot([0.0, *torques], size, color=INK, lw=1.0, zorder=1)
+    axes.errorbar(torques, size[1:], bars[1:], linestyle="", color=INK, elinewidth=1.0, capsize=3.0, zorder=2)
+    axes.scatter(torques, size[1:], 36.0, color=colours, zorder=3)
     axes.set_xlim(0.0, 1.05 * torques[-1])
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("torque [N·m]")

@@ -8,14 +8,22 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.harmonics import COUNT, mesh_harmonics
+from evolvent.dynamics.results.curves import (
+    LOADED,
+    NO_COMPANION,
+    SECANT,
+    TANGENT,
+    CoarseExcitation,
+    PitchCurve,
+    pitch_curves,
+    unloaded_curve,
+)
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
-from evolvent_meshes.arrays import Floats
 
 EXCITATION, HARMONICS = "excitation.csv", "harmonics.csv"
-UNLOADED = 0.0
-"""Torque of the unloaded transmission error [N·m]."""
+NO_TORQUE = 0.0
+"""Of the unloaded transmission error [N·m]."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +37,19 @@ class ExcitationRow:
     mesh_force_N: float
     """That torque over the base radius, in the transverse section."""
     unloaded_transmission_error_um: float
-    """e: r_b1 φ_1 − r_b2 φ_2 at which the flanks just touch, by geometry."""
+    """e: r_b1 φ_1 − r_b2 φ_2 at which the flanks just touch, by geometry, within 1 nm."""
     transmission_error_um: float
     """The same under the torque, without friction."""
+    transmission_error_um_error: float
+    """Its estimated error by the mesh; NaN where there is no coarse companion (`output.error_bars`)."""
     tangent_stiffness_N_per_um: float
     """Change of the mesh force by the transmission error, of the whole face."""
+    tangent_stiffness_N_per_um_error: float
+    """Its estimated error by the mesh."""
     secant_stiffness_N_per_um: float
     """Mesh force over what the torque adds to the unloaded transmission error."""
+    secant_stiffness_N_per_um_error: float
+    """Its estimated error by the mesh."""
 
 
 @dataclass(frozen=True)
@@ -47,49 +61,55 @@ class HarmonicRow:
     torque_Nm: float
     """0 of the unloaded transmission error."""
     mean: float
-    """Over the pitch, in the quantity's unit, like the amplitude."""
+    """Over the pitch, in the quantity's unit, like all that follows but the phase."""
+    mean_error: float
+    """Its estimated error, by the mesh and by the spacing of the positions; NaN where there is no coarse companion."""
     peak_to_peak: float
     """Largest less smallest value of the positions."""
+    peak_to_peak_error: float
+    """Its estimated error, likewise."""
     harmonic: int
     """1 at the frequency of the mesh."""
     amplitude: float
     """A of A cos(2π r φ z_1/2π + ψ)."""
+    amplitude_error: float
+    """Its estimated error, likewise."""
     phase_deg: float
     """ψ."""
 
 
-def excitation_rows(excitation: MeshExcitation, radius: float) -> list[ExcitationRow]:
+def excitation_rows(
+    excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
+) -> list[ExcitationRow]:
     """The lightest torque first. radius: base radius of the gear with the torque [mm]."""
-    loaded, e, secant = excitation.loaded, excitation.unloaded_error, excitation.secant
-    return [
-        ExcitationRow(
-            float(np.degrees(angle)), 1e-3 * float(force) * radius, float(force), 1e3 * float(e[i]),
-            1e3 * float(loaded.errors[i, j]), 1e-3 * float(loaded.stiffness[i, j]), 1e-3 * float(secant[i, j]),
-        )
-        for j, force in enumerate(loaded.forces)
-        for i, angle in enumerate(loaded.angles)
-    ]  # fmt: skip
-
-
-def harmonic_rows(excitation: MeshExcitation, radius: float) -> list[HarmonicRow]:
-    """All quantities of excitation.csv that vary over the pitch; as many harmonics as its positions hold, at most five.
-    """
-    loaded = excitation.loaded
-    rows = list(_harmonics("unloaded_transmission_error_um", UNLOADED, 1e3 * excitation.unloaded_error))
-    for j, force in enumerate(loaded.forces):
-        torque = 1e-3 * float(force) * radius
-        rows += _harmonics("transmission_error_um", torque, 1e3 * loaded.errors[:, j])
-        rows += _harmonics("tangent_stiffness_N_per_um", torque, 1e-3 * loaded.stiffness[:, j])
-        rows += _harmonics("secant_stiffness_N_per_um", torque, 1e-3 * excitation.secant[:, j])
+    loaded, unloaded, rows = excitation.loaded, unloaded_curve(excitation).values, []
+    for force, curves in zip(loaded.forces, pitch_curves(excitation, companion)):
+        columns = [column for name in (LOADED, TANGENT, SECANT) for column in (curves[name].values, curves[name].bars)]
+        for angle, *values in zip(np.degrees(loaded.angles), unloaded, *columns):
+            rows.append(ExcitationRow(float(angle), 1e-3 * float(force) * radius, float(force), *map(float, values)))
     return rows
 
 
-def _harmonics(quantity: str, torque: float, values: Floats) -> Iterator[HarmonicRow]:
-    count = min(COUNT, (len(values) - 1) // 2)
-    amplitudes, phases = mesh_harmonics(values, count)
-    for r, (amplitude, phase) in enumerate(zip(amplitudes, phases), 1):
-        mean, span = float(values.mean()), float(np.ptp(values))
-        yield HarmonicRow(quantity, torque, mean, span, r, float(amplitude), float(np.degrees(phase)))
+def harmonic_rows(
+    excitation: MeshExcitation, radius: float, companion: CoarseExcitation = NO_COMPANION
+) -> list[HarmonicRow]:
+    """All quantities of excitation.csv that vary over the pitch; as many harmonics as its positions hold, at most five.
+    """
+    rows = list(_harmonics(NO_TORQUE, unloaded_curve(excitation)))
+    for force, curves in zip(excitation.loaded.forces, pitch_curves(excitation, companion)):
+        for curve in curves.values():
+            rows += _harmonics(1e-3 * float(force) * radius, curve)
+    return rows
+
+
+def _harmonics(torque: float, curve: PitchCurve) -> Iterator[HarmonicRow]:
+    mean, size = float(curve.values.mean()), float(np.ptp(curve.values))
+    parts = *curve.harmonics, curve.amplitude_errors
+    for r, (amplitude, phase, error) in enumerate(zip(*parts), 1):
+        yield HarmonicRow(
+            curve.quantity, torque, mean, curve.mean_error, size, curve.peak_to_peak_error, r, float(amplitude),
+            float(error), float(np.degrees(phase)),
+        )  # fmt: skip
 
 
 def write_tables(folder: RunFolder, positions: Sequence[ExcitationRow], harmonics: Sequence[HarmonicRow]) -> None:

@@ -77,9 +77,9 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
         transmission_error_peak_to_peak_um=_larger(
             _apart(float(np.ptp(error)), [float(np.ptp(error[kept])) for kept in halves]), missed_peaks(error)
         ),
-        mesh_stiffness_N_per_mm_um=_larger(thinned_mean(tangent), JUMP * _pitch_bends(tangent)),
-        secant_stiffness_N_per_mm_um=_larger(thinned_mean(secant), KINK * _pitch_bends(secant)),
-        loss_percent=_larger(thinned_mean(loss), KINK * _pitch_bends(loss)),
+        mesh_stiffness_N_per_mm_um=_larger(thinned_mean(tangent), JUMP * pitch_bends(tangent)),
+        secant_stiffness_N_per_mm_um=_larger(thinned_mean(secant), KINK * pitch_bends(secant)),
+        loss_percent=_larger(thinned_mean(loss), KINK * pitch_bends(loss)),
     )
 
 
@@ -209,7 +209,7 @@ def _mean_bends(curve: Engagement) -> float:
     return float(np.hypot(JUMP * np.linalg.norm(bends(known)), np.linalg.norm(ends))) / len(known)
 
 
-def _pitch_bends(values: Floats) -> float:
+def pitch_bends(values: Floats) -> float:
     """Root sum of squares of the bends of a periodic curve with even samples (n,), over n: their effect on the mean,
     independent of each other."""
     return float(np.linalg.norm(bends(np.concatenate([values[-1:], values, values[:2]])))) / len(values)

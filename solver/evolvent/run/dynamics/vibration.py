@@ -14,6 +14,7 @@ from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows, motions, write_histories
 from evolvent.dynamics.results.response import (
     BRANCH,
@@ -35,7 +36,13 @@ from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.dynamics.excitation import WRITTEN, check_results, computed_excitation, write_excitation
+from evolvent.run.dynamics.excitation import (
+    WRITTEN,
+    check_results,
+    companion_of,
+    computed_excitation,
+    write_excitation,
+)
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import drive_settings
@@ -71,7 +78,8 @@ def run_dynamics(
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     with Progress(hidden=quiet or comm.rank > 0) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
-        return on_first(comm, lambda: _written(excitation, problems, section, out, progress))
+        companion = companion_of(excitation, problems, scenes[0], comm, progress)
+        return on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress))
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -98,8 +106,9 @@ def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
 
 
 def _written(
-    excitation: MeshExcitation, problems: Sequence[GearProblem], section: DynamicsSection, out: Path, progress: Progress
-) -> list[str]:
+    excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
+    out: Path, progress: Progress,
+) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), problems[0]
     settings = drive_settings(first.pair, section)
@@ -114,7 +123,7 @@ def _written(
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
     with locked(out):
         folder = RunFolder(out)
-        failures = write_excitation(folder, excitation, problems)
+        failures = write_excitation(folder, excitation, companion, problems)
         write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
         write_spectrum(folder, spectrum_rows(vibrating, swept, found))
         if moving:

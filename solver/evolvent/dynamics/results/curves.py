@@ -1,0 +1,167 @@
+"""What varies over the pitch in an excitation, in the units of its tables, with error bars.
+
+The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`): from the same positions under
+the same torques on elements of twice the size. Peak-to-peak values and harmonics do not depend on the mean: of them,
+curves are compared without it. Figures of the whole pitch have the error of sampling it, too; so has the unloaded
+transmission error, which has no other. Where a tooth pair has just come into contact or has not quite, the tangent
+stiffness of a position is known only to belong to one of both states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property, partial
+from operator import itemgetter
+
+import numpy as np
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.harmonics import COUNT, mesh_harmonics
+from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, Reduction, difference
+from evolvent.results.error_bars.position_spacing import (
+    JUMP,
+    KINK,
+    every_other,
+    missed_peaks,
+    pitch_bends,
+    shares,
+    thinned_mean,
+)
+from evolvent_meshes.arrays import Floats, Ints
+
+UNLOADED, LOADED = "unloaded_transmission_error_um", "transmission_error_um"
+TANGENT, SECANT = "tangent_stiffness_N_per_um", "secant_stiffness_N_per_um"
+QUANTITIES: dict[str, Callable[[MeshExcitation], Floats]] = {
+    LOADED: lambda excitation: 1e3 * excitation.loaded.errors,
+    TANGENT: lambda excitation: 1e-3 * excitation.loaded.stiffness,
+    SECANT: lambda excitation: 1e-3 * excitation.secant,
+}
+"""Column of excitation.csv -> its values (n, m) at n positions under m torques."""
+BENDS = {UNLOADED: KINK, LOADED: KINK, TANGENT: JUMP, SECANT: KINK}
+"""Error of a step's mean over the bend of the step, see `position_spacing`: the tangent stiffness jumps where a tooth
+pair comes into contact, the others have kinks there."""
+VARYING_FACTOR = {1: 2.0, 2: 1.0}
+"""Order of the cells -> 1/(2^p − 1) for peak-to-peak values and harmonics, which depend on when teeth come into
+contact; p = 0.6 and 1, as for the loss. With 0.5 at order 2, a quarter of the bars of He's pair were too small."""
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseExcitation:
+    """The excitation on the meshes of a coarse companion."""
+
+    excitation: MeshExcitation | None
+    """At the same positions under the same torques; None where it was not asked for or could not be solved."""
+    order: int = 2
+    """Of the cells."""
+    failure: str = ""
+    """Why it could not be solved, as a sentence; empty where it could."""
+
+
+NO_COMPANION = CoarseExcitation(None)
+"""Where error bars are not asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class PitchCurve:
+    """A quantity under one torque, at n equidistant positions of a pitch."""
+
+    quantity: str
+    """As in excitation.csv."""
+    values: Floats
+    """(n,) in its unit."""
+    coarse: Floats | None
+    """(n,) the same on elements of twice the size; None where that is not known."""
+    order: int
+    """Of the cells."""
+
+    @property
+    def bars(self) -> Floats:
+        """Errors (n,) of the mesh at each position; NaN where they are not known."""
+        return np.array([self.mesh_error(itemgetter(i)) for i in range(len(self.values))])
+
+    def mesh_error(self, figure: Reduction) -> float:
+        """Error of a figure by the mesh; NaN where it is not known."""
+        return STIFFNESS_FACTOR[self.order] * self._difference(figure, 0.0)
+
+    def varying_error(self, figure: Reduction) -> float:
+        """The same of a figure that does not depend on the mean of the curve."""
+        return VARYING_FACTOR[self.order] * self._difference(figure, 1.0)
+
+    def _difference(self, figure: Reduction, less: float) -> float:
+        """See `estimation.difference`. less: part of the means that both curves are without."""
+        if self.coarse is None:
+            return float("nan")
+        place = np.arange(len(self.values), dtype=float)
+        first, second = (Curve(place, each - less * each.mean()) for each in (self.values, self.coarse))
+        return difference(figure, first, second)
+
+    @cached_property
+    def mean_error(self) -> float:
+        """Of the mean over the pitch, mesh and spacing of positions."""
+        return self.mesh_error(lambda values: float(np.mean(values))) + max(thinned_mean(self.values), self._bent)
+
+    @cached_property
+    def peak_to_peak_error(self) -> float:
+        """Of the largest less the smallest value."""
+        size = float(np.ptp(self.values))
+        halves = [abs(float(np.ptp(self.values[kept])) - size) for kept in self._halves]
+        return self.varying_error(lambda values: float(np.ptp(values))) + max(
+            float(np.mean(halves)), missed_peaks(self.values)
+        )
+
+    @property
+    def harmonics(self) -> tuple[Floats, Floats]:
+        """Amplitudes and phases [rad], see `mesh_harmonics`: as many as the positions hold, at most `COUNT`."""
+        return mesh_harmonics(self.values, self._count)
+
+    @cached_property
+    def amplitude_errors(self) -> Floats:
+        """Of these amplitudes."""
+        amplitudes = self.harmonics[0]
+        mesh = [self.varying_error(partial(_amplitude, r)) for r in range(1, self._count + 1)]
+        halves = [np.abs(_thinned_amplitudes(self.values, kept, self._count) - amplitudes) for kept in self._halves]
+        return np.array(mesh) + np.maximum(np.mean(halves, axis=0), 2.0 * self._bent)
+
+    @property
+    def _count(self) -> int:
+        return min(COUNT, (len(self.values) - 1) // 2)
+
+    @property
+    def _bent(self) -> float:
+        """What jumps or kinks at unknown places between the positions make of the mean."""
+        return BENDS[self.quantity] * pitch_bends(self.values)
+
+    @property
+    def _halves(self) -> list[Ints]:
+        """Every other position, from the first and from the second on."""
+        return [every_other(len(self.values), first) for first in (0, 1)]
+
+
+def unloaded_curve(excitation: MeshExcitation) -> PitchCurve:
+    """The unloaded transmission error, which is exact at its positions."""
+    values = 1e3 * excitation.unloaded_error
+    return PitchCurve(UNLOADED, values, values, NO_COMPANION.order)
+
+
+def pitch_curves(excitation: MeshExcitation, companion: CoarseExcitation) -> Iterator[dict[str, PitchCurve]]:
+    """The curves of all `QUANTITIES` by their names, of each torque, the lightest first."""
+    coarse, order = companion.excitation, companion.order
+    whole = {name: values(excitation) for name, values in QUANTITIES.items()}
+    known = {name: None if coarse is None else values(coarse) for name, values in QUANTITIES.items()}
+    for j in range(len(excitation.loaded.forces)):
+        yield {
+            name: PitchCurve(name, values[:, j], None if (other := known[name]) is None else other[:, j], order)
+            for name, values in whole.items()
+        }
+
+
+def _amplitude(harmonic: int, values: Floats) -> float:
+    """Of one mesh harmonic."""
+    return float(mesh_harmonics(values, harmonic)[0][-1])
+
+
+def _thinned_amplitudes(values: Floats, kept: Ints, count: int) -> Floats:
+    """Amplitudes (count,) from the positions that are kept (k,), by the trapezoidal rule."""
+    turn = np.exp(-2j * np.pi * np.outer(np.arange(1, count + 1), kept) / len(values))
+    return np.asarray(2.0 * np.abs(turn @ (shares(kept, len(values)) * values[kept])))

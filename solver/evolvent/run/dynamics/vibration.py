@@ -89,8 +89,8 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
     )  # fmt: skip
 
 
-def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
-    """Over the section's speeds."""
+def speed_sweep(pair: Drive, section: DynamicsSection) -> SpeedSweep:
+    """Steady states over the section's speeds. Raises NoSteadyState."""
     low, high = section.speed_rpm or (FROM * pair.natural_speed, TO * pair.natural_speed)
     slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
     periods = speeds_to_periods(np.linspace(low, high, section.speeds), pair.teeth)
@@ -106,7 +106,7 @@ def _written(
     settings = drive_settings(problems[0].pair, section)
     vibrating = drive(problems[0].pair, excitation, percents.index(100.0), settings)
     progress.stage(SPEEDS)
-    swept = _swept(vibrating, section)
+    swept = speed_sweep(vibrating, section)
     found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
     progress.stage(OUTPUT)
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]))

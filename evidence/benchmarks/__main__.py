@@ -1,8 +1,8 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, level-sizes, two-level,
-beside, runs, all (the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures in
-docs/pictures/benchmark/.
+PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, spacing, wear, dynamics, level-sizes,
+two-level, beside, runs, all (the default), or page, which measures nothing. Tables are kept in docs/benchmark/, figures
+in docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
 
@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmarks.accuracy import error_bars, spacing, two_level
+from evidence.benchmarks.accuracy import error_bars, excitation_bars, spacing, two_level
 from evidence.benchmarks.comparison import work_precision
 from evidence.benchmarks.comparison.programs import PEERS, Program
 from evidence.benchmarks.gears import (
+    dynamics,
     pitch_precision,
     plane_and_solid,
     position_cost,
@@ -73,6 +74,7 @@ class Measurement:
         small = [error_bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1))]
         problems = small if self.small else [error_bars.spur_problem(), error_bars.helical_problem()]
         yield "bars", (row for problem in problems for row in error_bars.measure_bars(problem))
+        yield "excitation_bars", (row for problem in problems for row in excitation_bars.measure_bars(problem))
 
     def spacing(self) -> Tables:
         pairs = list(spacing.problems())[: 1 if self.small else None]
@@ -101,6 +103,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "bars": Measurement.bars,
     "spacing": Measurement.spacing,
     "wear": Measurement.wear,
+    "dynamics": _table("dynamics", lambda given: dynamics.rows(given.size(dynamics))),
     "level-sizes": _table("level_sizes", lambda given: scaling.level_rows(given.size(scaling), given.folder)),
     "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
     "beside": _table("beside", lambda given: whole_runs.beside_rows(whole_runs.BESIDE, given.folder)),

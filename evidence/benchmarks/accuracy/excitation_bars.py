@@ -32,7 +32,7 @@ FINER = 4
 """Positions of the reference over those of the cases."""
 
 
-def measure_excitation_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[BarRow]:
+def measure_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[BarRow]:
     """One row a case, torque and figure. problem: of a pair without flank modifications, so that there is no unloaded
     transmission error."""
     at = _with_positions(problem.with_mesh(problem.reference))

@@ -1,10 +1,11 @@
-"""What gear pairs cost: the sections on pitches, sizes, skips, 2D against 3D, and wear."""
+"""What gear pairs cost: the sections on pitches, sizes, skips, 2D against 3D, wear and vibration."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+from evidence.benchmarks.gears.dynamics import DynamicsRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
@@ -186,6 +187,14 @@ WEAR_TABLE = Table(
         Column("of the volume %", "volume_error", "+.2%"),
     ),
 )  # fmt: skip
+DYNAMICS_TABLE = Table(
+    DynamicsRow,
+    (
+        Column("what", "what", words=True), Column("s", "seconds", ".3g"), Column("over s", "below", ".3g"),
+        Column("found", lambda row: f"**{row.found:.3g}**"), Column("bar", lambda row: f"at most {row.bar:g}"),
+        Column("bar is", lambda row: verdict(row.met), words=True),
+    ),
+)  # fmt: skip
 COSTS: tuple[PageSection[Any], ...] = (
     PageSection("Whole runs", "runs", RUN_TABLE, words=_runs_said),
     PageSection("", "beside", RATIO_TABLE),
@@ -208,3 +217,9 @@ WEAR: tuple[PageSection[Any], ...] = (
     PageSection("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
     PageSection("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
 )
+DYNAMICS: tuple[PageSection[Any], ...] = (
+    PageSection(
+        "Excitation and vibration", "dynamics", DYNAMICS_TABLE,
+        words=lambda _: ["CPU seconds without the start of Python, without error bars."],
+    ),
+)  # fmt: skip

@@ -12,7 +12,7 @@ COMMAND = "python -m evidence.benchmarks all --peers"
 TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
 reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
 Errors are relative to the overkill solution of the same problem."""
-SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *gear_pairs.WEAR)
+SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *gear_pairs.WEAR, *gear_pairs.DYNAMICS)
 
 
 def write_page(out: Path) -> Path:

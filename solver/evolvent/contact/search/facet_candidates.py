@@ -65,19 +65,23 @@ class _Layers:
         the balls' centres.
 
         The tree is asked for balls of the size of a facet one after the other along the normal: one that holds a whole
-        layer, which may be thirty times as high as a facet is wide, holds hundreds of facets beside it.
+        layer, which may be thirty times as high as a facet is wide, holds hundreds of facets beside it. In 2D they lie in
+        a row, and one ball is quicker.
         """
         most = self.radius + radius2.max()
         low, height = -self.reach[1] - most, sum(self.reach) + 2.0 * most
         across = self.beside + radius2.max()
-        count = math.ceil(float((height / across).max()) / 2.0)
+        count = 1 if self.centre.shape[1] == 2 else math.ceil(float((height / across).max()) / 2.0)
         step = height / count
         i1, i2 = self._in_slabs(tree, centre2, low, step, np.hypot(0.5 * step, across), count)
-        distance, along = centre2[i2] - self.centre[i1], self.normal[i1]
-        radii = self.radius[i1] + radius2[i2]
-        keep = _balls_meet(distance, along, radii, self.beside[i1] + radius2[i2], self.reach)
+        keep = self._meet(i1, i2, centre2, radius2)
         order = np.lexsort((i2[keep], i1[keep]))
         return i1[keep][order], i2[keep][order]
+
+    def _meet(self, i1: Ints, i2: Ints, centre2: Floats, radius2: Floats) -> Bools:
+        """Whether the balls of pairs (p,) may have points within reach of each other."""
+        distance, radii = centre2[i2] - self.centre[i1], self.radius[i1] + radius2[i2]
+        return _balls_meet(distance, self.normal[i1], radii, self.beside[i1] + radius2[i2], self.reach)
 
     def _in_slabs(
         self, tree: cKDTree, centre2: Floats, low: Floats, step: Floats, radius: Floats, count: int

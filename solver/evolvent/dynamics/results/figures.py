@@ -76,8 +76,10 @@ def _over_pitch(
 ) -> None:
     """Values over the pitch, closed to its end, a curve for each torque, in a band of its error."""
     for curve, colour in zip(curves, colours):
-        values, bars = _closed(curve.values), _closed(curve.bars)
-        axes.fill_between(phase, values - bars, values + bars, color=colour, alpha=0.25, linewidth=0.0)
+        values = _closed(curve.values)
+        if curve.coarse is not None:
+            bars = _closed(curve.bars)
+            axes.fill_between(phase, values - bars, values + bars, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(phase, values, color=colour, marker=".", markersize=3.0)
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel("pinion rotation [pitch]")
@@ -103,7 +105,8 @@ def _draw_harris(
     """Peak-to-peak transmission error over the torque. curves: unloaded, then under each torque."""
     size, bars = (np.array(each) for each in zip(*((np.ptp(c.values), c.peak_to_peak_error) for c in curves)))
     axes.plot([0.0, *torques], size, color=INK, lw=1.0, zorder=1)
-    axes.errorbar(torques, size[1:], bars[1:], linestyle="", color=INK, elinewidth=1.0, capsize=3.0, zorder=2)
+    if np.isfinite(bars).all():
+        axes.errorbar(torques, size[1:], bars[1:], linestyle="", color=INK, elinewidth=1.0, capsize=3.0, zorder=2)
     axes.scatter(torques, size[1:], 36.0, color=colours, zorder=3)
     axes.set_xlim(0.0, 1.05 * torques[-1])
     axes.set_ylim(bottom=0.0)

@@ -98,8 +98,8 @@ def sweep_list(natural_speed: float, section: DynamicsSection) -> Floats:
     return np.sort(np.concatenate([others, wanted]))
 
 
-def _swept(pair: Drive, section: DynamicsSection) -> SpeedSweep:
-    """Over the section's speeds."""
+def speed_sweep(pair: Drive, section: DynamicsSection) -> SpeedSweep:
+    """Steady states over the section's speeds. Raises NoSteadyState."""
     slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
     periods = speeds_to_periods(sweep_list(pair.natural_speed, section), pair.teeth)
     return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)))
@@ -116,7 +116,7 @@ def _written(
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
     iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
     progress.stage(SPEEDS)
-    swept = _swept(vibrating, section)
+    swept = speed_sweep(vibrating, section)
     found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
     moving = motions(vibrating, swept, section.histories_rpm)
     progress.stage(OUTPUT)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from evidence.benchmarks.accuracy.error_bars import BarRow
 from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
+from evidence.benchmarks.gears.dynamics import DynamicsRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
@@ -47,6 +48,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
+        "excitation_bars": [BarRow("a", "k", 0.0, 300.0, 2.0, 1.0, 0.1), BarRow("a", "k", 0.0, 300.0, 2.0, 1.5, 0.1)],
+        "dynamics": [DynamicsRow("speeds", 12.0, nan, 10.0), DynamicsRow("torques", 30.0, 20.0, 2.0)],
         "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
                       AccuracyRow("a", "mean", 0.001, nan)],
         "runs": [RunRow("long", "fine", 1, 10, 20, 5.0, 6.0, 0.0, 1.0, 12.0, 10.0, 300.0, nan, 8.0),
@@ -62,7 +65,9 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for name, own in rows.items():
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
-    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures", "75.0", "14",
+    for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures",
+                   "**2 of 2** figures", "| speeds | 12 |  | **12** | at most 10 | MISSED |", "75.0", "14",
+                   "| torques | 30 | 20 | **1.5** | at most 2 | met |",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
                    "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |",
                    "| long | fine | 1 | 30 | 5 | 6 | 0 | 1 | 12 | 10 | 300 |  | 8.0 |  | MISSED |", "ended after 9 s"):

@@ -7,12 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from evolvent.cli import main
+from evolvent.gears.load_list import LoadList
+from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.dynamics.excitation import run_excitation
+from evolvent.run.dynamics import excitation
+from evolvent.run.dynamics.excitation import loaded_pitch, run_excitation
 from evolvent.run.load_list import load_scenes
+from evolvent.run.progress import Progress
+from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
 from tests.support.running.processes import Run, on_ranks
 
@@ -67,6 +74,39 @@ def test_harmonics_are_those_of_the_table(out: Path) -> None:
     assert float(stiffness[0]["mean"]) == pytest.approx(values.mean(), rel=1e-7)
     assert float(stiffness[0]["peak_to_peak"]) == pytest.approx(np.ptp(values), rel=1e-7)
     assert (out / "pictures/excitation.png").stat().st_size > 20_000
+
+
+def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> None:
+    """Where they are asked for: of every position half the difference to the excitation on elements of twice the size,
+    at least; the values stay, 1e-8; without the companion there are none."""
+    scenes = list(load_scenes(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS).values())
+    assert run_excitation(scenes, tmp_path, quiet=True) == []
+    lines, plain = rows(tmp_path / "excitation.csv"), rows(out / "excitation.csv")
+    problems = sorted((gear_problem(each) for each in scenes), key=lambda each: each.torque)
+    angles = np.radians(column(lines[:6], "pinion_angle_deg"))
+    with Progress(hidden=True) as progress:
+        coarse = loaded_pitch(LoadList(problems), problems, angles, companion_mesh, MPI.COMM_SELF, progress)
+    for name, factor, values in (("transmission_error_um", 1e3, coarse.errors),
+                                 ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):  # fmt: skip
+        found, bars = column(lines, name), column(lines, f"{name}_error")
+        assert found == pytest.approx(column(plain, name), rel=1e-8)
+        assert (bars >= 0.5 * np.abs(found - factor * values.T.ravel()) - 1e-6).all()
+        assert (bars < 0.1 * found).all()
+        assert np.isnan(column(plain, f"{name}_error")).all()
+    assert np.isfinite(column(rows(tmp_path / "harmonics.csv"), "amplitude_error")).all()
+
+
+def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables as without, and a sentence with the reason."""
+
+    def refuse(*_: object) -> None:
+        raise MeshError("too coarse")
+
+    monkeypatch.setattr(excitation, "companion_mesh", refuse)
+    scenes = list(load_scenes(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1]).values())
+    (said,) = run_excitation(scenes, tmp_path, quiet=True)
+    assert said == "Error bars: their coarse companion could not be solved: too coarse"
+    assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
 
 
 def test_results_are_not_replaced_unasked(out: Path) -> None:

@@ -1,0 +1,122 @@
+"""The cost of a pair's excitation and of its vibration over the speed: CPU seconds of one process with one thread.
+
+Without the start of Python and without error bars; their coarse companion adds what `run.coarse_run` says. What a ratio
+divides is measured twice in turn, and the lesser seconds count.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isnan, nan
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evidence.benchmarks.accuracy.error_bars import SCENES
+from evidence.checkout import DEMOS
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.pair_model import drive
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.run.dynamics.excitation import computed_excitation
+from evolvent.run.dynamics.vibration import drive_settings, speed_sweep
+from evolvent.run.load_list import load_scenes
+from evolvent.run.progress import Progress
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene, load_scene
+
+PERCENTS = 5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0
+"""Torques of an excitation, in percent of the scene's, as `evolvent excitation` takes them."""
+EXCITATION_BAR, SPEEDS_BAR, TORQUES_BAR = 15.0, 10.0, 2.0
+"""[s], [s], seconds over seconds: docs/dynamics.md."""
+TURNS = 2
+
+
+@dataclass(frozen=True)
+class DynamicsRow:
+    """What was computed, and its bar."""
+
+    what: str
+    seconds: float
+    """CPU time."""
+    below: float
+    """Seconds by which these are divided; NaN where the bar is for the seconds themselves."""
+    bar: float
+    """At most."""
+
+    @property
+    def found(self) -> float:
+        """What the bar is for."""
+        return self.seconds if isnan(self.below) else self.seconds / self.below
+
+    @property
+    def met(self) -> bool:
+        """Whether it is in its bar."""
+        return self.found <= self.bar
+
+
+@dataclass(frozen=True)
+class DynamicsSizes:
+    """What is run."""
+
+    level: str
+    """Of both pairs' meshes."""
+    positions: int
+    """Of the spur pair's pitch."""
+    helical_positions: int
+    percents: tuple[float, ...]
+    """Torques; 100 among them."""
+    speeds: int
+
+
+FULL = DynamicsSizes("standard", 40, 20, PERCENTS, 400)
+SMALL = DynamicsSizes("quick", 6, 3, (50.0, 100.0, 200.0), 10)
+
+
+def rows(sizes: DynamicsSizes) -> Iterator[DynamicsRow]:
+    """He's pair, its speeds, and the narrow helical pair at all torques over the same at one."""
+    dolfinx_compat.silence_logs()
+    count = len(sizes.percents)
+    plane = _scene(DEMOS / "he2022.toml", sizes.level, sizes.positions)
+    _, seconds = _excitation(plane, sizes.percents)
+    yield DynamicsRow(f"excitation of He's pair, {sizes.positions} positions, {count} torques", seconds, nan,
+                      EXCITATION_BAR)  # fmt: skip
+    yield _speeds(sizes)
+    helical = _scene(SCENES / "narrow_helical.toml", "quick", sizes.helical_positions)
+    turns = [[_excitation(helical, percents)[1] for percents in (sizes.percents, (100.0,))] for _ in range(TURNS)]
+    whole, one = (min(each) for each in zip(*turns))
+    yield DynamicsRow(
+        f"excitation of a helical pair, {sizes.helical_positions} positions, {count} torques over one", whole, one,
+        TORQUES_BAR,
+    )  # fmt: skip
+
+
+def _scene(path: Path, level: str, positions: int, *settings: str) -> Scene:
+    return load_scene(path, [f"mesh.level={level}", f"sweep.positions={positions}", "contact.friction=0", *settings])
+
+
+def _excitation(scene: Scene, percents: Sequence[float]) -> tuple[MeshExcitation, float]:
+    """And its CPU seconds, from meshing on."""
+    scenes = load_scenes(scene, percents).values()
+    problems = sorted((gear_problem(each) for each in scenes), key=lambda each: each.torque)
+    begin = time.process_time()
+    with Progress(hidden=True) as progress:
+        excitation = computed_excitation(problems, scene.sweep.positions, MPI.COMM_SELF, progress)
+    return excitation, time.process_time() - begin
+
+
+def _speeds(sizes: DynamicsSizes) -> DynamicsRow:
+    """Steady states at all speeds, running up and down, on the force surface of He's pair; its code compiled before."""
+    scene = _scene(DEMOS / "he2022_dynamics.toml", sizes.level, sizes.positions, f"dynamics.speeds={sizes.speeds}")
+    section = scene.dynamics
+    assert section is not None
+    percents = sorted(section.torque_percents)
+    excitation, _ = _excitation(scene, percents)
+    pair = scene.gear_pair()
+    vibrating = drive(pair, excitation, percents.index(100.0), drive_settings(pair, section))
+    speed_sweep(vibrating, section.model_copy(update={"speeds": 2}))
+    begin = time.process_time()
+    speed_sweep(vibrating, section)
+    what = f"{sizes.speeds} speeds both ways, with folds"
+    return DynamicsRow(what, time.process_time() - begin, nan, SPEEDS_BAR)

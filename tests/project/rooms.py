@@ -50,7 +50,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "dynamics.oscillator": ("meshes",),
     "dynamics.excitation": ("meshes.*", "fem.parallel", "gears.problem", "gears", "gears.sweep", "dynamics.oscillator"),
     "dynamics": (
-        "meshes.*", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
+        "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
         "dynamics.oscillator",
     ),
     "scene.schema": ("meshes",),

@@ -15,8 +15,9 @@ from evolvent.results.run_data import RunData
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.wear.archard import Archard
-from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.gear_wear import GearWear
 from evolvent.wear.gears.meshed_pair import GearMeshMotion
+from evolvent.wear.gears.pitch_state import PitchState
 from evolvent.wear.results.report import WornPair
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member

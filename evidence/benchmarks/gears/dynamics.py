@@ -20,10 +20,11 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.pair_model import drive
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.run.dynamics.excitation import computed_excitation
-from evolvent.run.dynamics.vibration import drive_settings, speed_sweep
+from evolvent.run.dynamics.vibration import speed_sweep
 from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene, load_scene
 
 PERCENTS = 5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0

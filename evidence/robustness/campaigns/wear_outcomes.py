@@ -28,7 +28,8 @@ from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import WearState
 from evolvent.wear.body_study import CycleState, WearStudy
 from evolvent.wear.gears.gear_study import StudyState, study_states
-from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.gear_wear import GearWear
+from evolvent.wear.gears.pitch_state import PitchState
 from evolvent.wear.mesh_motion import MeshInverted, mesh_volume
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError

@@ -8,6 +8,7 @@ motion becomes.
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -15,7 +16,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import loaded_mesh
+from evolvent.dynamics.excitation.loaded_mesh import Positions, loaded_mesh, loaded_mesh_again, under_torques
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.oscillator.response import histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
@@ -23,10 +24,13 @@ from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, SteadyState, steady_state
 from evolvent.dynamics.oscillator.torsional_model import History
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad, TorqueCourse
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.problem.flank_deviations import FlankChart
+from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.gears.sweep.position_search import SearchedAt, searched_at
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
@@ -47,6 +51,20 @@ gears stand."""
 
 
 @dataclass(frozen=True, eq=False)
+class Start:
+    """Where an operation begins."""
+
+    state: Floats
+    """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    positions: Positions | None = None
+    """This rank's, on the same condensed gears; None: they are searched anew."""
+
+    def without_positions(self) -> Start:
+        """On gears that are condensed anew."""
+        return Start(self.state)
+
+
+@dataclass(frozen=True, eq=False)
 class Operation:
     """A pair that runs at a speed."""
 
@@ -64,6 +82,13 @@ class Operation:
     """The mesh force of a mesh period, the mean of these, as a torque that repeats with the mesh."""
     lifted: float
     """Share of the mesh period in which `load` is `LEAST_FORCE`, because the force is less."""
+    positions: Positions | None
+    """This rank's positions of the excitation; None in space, where they would take too much memory."""
+
+    @property
+    def start(self) -> Start:
+        """Where the operation goes on from on nearly the same flanks."""
+        return Start(self.state, self.positions)
 
     @property
     def state(self) -> Floats:
@@ -91,31 +116,46 @@ class OperatingPoint:
     positions: int
     """Of the pitch, for the excitation."""
 
-    def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Floats | None = None) -> Operation:
+    def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Start | None = None) -> Operation:
         """The operation of condensed gears; their own torque is the static one. Collective.
 
         charts: all that is missing of the designed flanks.
-        before: the motion's state (2,) at phase 0 on nearly the same flanks; None: where the pair has just come to the
-        speed.
+        before: on nearly the same flanks; None: the pair has just come to the speed.
 
         Raises NotConverged, SearchError, NoForceSurface, NoSteadyState.
         """
-        excitation = self._excitation(model, charts, comm)
+        angles = np.array(uniform_pitch(model.pair.pinion.z, self.positions).angles)
+        torques, positions = self._torques(model), None
+        gears = [model] * len(torques)
+        if model.bodies[0].d == 2:
+            loaded, positions = loaded_mesh_again(gears, torques, angles, comm, before.positions if before else None)
+        else:
+            loaded = loaded_mesh(gears, torques, angles, comm)
+        error = unloaded_error(RigidFlanks(model.pair, charts), angles, model.load.on)
+        excitation = MeshExcitation(error, loaded)
         # every rank follows the motion: it takes less than sending it
         pair = drive(model.pair, excitation, self.shares.index(1.0), self.settings)
         period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
-        motion = self._arrived(pair, period) if before is None else _followed(pair, period, before)
+        motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
         paths = _paths(pair, period, motion)
         course, lifted = _course(model.pair, pair, paths)
-        return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted)
+        return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted, positions)
 
-    def _excitation(self, model: GearModel, charts: Charts, comm: MPI.Comm) -> MeshExcitation:
-        angles = np.array(uniform_pitch(model.pair.pinion.z, self.positions).angles)
-        torque = model.load.torque * model.width_factor
-        torques = [share * torque for share in self.shares]
-        static = replace(model, load=GearLoad(model.load.torque, model.load.on))
-        loaded = loaded_mesh([static] * len(torques), torques, angles, comm)
-        return MeshExcitation(unloaded_error(RigidFlanks(model.pair, charts), angles, model.load.on), loaded)
+    def searched(self, model: GearModel, places: Sequence[SearchedAt], comm: MPI.Comm) -> Positions:
+        """This rank's positions, searched at given places (positions · torques,): all of them, in their order."""
+        models = under_torques([model] * len(self.shares), self._torques(model))
+        numbers = range(self.positions)[division(self.positions, comm.size)[comm.rank]]
+        count = len(models)
+        return together(
+            comm,
+            lambda: tuple(
+                tuple(searched_at(each, places[count * i + j], [0.0]) for j, each in enumerate(models)) for i in numbers
+            ),
+        )
+
+    def _torques(self, model: GearModel) -> list[float]:
+        """Of the force surface [N·mm]."""
+        return [share * model.load.torque * model.width_factor for share in self.shares]
 
     def _arrived(self, pair: Drive, period: float) -> Motion:
         """The motion of a pair that has run up, or down, to the speed; one that is slower, or faster, than where it

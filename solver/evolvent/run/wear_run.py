@@ -32,8 +32,9 @@ from evolvent.scene.skips import wanted_output
 from evolvent.wear.archard import Archard
 from evolvent.wear.block_stepping import BlockSettings
 from evolvent.wear.gears.gear_study import StudyCheckpoint, StudyState, checkpoint_of, study_states
-from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.gear_wear import GearWear
 from evolvent.wear.gears.meshed_pair import GearMeshMotion
+from evolvent.wear.gears.pitch_state import PitchState
 from evolvent.wear.gears.solver import FIRST_BLOCK, REFRESH
 from evolvent.wear.results.archive import read_checkpoint, worn_folder, write_checkpoint, write_pitch, write_worn
 from evolvent.wear.results.report import read_worn, write_report

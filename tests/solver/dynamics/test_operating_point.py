@@ -79,7 +79,7 @@ def test_motion_goes_on_from_the_last_one() -> None:
     that would have run up, within Newton's tolerance."""
     speed = 0.9 * operation(4000.0).drive.natural_speed
     down = operation(speed, "down")
-    kept = replace(POINT, speed=speed).on(model(), (None, None), MPI.COMM_SELF, down.state)
+    kept = replace(POINT, speed=speed).on(model(), (None, None), MPI.COMM_SELF, down.start)
     assert kept.state == pytest.approx(down.state, rel=1e-8)
 
 

@@ -65,8 +65,8 @@ class _Layers:
         the balls' centres.
 
         The tree is asked for balls of the size of a facet one after the other along the normal: one that holds a whole
-        layer, which may be thirty times as high as a facet is wide, holds hundreds of facets beside it. In 2D they lie in
-        a row, and one ball is quicker.
+        layer, which may be thirty times as high as a facet is wide, holds hundreds of facets beside it. In 2D they lie
+        in a row, and one ball is quicker.
         """
         most = self.radius + radius2.max()
         low, height = -self.reach[1] - most, sum(self.reach) + 2.0 * most

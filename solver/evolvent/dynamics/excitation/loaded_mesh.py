@@ -5,7 +5,7 @@ Gears are condensed once; each torque is solved from where the last one, and the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,8 +15,13 @@ from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
+from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
+
+Positions = tuple[tuple[SharedPosition, ...], ...]
+"""A rank's positions, each under all torques."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,32 +50,73 @@ def loaded_mesh(
 
     Raises NotConverged, SearchError.
     """
-    models = [
+    models = under_torques(gears, torques)
+    own = angles[division(len(angles), comm.size)[comm.rank]]
+
+    def figures() -> Floats:
+        found = np.empty((len(own), len(models), 2))
+        for i, row in enumerate(_searched(models, own, solved)):
+            found[i] = [_figures(*each) for each in zip(models, row)]
+        return found
+
+    return _gathered(models, torques, angles, comm, together(comm, figures))
+
+
+def loaded_mesh_again(
+    gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm, kept: Positions | None
+) -> tuple[LoadedMesh, Positions]:
+    """The same, on flanks that wear: positions (of this rank) that were searched before are not searched again as long
+    as the gears stand near there (`worn_on`). Returns those to go on from.
+
+    kept: as returned for nearly the same flanks of the same condensed gears; None at first.
+
+    Raises NotConverged, SearchError.
+    """
+    models = under_torques(gears, torques)
+    own = angles[division(len(angles), comm.size)[comm.rank]]
+    rows = together(comm, lambda: tuple(_searched(models, own, lambda: None, kept)))
+    parts = [[_figures(*each) for each in zip(models, row)] for row in rows]
+    return _gathered(models, torques, angles, comm, np.reshape(parts, (len(own), len(models), 2))), rows
+
+
+def under_torques(gears: Sequence[GearModel], torques: Sequence[float]) -> list[GearModel]:
+    """Gears each under its torque [N·mm], whose course does not vary."""
+    return [
         replace(model, load=GearLoad(torque / model.width_factor, model.load.on))
         for model, torque in zip(gears, torques, strict=True)
     ]
-    ends = [len(angles) * rank // comm.size for rank in range(comm.size + 1)]
-    own = angles[ends[comm.rank] : ends[comm.rank + 1]]
-    parts = comm.allgather(together(comm, lambda: _solved(models, own, solved)))
-    both = np.concatenate(parts)
+
+
+def _gathered(
+    models: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm, own: Floats
+) -> LoadedMesh:
+    """own: (k, m, 2) transmission error [mm] and stiffness [N/mm] of this rank's positions."""
+    both = np.concatenate(comm.allgather(own))
     radius = models[0].pair.gears[models[0].load.on].base_radius
     return LoadedMesh(angles, np.asarray(torques) / radius, both[..., 0], both[..., 1])
 
 
-def _solved(models: Sequence[GearModel], angles: Floats, solved: Callable[[], None]) -> Floats:
-    """Transmission error [mm] and stiffness [N/mm] (n, m, 2) at positions one after the other."""
-    found = np.empty((len(angles), len(models), 2))
-    ahead: list[SharedPosition | None] = [None] * len(models)
-    for i, angle in enumerate(angles):
-        lighter: SharedPosition | None = None
-        for j, model in enumerate(models):
-            near = ahead[j] or lighter
-            extra = near.contact.stand.extra if near else (0.0, 0.0)
-            patch: ContactPatch | None = near.patch if near else None
-            position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
-            stand = position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
-            found[i, j] = stand.transmission_error, position.stiffness * model.width_factor
-            ahead[j] = lighter = position
-            solved()
-    return found
+def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
+    """Transmission error [mm] and stiffness [N/mm]."""
+    stand = position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
+    return stand.transmission_error, position.stiffness * model.width_factor
 
+
+def _searched(
+    models: Sequence[GearModel], angles: Floats, solved: Callable[[], None], kept: Positions | None = None
+) -> Iterator[tuple[SharedPosition, ...]]:
+    """Positions one after the other, each under all torques (m,). kept: those that may do with the present wear."""
+    ahead: Sequence[SharedPosition | None] = [None] * len(models)
+    for i, angle in enumerate(angles):
+        row: list[SharedPosition] = []
+        for j, model in enumerate(models):
+            position = worn_on(model, kept[i][j]) if kept is not None else None
+            if position is None:
+                near = (kept[i][j] if kept is not None else ahead[j]) or (row[-1] if row else None)
+                extra = near.contact.stand.extra if near else (0.0, 0.0)
+                patch: ContactPatch | None = near.patch if near else None
+                position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
+            row.append(position)
+            solved()
+        ahead = row
+        yield tuple(row)

@@ -21,7 +21,8 @@ from evolvent.wear.block_stepping import (
     initial_wear_state,
     next_block,
 )
-from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.gear_wear import GearWear
+from evolvent.wear.gears.pitch_state import PitchState, Vibration
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -66,7 +67,7 @@ class StudyCheckpoint:
     searches: where the contact was searched, of all positions.
     rows: of all blocks so far.
     vibrations: of the beginning and of all blocks; empty under a constant torque.
-    vibration: state (2,) of the present operation; None under a constant torque.
+    vibration: of the present operation; None under a constant torque.
     """
 
     cycles: float
@@ -77,7 +78,7 @@ class StudyCheckpoint:
     searches: tuple[SearchedAt, ...]
     rows: tuple[BlockRow, ...]
     vibrations: tuple[VibrationRow, ...] = ()
-    vibration: Floats | None = None
+    vibration: Vibration | None = None
 
 
 @dataclass(frozen=True)
@@ -123,10 +124,10 @@ def study_states(
 def checkpoint_of(gears: GearWear, study: StudyState) -> StudyCheckpoint:
     """The checkpoint of a state. All ranks call it."""
     state = study.state
-    searches, operation = tuple(gears.searches(state.evaluation)), state.evaluation.operation
+    searches, vibration = tuple(gears.searches(state.evaluation)), gears.vibration(state.evaluation)
     return StudyCheckpoint(
         state.cycles, state.depth, gears.mesh_depth, state.previous, state.next_length, searches, study.rows,
-        study.vibrations, None if operation is None else operation.state,
+        study.vibrations, vibration,
     )  # fmt: skip
 
 

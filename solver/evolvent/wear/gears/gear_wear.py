@@ -7,7 +7,7 @@ computes what they wear off. Friction depends on the history, so the friction st
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from mpi4py import MPI
 
 from evolvent.contact.newton.snes import NotConverged
-from evolvent.dynamics.operating_point import OperatingPoint, Operation
+from evolvent.dynamics.operating_point import OperatingPoint, Operation, Start
 from evolvent.fem.material import contact_modulus
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.contact.contact_points import ContactPoints
@@ -27,11 +27,12 @@ from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent.wear.archard import Archard, certify_volume
-from evolvent.wear.block_stepping import RETRIED_ERRORS, CycleEvaluation
+from evolvent.wear.block_stepping import RETRIED_ERRORS
 from evolvent.wear.gears.flank_grid import FlankGrid, line_arc
 from evolvent.wear.gears.implicit_block import LinearBlock, PositionResponse
 from evolvent.wear.gears.meshed_pair import GearMeshMotion, MeshedPair
 from evolvent.wear.gears.passage import MeshPassage, mesh_passage
+from evolvent.wear.gears.pitch_state import PitchState, Vibration
 from evolvent.wear.gears.worn_sweep import WornSweep
 from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.errors import InputError
@@ -39,30 +40,6 @@ from evolvent_meshes.gears.member import Member
 
 NEGATIVE_VOLUME = 1e-7
 """Of a block's volume: negative depths up to this are cut off; a tenth of the tolerance of the volume's certificate."""
-
-
-@dataclass(frozen=True)
-class PitchState(CycleEvaluation):
-    """A pitch solved on worn flanks.
-
-    positions: results of all positions.
-    work: ∫∫p|v_s| dA dt of a tooth's passage [N·mm; per mm of width in 2D].
-    shared: searches and compliances of this rank's positions, reused in the next cycle.
-    searched: number of positions that were searched anew, on all ranks.
-    mesh_updates: number of mesh updates before.
-    points: contact points of this rank's positions without friction.
-    passage: their mesh passage.
-    operation: the vibration under whose mesh force it was solved; None under the constant torque.
-    """
-
-    positions: tuple[PositionResult, ...]
-    work: float
-    shared: tuple[SharedPosition, ...]
-    searched: int
-    mesh_updates: int
-    points: tuple[ContactPoints, ...]
-    passage: MeshPassage
-    operation: Operation | None = None
 
 
 class GearWear:
@@ -142,10 +119,18 @@ class GearWear:
         are not searched again. Raises VolumeLost as well."""
         return self._evaluate(depth, previous, {})
 
-    def resumed(self, depth: Floats, searches: Sequence[SearchedAt], vibration: Floats | None = None) -> PitchState:
+    def resumed(
+        self, depth: Floats, searches: Sequence[SearchedAt], vibration: Vibration | None = None
+    ) -> PitchState:
         """The pitch at depths (n,) with the contact searched where `searches`, one a position, say. vibration: the
-        state (2,) of the operation there."""
-        operation, model = self._loaded(depth, vibration)
+        operation there."""
+        start = None
+        if vibration is not None and self.operating is not None:
+            model = self.geometry.with_gap(depth)
+            places = vibration.searches
+            positions = self.operating.searched(model, places, self._comm) if places else None
+            start = Start(vibration.state, positions)
+        operation, model = self._loaded(depth, start)
         frictions = [self.friction]
         shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._numbers])
         return self._solve(model, shared, 0, operation)
@@ -154,14 +139,22 @@ class GearWear:
         """The chart over diameter and height of depths [mm] at a gear's flank nodes."""
         return self.grids[gear].chart(self.model.pair.gears[gear], depth)
 
-    def _loaded(self, depth: Floats, vibration: Floats | None) -> tuple[Operation | None, GearModel]:
-        """The gears at depths (n,) under their load, and the operation that it comes from, if it varies. vibration: as
-        it was on nearly the same flanks."""
+    def vibration(self, state: PitchState) -> Vibration | None:
+        """Of the pitch, all ranks together; None under a constant torque."""
+        operation = state.operation
+        if operation is None:
+            return None
+        mine = [position.searched for row in operation.positions or () for position in row]
+        return Vibration(operation.state, tuple(search for part in self._comm.allgather(mine) for search in part))
+
+    def _loaded(self, depth: Floats, before: Start | None) -> tuple[Operation | None, GearModel]:
+        """The gears at depths (n,) under their load, and the operation that it comes from, if it varies. before: on
+        nearly the same flanks."""
         model = self.geometry.with_gap(depth)
         if self.operating is None:
             return None, model
         pinion, wheel = (self.chart(gear, nodal) for gear, nodal in zip(Member, self.by_gear(depth)))
-        operation = self.operating.on(model, (pinion, wheel), self._comm, vibration)
+        operation = self.operating.on(model, (pinion, wheel), self._comm, before)
         return operation, replace(model, load=operation.load)
 
     def searches(self, state: PitchState) -> list[SearchedAt]:
@@ -210,8 +203,10 @@ class GearWear:
     def _evaluate(self, depth: Floats, previous: PitchState | None, pressed: Mapping[int, Bools]) -> PitchState:
         """pressed: by number of this rank's positions, (q,) which points are likely to be pressed."""
         reusable = previous is not None and previous.mesh_updates == self.mesh_updates
-        before = previous.operation if previous is not None else None
-        operation, model = self._loaded(depth, None if before is None else before.state)
+        start = None if previous is None or previous.operation is None else previous.operation.start
+        if start is not None and not reusable:
+            start = start.without_positions()
+        operation, model = self._loaded(depth, start)
         kept = previous.shared if previous is not None and reusable else ()
         shared, searched = together(self._comm, lambda: self._prepared(model, kept, pressed))
         return self._solve(model, shared, self._comm.allreduce(searched), operation)

@@ -26,6 +26,7 @@ from evolvent.scene.scene import Scene
 from evolvent.wear.block_stepping import PreviousBlock
 from evolvent.wear.gears.gear_study import BlockRow, StudyCheckpoint
 from evolvent.wear.gears.gear_wear import GearWear
+from evolvent.wear.gears.pitch_state import Vibration
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
@@ -36,15 +37,16 @@ R = TypeVar("R", BlockRow, VibrationRow)
 
 def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
     """Writes OUT/wear.csv and OUT/vibration.csv, one line per block, and then the checkpoint. Raises OSError."""
-    previous = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0)
+    previous, vibration = checkpoint.previous or PreviousBlock(np.zeros(0), 0.0), checkpoint.vibration
     arrays = {
         "fingerprint": archive.fingerprint, "cycles": checkpoint.cycles, "depth": checkpoint.depth,
         "known": checkpoint.mesh_depth, "length": checkpoint.next_length,
         "last_rate": previous.rate, "last_length": previous.length,
-        "searches": np.array([(s.angle, *s.extra, s.half_width) for s in checkpoint.searches]),
+        "searches": _places(checkpoint.searches),
         "rows": np.array([list(asdict(row).values()) for row in checkpoint.rows]),
         "vibrations": np.array([list(asdict(row).values()) for row in checkpoint.vibrations]),
-        "vibration": np.zeros(0) if checkpoint.vibration is None else checkpoint.vibration,
+        "vibration": np.zeros(0) if vibration is None else vibration.state,
+        "vibration_searches": np.zeros((0, 4)) if vibration is None else _places(vibration.searches),
     }  # fmt: skip
     if checkpoint.vibrations:
         rows = [{"cycles": row.cycles, **asdict(row)} for row in checkpoint.vibrations]  # the cycles first
@@ -62,13 +64,23 @@ def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
     archive.require_scene(arrays)
     rate = arrays["last_rate"]
     previous = PreviousBlock(rate, float(arrays["last_length"])) if len(rate) else None
-    searches = tuple(SearchedAt(a, (x, y), w) for a, x, y, w in arrays["searches"].tolist())
+    state, places = arrays["vibration"], _searches(arrays["vibration_searches"])
     return StudyCheckpoint(
-        float(arrays["cycles"]), arrays["depth"], arrays["known"], previous, float(arrays["length"]), searches,
+        float(arrays["cycles"]), arrays["depth"], arrays["known"], previous, float(arrays["length"]),
+        _searches(arrays["searches"]),
         tuple(_row(BlockRow, values) for values in arrays["rows"].tolist()),
         tuple(_row(VibrationRow, values) for values in arrays["vibrations"].tolist()),
-        arrays["vibration"] if len(arrays["vibration"]) else None,
+        Vibration(state, places) if len(state) else None,
     )  # fmt: skip
+
+
+def _places(searches: Sequence[SearchedAt]) -> Floats:
+    """(n, 4): angle, rotations beyond the nominal ones and half-width."""
+    return np.array([(s.angle, *s.extra, s.half_width) for s in searches]).reshape(-1, 4)
+
+
+def _searches(places: Floats) -> tuple[SearchedAt, ...]:
+    return tuple(SearchedAt(a, (x, y), w) for a, x, y, w in places.tolist())
 
 
 def _row(kind: type[R], values: list[float]) -> R:

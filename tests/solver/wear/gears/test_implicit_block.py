@@ -11,8 +11,9 @@ from mpi4py import MPI
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.wear.archard import Archard
 from evolvent.wear.gears import implicit_block
-from evolvent.wear.gears.gear_wear import GearWear, PitchState
+from evolvent.wear.gears.gear_wear import GearWear
 from evolvent.wear.gears.implicit_block import PositionResponse
+from evolvent.wear.gears.pitch_state import PitchState
 from tests.support.gear_cases import model_of, spur_scene
 
 LENGTH = 4e5  # cycles, in which many points would pull

@@ -19,6 +19,7 @@ from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
 from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
+from evolvent.dynamics.results.torque_map import MapRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.mesh_facts import MeshFacts
@@ -108,6 +109,7 @@ SECTIONS = (
     ("`branch.csv`", BranchRow, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),
     ("`spectrum.csv`", SpectrumRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
     ("`histories.csv`", HistoryRow, "At the speeds of `dynamics.histories_rpm`, or at the operating one."),
+    ("`torque_map.csv`", MapRow, "Of `evolvent dynamics` with `dynamics.map_percents`; the lightest torque first."),
     ("`dynamics.json`", DriveSummary, ""),
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
     ("`wear.csv`", BlockRow, ""),

@@ -88,11 +88,14 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "dynamics.results": (
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive",
-        "results.error_bars", "results.tables", "results.drawing",
+        "results.error_bars", "results.tables",
+    ),
+    "dynamics.figures": (
+        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
     ),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
-        "dynamics", "dynamics.results", "scene", "scene.schema", "results.*", "wear.*",
+        "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",

@@ -20,7 +20,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.pair_model import drive
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.run.dynamics.excitation import computed_excitation
-from evolvent.run.dynamics.vibration import speed_sweep
+from evolvent.run.dynamics.speeds import sweep_at, sweep_list
 from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
@@ -116,8 +116,8 @@ def _speeds(sizes: DynamicsSizes) -> DynamicsRow:
     excitation, _ = _excitation(scene, percents)
     pair = scene.gear_pair()
     vibrating = drive(pair, excitation, percents.index(100.0), drive_settings(pair, section))
-    speed_sweep(vibrating, section.model_copy(update={"speeds": 2}))
+    sweep_at(vibrating, sweep_list(vibrating.natural_speed, section.model_copy(update={"speeds": 2})))
     begin = time.process_time()
-    speed_sweep(vibrating, section)
+    sweep_at(vibrating, sweep_list(vibrating.natural_speed, section))
     what = f"{sizes.speeds} speeds both ways, with folds"
     return DynamicsRow(what, time.process_time() - begin, nan, SPEEDS_BAR)

@@ -134,7 +134,8 @@ class OperatingPoint:
         error = unloaded_error(RigidFlanks(model.pair, charts), angles, model.load.on)
         excitation = MeshExcitation(error, loaded)
         # every rank follows the motion: it takes less than sending it
-        pair = drive(model.pair, excitation, self.shares.index(1.0), self.settings)
+        static = float(excitation.loaded.forces[self.shares.index(1.0)])
+        pair = drive(model.pair, excitation, static, self.settings)
         period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
         motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
         paths = _paths(pair, period, motion)

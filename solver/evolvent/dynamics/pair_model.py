@@ -54,14 +54,15 @@ class Drive:
         return math.sqrt(self.mean_stiffness / self.model.mass) / (2.0 * math.pi) * 60.0 / self.teeth
 
 
-def drive(pair: GearPair, excitation: MeshExcitation, number: int, settings: DriveSettings) -> Drive:
-    """The pair under the torque of this number in the excitation."""
+def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: DriveSettings) -> Drive:
+    """The pair under a load, F_0 [N]. The force surface serves every load up to its heaviest; stiffnesses under a load
+    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest."""
     mass = equivalent_mass(pair, settings.inertias)
     mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
-    mean = float(np.mean(mesh.loaded.stiffness[:, number]))
+    mean = float(np.mean(mesh.under(load)[1]))
     critical = 2.0 * math.sqrt(mean * mass)
     model = TorsionalModel(
-        mass, float(mesh.loaded.forces[number]), _law(pair, mesh, number, settings), settings.damping_ratio * critical,
+        mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
         settings.damped_apart, settings.ground_damping_ratio * critical,
     )  # fmt: skip
     return Drive(model, mean, pair.pinion.z)
@@ -76,8 +77,8 @@ def geometric_backlash(pair: GearPair) -> float:
     return max(float(gap * np.cos(pair.working_pressure_angle)), 0.0)
 
 
-def _law(pair: GearPair, mesh: MeshExcitation, number: int, settings: DriveSettings) -> MeshLaw:
+def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSettings) -> MeshLaw:
     """Of both sides of the teeth."""
     if settings.mesh == "force_surface":
         return mirrored_law(mesh.force_surface(), pair, settings.backlash)
-    return paper_law(mesh.stiffness_side(number, settings.mesh == "secant"), settings.backlash)
+    return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)

@@ -121,7 +121,7 @@ def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> Non
     """Writes the mesh force under which contact was computed, and where it comes from. Collective."""
 
     def drawn() -> bytes:
-        from evolvent.dynamics.results.operation_figure import operation_picture  # matplotlib takes a second to import
+        from evolvent.dynamics.figures.operation import operation_picture  # matplotlib takes a second to import
 
         return operation_picture(operation)
 

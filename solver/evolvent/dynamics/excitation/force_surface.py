@@ -11,12 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
 
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, MeshSide, behind, force_side, linear_side, mirrored
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import ResultError
 from evolvent_meshes.gears.pair import GearPair
+
+SAME_LOAD = 1e-9
+"""Part by which loads differ that are one."""
+DEPTH_ACCURACY = 1e-15
+"""Of the deflection under a load between those that were solved [mm]."""
 
 
 class NoForceSurface(ResultError):
@@ -66,18 +72,39 @@ class MeshExcitation:
         force = np.array([self._over_depth(i, depths) for i in range(len(self.unloaded_error))])
         return force_side(depths, force, self.unloaded_error, last_slope=self.loaded.stiffness[:, -1])
 
-    def stiffness_side(self, number: int, secant: bool = False) -> MeshSide:
-        """k(φ) x with the tangent or the secant stiffness under the torque of this number (He et al. 2022, Eq. 12)."""
-        stiffness = self.secant if secant else self.loaded.stiffness
-        return linear_side(stiffness[:, number], self.unloaded_error)
+    def under(self, load: float) -> tuple[Floats, Floats]:
+        """x (n,) [mm] under a load [N] and the tangent stiffness (n,) [N/mm] there: as solved, or between two solved
+        loads as the force over x has them at each position. Raises ValueError beyond the heaviest one."""
+        forces = self.loaded.forces
+        near = int(np.argmin(np.abs(forces - load)))
+        if abs(forces[near] - load) <= SAME_LOAD * load:
+            return self.depths[:, near], self.loaded.stiffness[:, near]
+        if not 0.0 < load < forces[-1]:
+            raise ValueError(f"load of a mesh: wanted above 0 up to the heaviest, {forces[-1]:.6g} N, found {load:.6g}")
+        j, (x, slope) = int(np.searchsorted(forces, load)), np.empty((2, len(self.unloaded_error)))
+        for i, depths in enumerate(self.depths):
+            curve, ends = self._force(i), np.append(0.0, depths)[j : j + 2]
+            x[i] = brentq(lambda depth, curve=curve: curve(depth) - load, *ends, xtol=DEPTH_ACCURACY)
+            slope[i] = curve(x[i], 1)
+        return x, slope
+
+    def stiffness_side(self, load: float, secant: bool = False) -> MeshSide:
+        """k(φ) x with the tangent or the secant stiffness under a load [N] (He et al. 2022, Eq. 12). Raises ValueError
+        as `under`."""
+        x, tangent = self.under(load)
+        return linear_side(load / x if secant else tangent, self.unloaded_error)
+
+    def _force(self, i: int) -> CubicHermiteSpline:
+        """F [N] over x [mm] at position i, up to the heaviest torque."""
+        x, force, slope = self.depths[i], self.loaded.forces, self.loaded.stiffness[i]
+        first = force[0] / x[0]
+        return CubicHermiteSpline(np.append(0.0, x), np.append(0.0, force), np.append(2.0 * first - slope[0], slope))
 
     def _over_depth(self, i: int, depths: Floats) -> Floats:
         """F (k,) [N] at position i, at depths (k,); beyond the heaviest torque it goes on straight."""
-        x, force, slope = self.depths[i], self.loaded.forces, self.loaded.stiffness[i]
-        first = force[0] / x[0]
-        curve = CubicHermiteSpline(np.append(0.0, x), np.append(0.0, force), np.append(2.0 * first - slope[0], slope))
-        beyond = np.maximum(depths - x[-1], 0.0)
-        return np.asarray(curve(np.minimum(depths, x[-1])) + slope[-1] * beyond)
+        heaviest, slope = self.depths[i, -1], self.loaded.stiffness[i, -1]
+        beyond = np.maximum(depths - heaviest, 0.0)
+        return np.asarray(self._force(i)(np.minimum(depths, heaviest)) + slope * beyond)
 
 
 def mirrored_law(side: MeshSide, pair: GearPair, backlash: float) -> MeshLaw:

@@ -1,1 +1,1 @@
-"""What is left of the dynamics of a pair: tables and pictures."""
+"""Tables of a pair's excitation and vibration."""

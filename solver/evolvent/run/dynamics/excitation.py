@@ -121,7 +121,7 @@ def write_excitation(
     write_tables(folder, *tables)
 
     def drawn() -> bytes:
-        from evolvent.dynamics.results.figures import excitation_picture  # matplotlib takes a second to import
+        from evolvent.dynamics.figures.excitation import excitation_picture  # matplotlib takes a second to import
 
         return excitation_picture(excitation, torques, companion)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import Response
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows, motions, write_histories
@@ -30,6 +29,7 @@ from evolvent.dynamics.results.response import (
     write_response,
 )
 from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows, write_spectrum
+from evolvent.dynamics.results.torque_map import TORQUE_MAP, write_torque_map
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.problem.gear_problem import GearProblem
@@ -43,20 +43,18 @@ from evolvent.run.dynamics.excitation import (
     computed_excitation,
     write_excitation,
 )
+from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
+from evolvent.run.dynamics.torque_map import PICTURE as MAP_PICTURE
+from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
-from evolvent_meshes.arrays import Floats
 
 PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
-TABLES = RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES
-SPEEDS = "speeds"
-FROM, TO = 1.0 / 6.0, 1.6
-"""Speeds that are swept by default, over the natural one."""
-SAME_SPEED = 1e-9
-"""Part by which speeds differ that are one."""
+TABLES = RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP
+SPEEDS, MAP = "speeds", "torque map"
 
 
 def run_dynamics(
@@ -72,7 +70,7 @@ def run_dynamics(
     Raises as `run_excitation`, and NoSteadyState.
     """
     comm = MPI.COMM_WORLD
-    written = (*WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS)))
+    written = (*WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS, MAP_PICTURE)))
     on_first(comm, lambda: check_results(out, written, overwrite))
     dolfinx_compat.silence_logs()
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
@@ -90,21 +88,6 @@ def accuracy(section: DynamicsSection) -> Accuracy:
     )  # fmt: skip
 
 
-def sweep_list(natural_speed: float, section: DynamicsSection) -> Floats:
-    """Ascending speeds (n,) [r/min]: the section's, evenly spaced, and those of its histories, each once."""
-    low, high = section.speed_rpm or (FROM * natural_speed, TO * natural_speed)
-    even, wanted = np.linspace(low, high, section.speeds), np.array(section.histories_rpm)
-    others = [speed for speed in even if not np.isclose(speed, wanted, rtol=SAME_SPEED, atol=0.0).any()]
-    return np.sort(np.concatenate([others, wanted]))
-
-
-def speed_sweep(pair: Drive, section: DynamicsSection) -> SpeedSweep:
-    """Steady states over the section's speeds. Raises NoSteadyState."""
-    slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
-    periods = speeds_to_periods(sweep_list(pair.natural_speed, section), pair.teeth)
-    return sweep_speeds(pair.model, periods, (float(slowest), float(fastest)))
-
-
 def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
     out: Path, progress: Progress,
@@ -112,13 +95,14 @@ def _written(
     """Sweeps the speeds and writes everything. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), problems[0]
     settings = drive_settings(first.pair, section)
-    vibrating = drive(first.pair, excitation, percents.index(100.0), settings)
+    vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
     iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
     progress.stage(SPEEDS)
-    swept = speed_sweep(vibrating, section)
+    swept = sweep_at(vibrating, sweep_list(vibrating.natural_speed, section))
     found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
     moving = motions(vibrating, swept, section.histories_rpm)
+    over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
     with locked(out):
@@ -128,8 +112,24 @@ def _written(
         write_spectrum(folder, spectrum_rows(vibrating, swept, found))
         if moving:
             write_histories(folder, history_rows(moving))
-        failures += draw(list(_pictures(vibrating, swept, found, branch, moving, iso)), folder).failures
-    return [*failures, *_warnings(vibrating, settings, known), *_branch_warnings(swept), *_iso_warnings(first)]
+        if over_torque.rows:
+            write_torque_map(folder, over_torque.rows)
+        pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
+        failures += draw(pictures, folder).failures
+    said = *_warnings(vibrating, settings, known), *_branch_warnings(swept), *_iso_warnings(first)
+    return [*failures, *said, *over_torque.warnings]
+
+
+def _over_torque(
+    excitation: MeshExcitation, problem: GearProblem, vibrating: Drive, settings: DriveSettings,
+    section: DynamicsSection, progress: Progress,
+) -> TorqueMap:  # fmt: skip
+    """The section's map; without any rows where it wants none. vibrating: under the scene's torque."""
+    loads = [vibrating.model.load * percent / 100.0 for percent in section.map_percents]
+    if loads:
+        progress.stage(MAP, len(loads))
+    speeds = map_list(vibrating.natural_speed, section)
+    return torque_map(excitation, problem, settings, loads, speeds, progress.advance)
 
 
 def _pictures(
@@ -143,17 +143,17 @@ def _pictures(
     """Vibration over the speed, spectrum running up, and motions at speeds where any are wanted."""
 
     def over_speed() -> bytes:
-        from evolvent.dynamics.results.response_figure import response_picture  # matplotlib takes a second
+        from evolvent.dynamics.figures.response import response_picture  # matplotlib takes a second
 
         return response_picture(vibrating, swept, found, branch, iso)
 
     def waterfall() -> bytes:
-        from evolvent.dynamics.results.waterfall_figure import waterfall_picture
+        from evolvent.dynamics.figures.waterfall import waterfall_picture
 
         return waterfall_picture(vibrating, swept, found["up"])
 
     def over_time() -> bytes:
-        from evolvent.dynamics.results.histories_figure import histories_picture
+        from evolvent.dynamics.figures.histories import histories_picture
 
         return histories_picture(moving, vibrating.model.load)
 

@@ -15,6 +15,11 @@ FASTEST = 1e6
 SPEEDS = f"two rising numbers above 0 up to {FASTEST:g}, in r/min"
 HISTORIES = f"a list of up to 6 different speeds above 0 up to {FASTEST:g}, in r/min"
 PERCENTS = "different numbers above 0 up to 1000, 100 among them"
+MAP = 2, 12
+"""Fewest and most torques of a map."""
+MAP_RANGE = 1.0, 400.0
+"""[%]."""
+MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to {MAP_RANGE[1]:g}"
 
 
 def _inertia(gear: str) -> Any:
@@ -96,6 +101,16 @@ class DynamicsSection(SceneSection):
         "speeds of the pinion of which the motion over time is written and drawn; they join those of `speeds`",
         HISTORIES, "take the speeds of interest from response.csv", default=(), max_length=6,
     )  # fmt: skip
+    map_percents: tuple[float, ...] = key(
+        "torques under which the speeds are run through, too, for a map of the vibration over speed and torque, in "
+        "percent of load.torque_Nm; they need not be among torque_percents; by default there is no map",
+        f"a list of {MAP_PERCENTS}, none above the heaviest of torque_percents",
+        "resonance takes about twice the static force: go on to half of the heaviest of torque_percents", default=(),
+    )  # fmt: skip
+    map_speeds: int = key(
+        "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}", default=100, ge=2,
+        le=MOST_SPEEDS,
+    )  # fmt: skip
     base_pitch_deviation_um: float = key(
         "f_pb, deviation of the transverse base pitch, the larger of both gears, for K_v of ISO 6336-1 beside the "
         "computed factor; 0: perfect pitches",
@@ -123,7 +138,7 @@ class DynamicsSection(SceneSection):
         "a number from 100 to 3000, in MPa", "ISO 6336-5 has it", default=None, ge=100, le=3000,
     )  # fmt: skip
 
-    @field_validator("speed_rpm", "torque_percents", "histories_rpm", mode="before")
+    @field_validator("speed_rpm", "torque_percents", "histories_rpm", "map_percents", mode="before")
     @classmethod
     def _list_is_tuple(cls, value: Any) -> Any:
         return tuple(value) if isinstance(value, list) else value
@@ -140,6 +155,20 @@ class DynamicsSection(SceneSection):
         histories = self.histories_rpm
         if not all(0.0 < each <= FASTEST for each in histories) or len(set(histories)) < len(histories):
             raise validation_error(InputProblem("histories_rpm", shown(histories), HISTORIES, "give each once"))
+        return self
+
+    @model_validator(mode="after")
+    def _map(self) -> Self:
+        given, heaviest = self.map_percents, max(self.torque_percents)
+        if not given:
+            return self
+        inside = all(MAP_RANGE[0] <= each <= MAP_RANGE[1] for each in given)
+        if not inside or len(set(given)) < len(given) or not MAP[0] <= len(given) <= MAP[1]:
+            remedy = "give each once, or delete the key for no map"
+            raise validation_error(InputProblem("map_percents", shown(given), f"a list of {MAP_PERCENTS}", remedy))
+        if max(given) > heaviest:
+            allowed = f"none above {heaviest:g}, the heaviest of torque_percents: the force surface ends there"
+            raise validation_error(InputProblem("map_percents", shown(given), allowed, "add heavier torque_percents"))
         return self
 
     @model_validator(mode="after")

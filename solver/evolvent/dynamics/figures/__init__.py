@@ -1,0 +1,1 @@
+"""Pictures of a pair's excitation and vibration."""

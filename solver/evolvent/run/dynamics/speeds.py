@@ -1,0 +1,42 @@
+"""The speeds at which a scene's vibration is computed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.pair_model import Drive
+from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent_meshes.arrays import Floats
+
+FROM, TO = 1.0 / 6.0, 1.6
+"""Speeds that are swept by default, over the natural one."""
+SAME_SPEED = 1e-9
+"""Part by which speeds differ that are one."""
+
+
+def sweep_list(natural_speed: float, section: DynamicsSection) -> Floats:
+    """Ascending speeds (n,) [r/min]: the section's, evenly spaced, and those of its histories, each once."""
+    even, wanted = _even(natural_speed, section, section.speeds), np.array(section.histories_rpm)
+    others = [speed for speed in even if not np.isclose(speed, wanted, rtol=SAME_SPEED, atol=0.0).any()]
+    return np.sort(np.concatenate([others, wanted]))
+
+
+def map_list(natural_speed: float, section: DynamicsSection) -> Floats:
+    """Ascending speeds (n,) [r/min] of the map over the torque, evenly spaced over the same range.
+
+    natural_speed: under the scene's torque, whatever that of the map's line is.
+    """
+    return _even(natural_speed, section, section.map_speeds)
+
+
+def sweep_at(pair: Drive, speeds: Floats) -> SpeedSweep:
+    """A pair that runs up and down through ascending speeds (n,) [r/min]. Raises NoSteadyState."""
+    slowest, fastest = speeds_to_periods(pair.natural_speed * np.array([FROM, TO]), pair.teeth)
+    return sweep_speeds(pair.model, speeds_to_periods(speeds, pair.teeth), (float(slowest), float(fastest)))
+
+
+def _even(natural_speed: float, section: DynamicsSection, count: int) -> Floats:
+    """So many speeds of the section's range."""
+    low, high = section.speed_rpm or (FROM * natural_speed, TO * natural_speed)
+    return np.linspace(low, high, count)

@@ -1,0 +1,81 @@
+"""The vibration of a scene's gears over speed and torque: the same force surface and gears under other static loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState
+from evolvent.dynamics.pair_model import DriveSettings, drive
+from evolvent.dynamics.results.torque_map import MapRow, map_rows
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.results.drawing.picture_files import Picture
+from evolvent.run.dynamics.speeds import sweep_at
+from evolvent_meshes.arrays import Floats
+
+PICTURE = "torque_map.png"
+
+
+@dataclass(frozen=True)
+class TorqueMap:
+    """What was computed of a map."""
+
+    rows: tuple[MapRow, ...]
+    """Under the lightest torque first."""
+    warnings: tuple[str, ...]
+    """What a reader of them has to know."""
+
+
+def torque_map(
+    excitation: MeshExcitation,
+    problem: GearProblem,
+    settings: DriveSettings,
+    loads: Sequence[float],
+    speeds: Floats,
+    computed: Callable[[], None] = lambda: None,
+) -> TorqueMap:
+    """The pair under static loads (m,) [N], at most the heaviest of the excitation, at ascending speeds (n,) [r/min]. A
+    load without steady states to be found has no rows and a warning: the others are not lost for it.
+
+    problem: its pair, and the gear that the torque is on.
+    computed: called after each load.
+    """
+    rows: list[MapRow] = []
+    warnings: list[str] = []
+    radius = problem.pair.gears[problem.torque_on].base_radius
+    for load in sorted(loads):
+        torque, pair = 1e-3 * load * radius, drive(problem.pair, excitation, load, settings)
+        try:
+            rows += map_rows(torque, pair, sweep_at(pair, speeds))
+        except NoSteadyState as error:
+            warnings.append(f"torque_map.csv: nothing under {torque:.4g} N·m: {error}")
+        computed()
+    if settings.mesh == "force_surface":
+        warnings += _beyond(rows, float(excitation.loaded.forces[-1]))
+    return TorqueMap(tuple(rows), tuple(warnings))
+
+
+def map_pictures(found: TorqueMap) -> list[Picture]:
+    """Of what was computed."""
+
+    def drawn() -> bytes:
+        from evolvent.dynamics.figures.torque_map import torque_map_picture  # matplotlib takes a second to import
+
+        return torque_map_picture(found.rows)
+
+    return [Picture(PICTURE, drawn)] if found.rows else []
+
+
+def _beyond(rows: Sequence[MapRow], heaviest: float) -> list[str]:
+    """Torques under which the mesh force leaves the force surface. heaviest: of its torques [N]."""
+    shares: dict[float, float] = {}
+    for row in rows:
+        shares[row.torque_Nm] = max(row.largest_force_N / heaviest, shares.get(row.torque_Nm, 0.0))
+    beyond = [f"{torque:.4g} N·m ({share:.3g} times)" for torque, share in shares.items() if share > 1.0]
+    if not beyond:
+        return []
+    return [
+        f"torque_map.csv: the largest mesh force is beyond that of the heaviest torque under {', '.join(beyond)}; "
+        "there it goes on straight. Add heavier torques to dynamics.torque_percents"
+    ]

@@ -24,14 +24,21 @@ from evolvent.run.dynamics.speeds import sweep_at, sweep_list
 from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.scene.pair_dynamics import drive_settings, operating_point
 from evolvent.scene.scene import Scene, load_scene
+from evolvent.wear.archard import Archard
+from evolvent.wear.block_stepping import BlockSettings
+from evolvent.wear.gears.solver import wear_study, wearing_pair
 
 PERCENTS = 5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0
 """Torques of an excitation, in percent of the scene's, as `evolvent excitation` takes them."""
-EXCITATION_BAR, SPEEDS_BAR, TORQUES_BAR = 15.0, 10.0, 2.0
+EXCITATION_BAR, SPEEDS_BAR, TORQUES_BAR, LOOP_BAR = 15.0, 10.0, 2.0, 3.0
 """[s], [s], seconds over seconds: docs/dynamics.md."""
+LAST_CYCLES = 4e5
+"""Of the wear of He's pair, which is divided evenly into blocks."""
 TURNS = 2
+LOOSE = 0.5
+"""Error that is allowed in a block: the number of blocks is given."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +76,12 @@ class DynamicsSizes:
     percents: tuple[float, ...]
     """Torques; 100 among them."""
     speeds: int
+    blocks: int
+    """Of cycles that wear."""
 
 
-FULL = DynamicsSizes("standard", 40, 20, PERCENTS, 400)
-SMALL = DynamicsSizes("quick", 6, 3, (50.0, 100.0, 200.0), 10)
+FULL = DynamicsSizes("standard", 40, 20, PERCENTS, 400, 20)
+SMALL = DynamicsSizes("quick", 6, 3, (50.0, 100.0, 200.0), 10, 2)
 
 
 def rows(sizes: DynamicsSizes) -> Iterator[DynamicsRow]:
@@ -91,6 +100,28 @@ def rows(sizes: DynamicsSizes) -> Iterator[DynamicsRow]:
         f"excitation of a helical pair, {sizes.helical_positions} positions, {count} torques over one", whole, one,
         TORQUES_BAR,
     )  # fmt: skip
+    loop = [[_blocks(sizes, vibrates) for vibrates in (True, False)] for _ in range(TURNS)]
+    whole, one = (min(each) for each in zip(*loop))
+    yield DynamicsRow(f"{sizes.blocks} blocks of wear with vibration over as many without", whole, one, LOOP_BAR)
+
+
+def _blocks(sizes: DynamicsSizes, vibrates: bool) -> float:
+    """CPU seconds of blocks of wear of He's pair at quick, half as many positions as for the excitation; the unworn
+    pair, which both have, not counted."""
+    percents = ", ".join(f"{percent:g}" for percent in sizes.percents)
+    settings = f"dynamics.torque_percents=[{percents}]"
+    scene = _scene(DEMOS / "he2022_wear.toml", "quick", max(sizes.positions // 2, 2), settings)
+    wear, point = scene.wear, operating_point(scene) if vibrates else None
+    assert wear is not None
+    law = Archard(wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)
+    pair = wearing_pair(gear_problem(scene), law, 0.0, scene.sweep.positions, comm=MPI.COMM_SELF, operating=point)
+    reports = [LAST_CYCLES * (k + 1) / sizes.blocks for k in range(sizes.blocks)]
+    states = wear_study(pair, reports, BlockSettings(reports[0], LOOSE))
+    next(states)
+    begin = time.process_time()
+    rows = [state.rows for state in states][-1]
+    assert len(rows) == sizes.blocks
+    return time.process_time() - begin
 
 
 def _scene(path: Path, level: str, positions: int, *settings: str) -> Scene:
@@ -115,7 +146,8 @@ def _speeds(sizes: DynamicsSizes) -> DynamicsRow:
     percents = sorted(section.torque_percents)
     excitation, _ = _excitation(scene, percents)
     pair = scene.gear_pair()
-    vibrating = drive(pair, excitation, percents.index(100.0), drive_settings(pair, section))
+    load = float(excitation.loaded.forces[percents.index(100.0)])
+    vibrating = drive(pair, excitation, load, drive_settings(pair, section))
     sweep_at(vibrating, sweep_list(vibrating.natural_speed, section.model_copy(update={"speeds": 2})))
     begin = time.process_time()
     sweep_at(vibrating, sweep_list(vibrating.natural_speed, section))

@@ -8,7 +8,8 @@ motion becomes.
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -16,7 +17,13 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import Positions, loaded_mesh, loaded_mesh_again, under_torques
+from evolvent.dynamics.excitation.loaded_mesh import (
+    LoadedMesh,
+    Positions,
+    loaded_mesh,
+    loaded_mesh_again,
+    under_torques,
+)
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.oscillator.response import histories
 from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT, Settled, settled, static_state
@@ -30,7 +37,7 @@ from evolvent.gears.gear_model import GearModel
 from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.gears.sweep.position_search import SearchedAt, searched_at
+from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, searched_at
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
@@ -56,12 +63,14 @@ class Start:
 
     state: Floats
     """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    forces: tuple[float, float]
+    """Smallest and largest mesh force over the static one."""
     positions: Positions | None = None
     """This rank's, on the same condensed gears; None: they are searched anew."""
 
     def without_positions(self) -> Start:
         """On gears that are condensed anew."""
-        return Start(self.state)
+        return Start(self.state, self.forces)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +97,13 @@ class Operation:
     @property
     def start(self) -> Start:
         """Where the operation goes on from on nearly the same flanks."""
-        return Start(self.state, self.positions)
+        return Start(self.state, self.forces, self.positions)
+
+    @property
+    def forces(self) -> tuple[float, float]:
+        """Smallest and largest mesh force over the static one."""
+        load = self.drive.model.load
+        return min(p.smallest_force for p in self.paths) / load, max(p.largest_force for p in self.paths) / load
 
     @property
     def state(self) -> Floats:
@@ -119,44 +134,72 @@ class OperatingPoint:
     def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Start | None = None) -> Operation:
         """The operation of condensed gears; their own torque is the static one. Collective.
 
+        Where the mesh force has stayed within some of the torques of the force surface, those are solved alone, and
+        more of them where it leaves these.
+
         charts: all that is missing of the designed flanks.
         before: on nearly the same flanks; None: the pair has just come to the speed.
 
         Raises NotConverged, SearchError, NoForceSurface, NoSteadyState.
         """
         angles = np.array(uniform_pitch(model.pair.pinion.z, self.positions).angles)
-        torques, positions = self._torques(model), None
-        gears = [model] * len(torques)
-        if model.bodies[0].d == 2:
-            loaded, positions = loaded_mesh_again(gears, torques, angles, comm, before.positions if before else None)
-        else:
-            loaded = loaded_mesh(gears, torques, angles, comm)
         error = unloaded_error(RigidFlanks(model.pair, charts), angles, model.load.on)
-        excitation = MeshExcitation(error, loaded)
+        shares = self.shares if before is None else self._around(before.forces)
+        positions = None if before is None else before.positions
+        while True:
+            loaded, positions = self._loaded(model, shares, angles, comm, positions)
+            found = self._operation(model, MeshExcitation(error, loaded), shares, before, positions)
+            wider = self._around(found.forces)
+            if set(wider) <= set(shares):
+                return found
+            shares = tuple(sorted({*shares, *wider}))
+
+    def _around(self, forces: tuple[float, float]) -> tuple[float, ...]:
+        """The torques that enclose forces from the first to the second, and the static one; all over the static."""
+        low, high = min(forces[0], 1.0), max(forces[1], 1.0)
+        first = max(bisect_left(self.shares, low) - 1, 0)
+        return self.shares[first : bisect_right(self.shares, high) + 1]
+
+    def _loaded(
+        self, model: GearModel, shares: tuple[float, ...], angles: Floats, comm: MPI.Comm, kept: Positions | None
+    ) -> tuple[LoadedMesh, Positions | None]:
+        """The pitch under some of the torques, and its positions in 2D. kept: searched before."""
+        gears, torques = [model] * len(shares), self._torques(model, shares)
+        if model.bodies[0].d == 2:
+            return loaded_mesh_again(gears, torques, angles, comm, kept)
+        return loaded_mesh(gears, torques, angles, comm), None
+
+    def _operation(
+        self, model: GearModel, excitation: MeshExcitation, shares: tuple[float, ...], before: Start | None,
+        positions: Positions | None,
+    ) -> Operation:  # fmt: skip
         # every rank follows the motion: it takes less than sending it
-        static = float(excitation.loaded.forces[self.shares.index(1.0)])
-        pair = drive(model.pair, excitation, static, self.settings)
+        pair = drive(model.pair, excitation, float(excitation.loaded.forces[shares.index(1.0)]), self.settings)
         period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
         motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
         paths = _paths(pair, period, motion)
         course, lifted = _course(model.pair, pair, paths)
         return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted, positions)
 
-    def searched(self, model: GearModel, places: Sequence[SearchedAt], comm: MPI.Comm) -> Positions:
-        """This rank's positions, searched at given places (positions · torques,): all of them, in their order."""
-        models = under_torques([model] * len(self.shares), self._torques(model))
+    def searched(
+        self, model: GearModel, torques: Sequence[float], places: Sequence[SearchedAt], comm: MPI.Comm
+    ) -> Positions:
+        """This rank's positions under some torques [N·mm], searched at given places (positions · torques,): all of
+        them, in their order."""
+        models, count = under_torques([model] * len(torques), torques), len(torques)
         numbers = range(self.positions)[division(self.positions, comm.size)[comm.rank]]
-        count = len(models)
-        return together(
-            comm,
-            lambda: tuple(
-                tuple(searched_at(each, places[count * i + j], [0.0]) for j, each in enumerate(models)) for i in numbers
-            ),
-        )
 
-    def _torques(self, model: GearModel) -> list[float]:
-        """Of the force surface [N·mm]."""
-        return [share * model.load.torque * model.width_factor for share in self.shares]
+        def position(i: int) -> Mapping[float, SharedPosition]:
+            return {
+                torque: searched_at(each, places[count * i + j], [0.0])
+                for j, (torque, each) in enumerate(zip(torques, models))
+            }
+
+        return together(comm, lambda: tuple(position(i) for i in numbers))
+
+    def _torques(self, model: GearModel, shares: tuple[float, ...]) -> list[float]:
+        """[N·mm]."""
+        return [share * model.load.torque * model.width_factor for share in shares]
 
     def _arrived(self, pair: Drive, period: float) -> Motion:
         """The motion of a pair that has run up, or down, to the speed; one that is slower, or faster, than where it

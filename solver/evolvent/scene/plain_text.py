@@ -19,3 +19,11 @@ def brief(value: float, digits: int = 2) -> str:
 def fixed(value: float, digits: int) -> str:
     """A number with so many decimal places; a rounded zero has no sign."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def cycles_label(cycles: float) -> str:
+    """ "0.4 million", "20 thousand"."""
+    for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand")):
+        if cycles >= 0.1 * size:
+            return f"{cycles / size:.4g}{name}"
+    return f"{cycles:.4g}"

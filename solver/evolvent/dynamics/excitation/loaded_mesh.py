@@ -5,7 +5,7 @@ Gears are condensed once; each torque is solved from where the last one, and the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,8 +20,8 @@ from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
 
-Positions = tuple[tuple[SharedPosition, ...], ...]
-"""A rank's positions, each under all torques."""
+Positions = tuple[Mapping[float, SharedPosition], ...]
+"""A rank's positions, each by its torque [N·mm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +74,11 @@ def loaded_mesh_again(
     """
     models = under_torques(gears, torques)
     own = angles[division(len(angles), comm.size)[comm.rank]]
-    rows = together(comm, lambda: tuple(_searched(models, own, lambda: None, kept)))
+    before = [[row.get(torque) for torque in torques] for row in kept] if kept is not None else None
+    rows = together(comm, lambda: tuple(_searched(models, own, lambda: None, before)))
     parts = [[_figures(*each) for each in zip(models, row)] for row in rows]
-    return _gathered(models, torques, angles, comm, np.reshape(parts, (len(own), len(models), 2))), rows
+    found = _gathered(models, torques, angles, comm, np.reshape(parts, (len(own), len(models), 2)))
+    return found, tuple(dict(zip(torques, row)) for row in rows)
 
 
 def under_torques(gears: Sequence[GearModel], torques: Sequence[float]) -> list[GearModel]:
@@ -103,16 +105,18 @@ def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
 
 
 def _searched(
-    models: Sequence[GearModel], angles: Floats, solved: Callable[[], None], kept: Positions | None = None
-) -> Iterator[tuple[SharedPosition, ...]]:
+    models: Sequence[GearModel], angles: Floats, solved: Callable[[], None],
+    kept: Sequence[Sequence[SharedPosition | None]] | None = None,
+) -> Iterator[tuple[SharedPosition, ...]]:  # fmt: skip
     """Positions one after the other, each under all torques (m,). kept: those that may do with the present wear."""
     ahead: Sequence[SharedPosition | None] = [None] * len(models)
     for i, angle in enumerate(angles):
         row: list[SharedPosition] = []
         for j, model in enumerate(models):
-            position = worn_on(model, kept[i][j]) if kept is not None else None
+            old = kept[i][j] if kept is not None else None
+            position = worn_on(model, old) if old is not None else None
             if position is None:
-                near = (kept[i][j] if kept is not None else ahead[j]) or (row[-1] if row else None)
+                near = old or ahead[j] or (row[-1] if row else None)
                 extra = near.contact.stand.extra if near else (0.0, 0.0)
                 patch: ContactPatch | None = near.patch if near else None
                 position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)

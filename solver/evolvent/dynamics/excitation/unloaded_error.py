@@ -10,6 +10,7 @@ each around the best point of the one before. Tip edges count, so that contact b
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -25,9 +26,12 @@ POINTS, LAYERS = 161, 41
 ZOOM_POINTS, ZOOMS = 13, 8
 """Of the following grids, each way, and how many there are: each is four times finer than the one before. At a kink of
 the relief the error is its slope times the last spacing, 1e-3 times 1e-6 mm."""
-FEET = 12
-"""Steps in which the foot on the modified flank is found: each error is that before times the flank's slope, below
-0.02."""
+FEET, FOUND = 12, 1e-12
+"""Steps in which the foot on the modified flank is found, at most, and the change [mm] after which it is: each error is
+that before times the flank's slope, below 0.02."""
+STEEPEST = 0.1
+"""Slope that no gap has near its least value. Tooth pairs whose gap on the first grid exceeds the least one by more
+than this times the grid's spacing touch nowhere between its points."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +79,10 @@ class RigidFlanks:
         with np.errstate(invalid="ignore"):
             below, at, at_z = np.zeros_like(height), radial, axial
             for _ in range(FEET):
-                below = -self.depth(free, np.clip(at, low, high), at_z)
+                last, below = below, -self.depth(free, np.clip(at, low, high), at_z)
                 at, at_z = radial - below * cosine, axial + below * sine
+                if np.nanmax(np.abs(below - last), initial=0.0) < FOUND:
+                    break
             facing = (at >= low) & (at <= high) & (np.abs(at_z) <= half)
         return np.where(facing, (height - below) / cosine, np.inf)
 
@@ -91,28 +97,46 @@ def _least_gap(flanks: RigidFlanks, stand: Stand, free: Member) -> float:
     """At one stand, of all tooth pairs."""
     pair = flanks.pair
     touching = pair.teeth_in_contact(stand.angle)
-    teeth = range(min(touching) - 1, max(touching) + 2)
-    least = min(_least_gap_of_pair(flanks, stand, tooth, free) for tooth in teeth)
+    searches = [_Search(flanks, stand, tooth, free) for tooth in range(min(touching) - 1, max(touching) + 2)]
+    first = [search.coarse() for search in searches]
+    near = min(first) + STEEPEST * searches[0].spacing
+    least = min(search.refined() for search, gap in zip(searches, first) if gap <= near)
     return least if np.isfinite(least) else np.nan
 
 
-def _least_gap_of_pair(flanks: RigidFlanks, stand: Stand, tooth: int, free: Member) -> float:
-    """Of one tooth pair; infinite where its flanks do not face each other."""
-    gear = flanks.pair.gears[free.mate]
-    low, high = Flank(gear).roll_lengths
-    half = 0.5 * flanks.pair.face_width if flanks.varies_over_the_face else 0.0
-    limits, counts = np.array([[low, high], [-half, half]]), [POINTS, LAYERS if half else 1]
-    ranges, best = limits.copy(), np.inf
-    for _ in range(1 + ZOOMS):
-        axes = [np.linspace(ends[0], ends[1], count) for ends, count in zip(ranges, counts)]
-        ρ, z = np.meshgrid(*axes, indexing="ij")
-        gap = flanks.gap(stand, tooth, free, ρ, z)
-        best = min(best, float(gap.min()))
-        if not np.isfinite(best):
-            return best
+class _Search:
+    """The least gap of one tooth pair, on grids each finer than the one before."""
+
+    def __init__(self, flanks: RigidFlanks, stand: Stand, tooth: int, free: Member) -> None:
+        low, high = Flank(flanks.pair.gears[free.mate]).roll_lengths
+        half = 0.5 * flanks.pair.face_width if flanks.varies_over_the_face else 0.0
+        self.limits, self.zoom = np.array([[low, high], [-half, half]]), [ZOOM_POINTS, ZOOM_POINTS if half else 1]
+        self.spacing = (high - low) / (POINTS - 1)
+        self.ranges, self.counts, self.best = self.limits.copy(), [POINTS, LAYERS if half else 1], np.inf
+        self._gap = partial(flanks.gap, stand, tooth, free)
+
+    def coarse(self) -> float:
+        """On the first grid [mm]; infinite where the flanks do not face each other."""
+        self._step()
+        return self.best
+
+    def refined(self) -> float:
+        """On all others [mm], until two of them have not made it less."""
+        alike = 0
+        for _ in range(ZOOMS if np.isfinite(self.best) else 0):
+            last = self.best
+            self._step()
+            alike = alike + 1 if last - self.best < FOUND else 0
+            if alike == 2:
+                break
+        return self.best
+
+    def _step(self) -> None:
+        """One grid; the next one lies around its best point."""
+        axes = [np.linspace(ends[0], ends[1], count) for ends, count in zip(self.ranges, self.counts)]
+        gap = self._gap(*np.meshgrid(*axes, indexing="ij"))
+        self.best = min(self.best, float(gap.min()))
         i, j = np.unravel_index(int(np.argmin(gap)), gap.shape)
         spacing = np.array([np.ptp(axis) / max(len(axis) - 1, 1) for axis in axes])
-        centre = np.array([axes[0][i], axes[1][j]])
-        ranges = np.clip(centre[:, None] + 1.5 * spacing[:, None] * np.array([-1.0, 1.0]), limits[:, :1], limits[:, 1:])
-        counts = [ZOOM_POINTS, ZOOM_POINTS if half else 1]
-    return best
+        around = np.array([axes[0][i], axes[1][j]])[:, None] + 1.5 * spacing[:, None] * np.array([-1.0, 1.0])
+        self.ranges, self.counts = np.clip(around, self.limits[:, :1], self.limits[:, 1:]), self.zoom

@@ -126,10 +126,10 @@ class GearWear:
         operation there."""
         start = None
         if vibration is not None and self.operating is not None:
-            model = self.geometry.with_gap(depth)
-            places = vibration.searches
-            positions = self.operating.searched(model, places, self._comm) if places else None
-            start = Start(vibration.state, positions)
+            model, places, positions = self.geometry.with_gap(depth), vibration.searches, None
+            if places:
+                positions = self.operating.searched(model, vibration.torques, places, self._comm)
+            start = Start(vibration.state, vibration.forces, positions)
         operation, model = self._loaded(depth, start)
         frictions = [self.friction]
         shared = together(self._comm, lambda: [searched_at(model, searches[k], frictions) for k in self._numbers])
@@ -144,8 +144,11 @@ class GearWear:
         operation = state.operation
         if operation is None:
             return None
-        mine = [position.searched for row in operation.positions or () for position in row]
-        return Vibration(operation.state, tuple(search for part in self._comm.allgather(mine) for search in part))
+        rows = operation.positions or ()
+        mine = [position.searched for row in rows for position in row.values()]
+        torques = self._comm.bcast(tuple(rows[0]) if rows else ())
+        searches = tuple(search for part in self._comm.allgather(mine) for search in part)
+        return Vibration(operation.state, operation.forces, torques, searches)
 
     def _loaded(self, depth: Floats, before: Start | None) -> tuple[Operation | None, GearModel]:
         """The gears at depths (n,) under their load, and the operation that it comes from, if it varies. before: on

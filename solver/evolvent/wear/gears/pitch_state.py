@@ -43,5 +43,9 @@ class Vibration:
 
     state: Floats
     """s [mm] and ṡ [mm/s] (2,) at phase 0."""
+    forces: tuple[float, float]
+    """Smallest and largest mesh force over the static one."""
+    torques: tuple[float, ...]
+    """Under which the excitation was solved [N·mm]; empty where its searches are not kept."""
     searches: tuple[SearchedAt, ...]
     """Where the contact of its excitation was searched, of all positions and torques; empty where that is not kept."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
+from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify, certify_pitch
@@ -32,12 +33,13 @@ REFRESH = 5e-3
 
 def wearing_pair(
     problem: GearProblem, law: Archard, friction: float = 0.0, positions: int = 20, refresh: float | None = None,
-    comm: MPI.Comm = MPI.COMM_WORLD,
+    comm: MPI.Comm = MPI.COMM_WORLD, operating: OperatingPoint | None = None,
 ) -> GearWear:  # fmt: skip
     """A gear pair that wears, its gears condensed; a cycle is one revolution of the pinion. Collective.
 
     law: wear coefficients of pinion and wheel. refresh: depth [mm] at which the meshes follow the wear, by default 5e-3
-    modules. Raises InputError, and what `condense` raises.
+    modules. operating: speed under whose mesh force it wears, by default under the constant torque. Raises InputError,
+    and what `condense` raises.
     """
     instance("problem", problem, GearProblem, "give the problem itself, its gears are condensed here")
     instance("law", law, Archard, "write Archard(1e-10, 1e-10), of pinion and wheel")
@@ -59,7 +61,7 @@ def wearing_pair(
 
     depth = REFRESH * problem.pair.pinion.normal_module if refresh is None else refresh
     pitch = uniform_pitch(problem.pair.pinion.z, int(positions))
-    return GearWear(condense(problem, comm), pitch, friction, law, comm, GearMeshMotion(depth, condensed))
+    return GearWear(condense(problem, comm), pitch, friction, law, comm, GearMeshMotion(depth, condensed), operating)
 
 
 def wear_study(pair: GearWear, reports: Sequence[float], settings: BlockSettings | None = None) -> Iterator[StudyState]:

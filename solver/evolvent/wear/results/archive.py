@@ -6,7 +6,7 @@ worn further by itself.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -45,7 +45,8 @@ def write_checkpoint(archive: Archive, checkpoint: StudyCheckpoint) -> None:
         "searches": _places(checkpoint.searches),
         "rows": np.array([list(asdict(row).values()) for row in checkpoint.rows]),
         "vibrations": np.array([list(asdict(row).values()) for row in checkpoint.vibrations]),
-        "vibration": np.zeros(0) if vibration is None else vibration.state,
+        "vibration": np.zeros(0) if vibration is None else np.array([*vibration.state, *vibration.forces]),
+        "vibration_torques": np.zeros(0) if vibration is None else np.array(vibration.torques),
         "vibration_searches": np.zeros((0, 4)) if vibration is None else _places(vibration.searches),
     }  # fmt: skip
     if checkpoint.vibrations:
@@ -64,14 +65,22 @@ def read_checkpoint(archive: Archive) -> StudyCheckpoint | None:
     archive.require_scene(arrays)
     rate = arrays["last_rate"]
     previous = PreviousBlock(rate, float(arrays["last_length"])) if len(rate) else None
-    state, places = arrays["vibration"], _searches(arrays["vibration_searches"])
     return StudyCheckpoint(
         float(arrays["cycles"]), arrays["depth"], arrays["known"], previous, float(arrays["length"]),
         _searches(arrays["searches"]),
         tuple(_row(BlockRow, values) for values in arrays["rows"].tolist()),
         tuple(_row(VibrationRow, values) for values in arrays["vibrations"].tolist()),
-        Vibration(state, places) if len(state) else None,
+        _vibration(arrays),
     )  # fmt: skip
+
+
+def _vibration(arrays: Mapping[str, Any]) -> Vibration | None:
+    """What was written of it."""
+    if not len(arrays["vibration"]):
+        return None
+    s, velocity, low, high = arrays["vibration"].tolist()
+    torques = tuple(arrays["vibration_torques"].tolist())
+    return Vibration(np.array([s, velocity]), (low, high), torques, _searches(arrays["vibration_searches"]))
 
 
 def _places(searches: Sequence[SearchedAt]) -> Floats:

@@ -30,6 +30,7 @@ from evolvent.results.fields.flank_field import flank_patch
 from evolvent.results.figures.drive import PINION_ANGLE
 from evolvent.results.figures.scene3d import flank_picture
 from evolvent.results.figures.stress import TOOTH_ANGLE
+from evolvent.scene.plain_text import cycles_label
 from evolvent.scene.scene import GEARS
 from evolvent.wear.results.report import WornPair, WornRun
 from evolvent.wear.results.vibration_figure import vibration_over_cycles
@@ -75,14 +76,6 @@ def wearing(study: WornRun) -> dict[Member, float]:
     wear = study.scene.wear
     assert wear is not None
     return {gear: K for gear, K in zip(Member, (wear.pinion_mm2_per_N, wear.wheel_mm2_per_N)) if K > 0.0}
-
-
-def cycles_label(cycles: float) -> str:
-    """ "0.4 million", "20 thousand"."""
-    for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand")):
-        if cycles >= 0.1 * size:
-            return f"{cycles / size:.4g}{name}"
-    return f"{cycles:.4g}"
 
 
 def _colours(study: WornRun) -> list[tuple[float, ...]]:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from evolvent.dynamics.operation_figures import VibrationRow
 from evolvent.results.drawing.style import FAINT, PINION, WHEEL, foot, sheet
+from evolvent.scene.plain_text import cycles_label
 from evolvent_meshes.arrays import Floats
 
 
@@ -19,7 +20,7 @@ def vibration_over_cycles(rows: Sequence[VibrationRow], speed: float) -> Figure:
     figure = sheet(
         f"Vibration at {speed:.4g} r/min as the pair wears",
         f"Largest mesh force {1e-3 * first.largest_force_N:.2f} kN unworn, {1e-3 * last.largest_force_N:.2f} kN after "
-        f"{last.cycles:.4g} cycles, {1e-3 * min(row.largest_force_N for row in rows):.2f} kN at the least.",
+        f"{cycles_label(last.cycles)} cycles, {1e-3 * min(row.largest_force_N for row in rows):.2f} kN at the least.",
         (10.0, 8.4),
     )
     error, force, natural = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 3.0, 1.6))
@@ -37,11 +38,16 @@ def vibration_over_cycles(rows: Sequence[VibrationRow], speed: float) -> Figure:
     _over_cycles(natural, rows, "natural_speed_rpm", "natural speed", {"color": PINION})
     natural.set_ylabel("natural speed\n[r/min]")
     natural.set_xlabel("revolutions of the pinion")
+    natural.xaxis.set_major_formatter(lambda cycles, _: cycles_label(cycles))
     for axes in (error, force):
         axes.set_ylim(bottom=0.0)
         axes.legend(loc="best")
     natural.set_xlim(0.0, last.cycles)
-    foot(figure, "A dot a block of cycles. Hollow: flanks part for some of the time.")
+    foot(
+        figure,
+        "A dot a block of cycles. Hollow: flanks part for some time. Natural speed: at the mean tangent stiffness",
+        "of the positions, which falls in steps, where a tooth pair does not reach a position any more.",
+    )
     return figure
 
 

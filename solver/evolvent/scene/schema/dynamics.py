@@ -105,7 +105,8 @@ class DynamicsSection(SceneSection):
         "torques under which the speeds are run through, too, for a map of the vibration over speed and torque, in "
         "percent of load.torque_Nm; they need not be among torque_percents; by default there is no map",
         f"a list of {MAP_PERCENTS}, none above the heaviest of torque_percents",
-        "resonance takes about twice the static force: go on to half of the heaviest of torque_percents", default=(),
+        "resonance takes two to three times the static force: go on to a third of the heaviest of torque_percents",
+        default=(), max_length=MAP[1],
     )  # fmt: skip
     map_speeds: int = key(
         "number of speeds of that map, evenly spaced", f"a whole number from 2 to {MOST_SPEEDS}", default=100, ge=2,
@@ -163,7 +164,7 @@ class DynamicsSection(SceneSection):
         if not given:
             return self
         inside = all(MAP_RANGE[0] <= each <= MAP_RANGE[1] for each in given)
-        if not inside or len(set(given)) < len(given) or not MAP[0] <= len(given) <= MAP[1]:
+        if not inside or len(set(given)) < len(given) or len(given) < MAP[0]:
             remedy = "give each once, or delete the key for no map"
             raise validation_error(InputProblem("map_percents", shown(given), f"a list of {MAP_PERCENTS}", remedy))
         if max(given) > heaviest:

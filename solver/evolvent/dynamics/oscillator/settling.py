@@ -17,8 +17,6 @@ LONGEST_REPEAT = 16
 """Mesh periods after which a subharmonic motion repeats at the latest, to be told as one."""
 SETTLED = 1e-9
 """Change from repeat to repeat, over the static deflection, of a motion that has settled."""
-
-
 DIFFERENT = 1e-5
 """Least change after fewer meshes of a motion that repeats after several: one that spirals in on a steady state comes
 closest to itself after several, too."""
@@ -32,9 +30,11 @@ class Settled:
     """s [mm] and ṡ [mm/s] (2,) at phase 0."""
     repeats: int
     """Mesh periods after which it repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not within
-    `LONGEST_REPEAT`: quasi-periodic, chaotic, or not settled after `MOST_PERIODS`."""
+    `LONGEST_REPEAT`: quasi-periodic, chaotic, not settled after `MOST_PERIODS`, or escaped."""
     waited: int
     """Mesh periods integrated."""
+    escaped: bool = False
+    """Whether it grew beyond measure, see `TorsionalModel.escaped`; `state` is the last one within."""
 
 
 def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOST_PERIODS) -> Settled:
@@ -44,6 +44,8 @@ def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOS
     for count in range(1, most + 1):
         last = np.vstack([state, last[:-1]])
         state = period_map(model, period, state)[0]
+        if model.escaped(state):
+            return Settled(last[0], 0, count, escaped=True)
         change = np.abs((last - state) / scales).max(axis=1)
         close = change <= SETTLED
         repeats = int(np.argmax(close)) + 1

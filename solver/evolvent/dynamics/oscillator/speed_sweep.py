@@ -8,13 +8,13 @@ a doubled period, the motion is integrated in time until it repeats, and the bra
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evolvent.dynamics.oscillator.continuation import Branch, between, follow
 from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
-from evolvent.dynamics.oscillator.steady_state import Scales, SteadyState, steady_state
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState, damped_less, steady_state
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
@@ -71,12 +71,11 @@ def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, fl
     beyond: longest and shortest mesh period from and to which the branch is followed, where those of the speeds lie
     within: a branch that turns back within the speeds may leave them on its way.
 
-    Raises NoSteadyState.
+    Raises NoSteadyState where there is none to begin with, neither at the longest nor at the shortest of them.
     """
     longest, shortest = beyond or (0.0, np.inf)
     begin, end = max(longest, float(periods[0])), min(shortest, float(periods[-1]))
-    first = settled(model, begin, static_state(model))
-    branch = follow(model, steady_state(model, begin, first.state), end)
+    branch = _branch(model, begin, end)
     coexisting = [tuple(_refined(model, branch, float(period))) for period in periods]
     up = _run(model, branch, periods, coexisting)
     down = _run(model, branch, periods[::-1], coexisting[::-1])[::-1]
@@ -86,6 +85,30 @@ def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, fl
 def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
     """Mesh periods (n,) [s] at speeds (n,) [r/min] of a gear with so many teeth."""
     return 60.0 / (np.asarray(speeds, dtype=float) * teeth)
+
+
+def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
+    """From one mesh period to another, followed from both of them where it cannot be from one."""
+    try:
+        first = follow(model, _some_steady_state(model, begin), end)
+    except NoSteadyState as error:
+        second = follow(model, _some_steady_state(model, end), begin)
+        return Branch((), ()).and_then(replace(second, lost=(str(error), *second.lost)))
+    if first.points[-1].period == end:
+        return first
+    try:
+        second = follow(model, _some_steady_state(model, end), begin)
+    except NoSteadyState as error:
+        return replace(first, lost=(*first.lost, str(error)))
+    return first.and_then(second)
+
+
+def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
+    """The one that a pair settles to from rest, or one near that where it settles to none. Raises NoSteadyState."""
+    motion = settled(model, period, static_state(model))
+    if motion.repeats == 1:
+        return steady_state(model, period, motion.state)
+    return damped_less(model, period, static_state(model))
 
 
 def _refined(model: TorsionalModel, branch: Branch, period: float) -> Iterator[OnBranch]:

@@ -32,6 +32,8 @@ PAIR_STIFFNESS = 14e3
 """Of a tooth pair of steel, per mm of face width [N/mm²]: ISO 6336-1:2019, clause 9.3.1."""
 DENSITY = 7850.0
 """[kg/m³]."""
+MARGIN = 0.05
+"""By which a spline through errors may fall below them, over their swing."""
 OUTSIDE = 30.0
 """Gap of a tooth pair a base pitch away from its engagement, in static deflections."""
 
@@ -142,7 +144,9 @@ def _waves(draw: Draw, phases: Floats, size: float) -> Floats:
 
 
 def _excitation(springs: _ToothPairs, load: float, phases: Floats, error: Floats) -> MeshExcitation:
-    """Of these springs on flanks with an error (n,) [mm] of their own."""
+    """Of these springs on flanks with an error (n,) [mm] of their own, of which the highest flank is where it is
+    designed: so that teeth do not jam."""
+    error = error - error.min() + MARGIN * np.ptp(error)
     forces = load * PERCENTS / 100.0
     both = np.array([[springs.under(float(force), i) for force in forces] for i in range(len(phases))])
     loaded = LoadedMesh(2.0 * np.pi * phases, forces, both[..., 0] + error[:, None], both[..., 1])

@@ -70,11 +70,26 @@ class Branch:
         beyond = self.periods > period
         return np.setdiff1d(np.flatnonzero(beyond[1:] != beyond[:-1]), self.gaps)
 
+    def backwards(self) -> Branch:
+        """From the last point to the first."""
+        last = len(self.points) - 1
+        folds, gaps = (last - i for i in reversed(self.folds)), (last - 1 - i for i in reversed(self.gaps))
+        return Branch(self.points[::-1], tuple(folds), tuple(gaps), self.lost)
+
     def and_then(self, other: Branch) -> Branch:
-        """Both, not connected, the other one from its last point to its first."""
-        before, last = len(self.points), len(self.points) + len(other.points) - 1
-        folds = self.folds + tuple(last - i for i in reversed(other.folds))
-        return Branch(self.points + other.points[::-1], folds, (before - 1,), self.lost + other.lost)
+        """Both, not connected."""
+        here = len(self.points)
+        folds = self.folds + tuple(here + i for i in other.folds)
+        gaps = (*self.gaps, here - 1, *(here + i for i in other.gaps))
+        return Branch(self.points + other.points, folds, gaps, self.lost + other.lost)
+
+    def go_on(self, other: Branch) -> Branch:
+        """Both, of which the other one begins with the last point of this one."""
+        here = len(self.points) - 1
+        folds, gaps = (here + i for i in other.folds), (here + i for i in other.gaps)
+        return Branch(
+            self.points + other.points[1:], (*self.folds, *folds), (*self.gaps, *gaps), self.lost + other.lost
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +155,8 @@ def follow(model: TorsionalModel, start: SteadyState, last_period: float) -> Bra
     """The branch from a steady state until the mesh period is `last_period` [s] or the first one again, or until it
     cannot be followed further: then `lost` says why."""
     track = _Track(model, Scales.of(model))
-    points, folds, lost = [start], [], ()
+    points, folds = [start], list[int]()
+    lost: tuple[str, ...] = ()
     try:
         for point, fold in _points(track, start, last_period):
             if fold:

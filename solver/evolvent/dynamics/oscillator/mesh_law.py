@@ -9,6 +9,7 @@ backlash.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +17,18 @@ from scipy.interpolate import CubicSpline, PPoly
 from scipy.special import comb
 
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.errors import ResultError
 
 NEVER = 1e6
 """Offset of a side that is never touched [mm]."""
+ROUNDING = 1e-12
+"""Of offsets [mm]."""
 LAST_BIT = 1e-14
 """Phases that differ by less are one."""
+
+
+class Jammed(ResultError):
+    """Both flanks of a tooth touch at once."""
 
 
 class MeshSide(NamedTuple):
@@ -47,6 +55,18 @@ class MeshLaw:
     back: MeshSide
     """The others."""
 
+    def __post_init__(self) -> None:
+        """Raises Jammed: the oscillator has at most one side in contact."""
+        stops, cells = self.stops()
+        for part in (0.0, 0.25, 0.5, 0.75, 1.0):
+            phases = stops[:-1] + part * np.diff(stops)
+            front, back = (_offsets(side, cells[:, i], phases) for i, side in enumerate((self.front, self.back)))
+            if (play := float((front + back).min())) < -ROUNDING:
+                raise Jammed(
+                    "backlash: wanted room for the teeth, found flanks that overlap on both sides, unloaded errors "
+                    f"included, by {-1e3 * play:.3g} µm; give so much more backlash (dynamics.backlash_um)"
+                )
+
     def stops(self, more: Floats | tuple[float, ...] = ()) -> tuple[Floats, Ints]:
         """Phases (k + 1,) from 0 to 1 between which both sides are polynomials of τ, and the intervals (k, 2) of front
         and back there. more: further phases to stop at."""
@@ -58,6 +78,10 @@ class MeshLaw:
 
     def stiffest(self) -> float:
         """The largest ∂F/∂x [N/mm] at the ends and middles of all intervals, from which steps in time are chosen."""
+        return self._stiffest
+
+    @cached_property
+    def _stiffest(self) -> float:
         return max(float(_slopes(side).max()) for side in (self.front, self.back))
 
 
@@ -123,6 +147,11 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
     force = np.einsum("nkj,nmij->nmik", taylor, side.force[cell])
     offset[:, 0] += backlash
     return MeshSide(-side.sign, phases, offset, side.depths, np.ascontiguousarray(force))
+
+
+def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
+    """e (n,) [mm] at phases (n,) in phase intervals (n,)."""
+    return np.asarray((side.offset[cells] * (phases - side.phases[cells])[:, None] ** np.arange(4)).sum(axis=1))
 
 
 def _different(phases: Floats) -> Floats:

@@ -13,6 +13,8 @@ from evolvent_meshes.arrays import Floats
 
 MOST_PERIODS = 4000
 """Of the mesh that are waited for; a motion of damping ratio 0.01 is then 1e-100 from where it ends."""
+FEWEST_PERIODS = 400
+"""That are waited for where a motion has not repeated at the speed before."""
 LONGEST_REPEAT = 16
 """Mesh periods after which a subharmonic motion repeats at the latest, to be told as one."""
 SETTLED = 1e-9
@@ -52,6 +54,13 @@ def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOS
         if close.any() and (change[: repeats - 1] > DIFFERENT).all():
             return Settled(state, repeats, count)
     return Settled(state, 0, most)
+
+
+def decay_periods(model: TorsionalModel, period: float) -> int:
+    """Mesh periods [s] in which a disturbance dies out in contact, to `SETTLED` twice over; `FEWEST_PERIODS` at least,
+    `MOST_PERIODS` at most."""
+    rate = (model.damping + model.ground_damping) / (2.0 * model.mass) * period
+    return int(np.clip(2.0 * np.log(1.0 / SETTLED) / max(rate, 1e-9), FEWEST_PERIODS, MOST_PERIODS))
 
 
 def static_state(model: TorsionalModel) -> Floats:

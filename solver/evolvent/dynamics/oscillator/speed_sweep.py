@@ -13,13 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.dynamics.oscillator.continuation import Branch, between, follow
-from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
+from evolvent.dynamics.oscillator.settling import MOST_PERIODS, Settled, decay_periods, settled, static_state
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState, damped_less, steady_state
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
 SAME = 1e-6
 """Distance of two states that are one, in static deflections."""
+MOST_PIECES = 20
+"""Of the branch that are not connected; more are not looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +77,9 @@ def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, fl
     """
     longest, shortest = beyond or (0.0, np.inf)
     begin, end = max(longest, float(periods[0])), min(shortest, float(periods[-1]))
-    branch = _branch(model, begin, end)
-    coexisting = [tuple(_refined(model, branch, float(period))) for period in periods]
-    up = _run(model, branch, periods, coexisting)
-    down = _run(model, branch, periods[::-1], coexisting[::-1])[::-1]
-    return SpeedSweep(np.asarray(periods), branch, tuple(coexisting), tuple(up), tuple(down))
+    known = _Steady(model, np.asarray(periods, dtype=float), (begin, end), _branch(model, begin, end))
+    up, down = _run(known, range(len(periods))), _run(known, range(len(periods))[::-1])[::-1]
+    return SpeedSweep(known.periods, known.branch, tuple(map(tuple, known.coexisting)), tuple(up), tuple(down))
 
 
 def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
@@ -92,12 +92,12 @@ def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
     try:
         first = follow(model, _some_steady_state(model, begin), end)
     except NoSteadyState as error:
-        second = follow(model, _some_steady_state(model, end), begin)
-        return Branch((), ()).and_then(replace(second, lost=(str(error), *second.lost)))
+        second = follow(model, _some_steady_state(model, end), begin).backwards()
+        return replace(second, lost=(str(error), *second.lost))
     if first.points[-1].period == end:
         return first
     try:
-        second = follow(model, _some_steady_state(model, end), begin)
+        second = follow(model, _some_steady_state(model, end), begin).backwards()
     except NoSteadyState as error:
         return replace(first, lost=(*first.lost, str(error)))
     return first.and_then(second)
@@ -111,35 +111,53 @@ def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
     return damped_less(model, period, static_state(model))
 
 
-def _refined(model: TorsionalModel, branch: Branch, period: float) -> Iterator[OnBranch]:
-    """The branch's steady states at a mesh period, in their order along it."""
-    periods, last = branch.periods, len(branch.points) - 1
-    if period == periods[0]:
-        yield OnBranch(0.0, branch.points[0])
-    for i in branch.crossings(period):
-        share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
-        if 0.0 < i + share < last:
-            start = between(branch.points[i], branch.points[i + 1], period)
-            yield OnBranch(float(i) + share, steady_state(model, period, start))
-    if period == periods[last]:
-        yield OnBranch(float(last), branch.points[last])
+class _Steady:
+    """The steady states that are known so far. Pieces of the branch are added at its end, so that places stay."""
+
+    def __init__(self, model: TorsionalModel, periods: Floats, ends: tuple[float, float], branch: Branch) -> None:
+        """ends: mesh periods between which branches are followed."""
+        self.model, self.periods, self.ends, self.branch = model, periods, ends, branch
+        self.coexisting = [list(self._refined(float(period), 0)) for period in periods]
+
+    def add(self, state: SteadyState) -> None:
+        """The branch through a steady state that is not on the one that is known."""
+        both = [follow(self.model, state, end) for end in self.ends]
+        piece = both[0].backwards().go_on(both[1])
+        first = len(self.branch.points)
+        self.branch = self.branch.and_then(piece)
+        for period, states in zip(self.periods, self.coexisting):
+            states += self._refined(float(period), first)
+
+    def _refined(self, period: float, first: int) -> Iterator[OnBranch]:
+        """The steady states at a mesh period from the point `first` on, in their order along the branch."""
+        periods, gaps = self.branch.periods, {-1, *self.branch.gaps, len(self.branch.points) - 1}
+        for i in sorted({*self.branch.crossings(period), *np.flatnonzero(periods == period)}):
+            if i < first:
+                continue
+            if periods[i] == period:
+                if i in gaps or i - 1 in gaps:
+                    yield OnBranch(float(i), self.branch.points[i])
+                continue
+            share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
+            if 0.0 < share < 1.0:
+                start = between(self.branch.points[i], self.branch.points[i + 1], period)
+                yield OnBranch(float(i) + share, steady_state(self.model, period, start))
 
 
-def _run(
-    model: TorsionalModel, branch: Branch, periods: Floats, coexisting: Sequence[Sequence[OnBranch]]
-) -> list[Running]:
-    """The motions of a pair that takes the speeds one after the other."""
-    stable = [each for each in coexisting[0] if each.state.stable]
-    rising = periods[0] > periods[-1]
-    found = [_start(model, float(periods[0]), stable if rising else stable[::-1])]
-    for period, states in zip(periods[1:], coexisting[1:]):
-        before = found[-1]
-        along = None if before.place is None else _along(branch, before.place, states)
+def _run(known: _Steady, order: range) -> list[Running]:
+    """The motions of a pair that takes the speeds one after the other, in this order of their numbers."""
+    stable = [each for each in known.coexisting[order[0]] if each.state.stable]
+    first = float(known.periods[order[0]])
+    found = [_start(known.model, first, stable if order.step > 0 else stable[::-1])]
+    for number in order[1:]:
+        before, period = found[-1], float(known.periods[number])
+        along = None if before.place is None else _along(known.branch, before.place, known.coexisting[number])
         if along is not None:
             found.append(Running(along.state, along.place, False))
             continue
-        motion = settled(model, float(period), before.motion.state)
-        found.append(_landed(model, motion, states, before.place is not None))
+        most = MOST_PERIODS if before.repeats else decay_periods(known.model, period)
+        motion = settled(known.model, period, before.motion.state, most)
+        found.append(_landed(known, motion, number, before.place is not None))
     return found
 
 
@@ -151,19 +169,34 @@ def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> 
 
 
 def _along(branch: Branch, place: float, states: Sequence[OnBranch]) -> OnBranch | None:
-    """The state that the branch leads to without a fold, stable all the way; None where there is none."""
+    """The state that the branch leads to without a fold or a gap, stable all the way; None where there is none."""
     for each in states:
         low, high = sorted((place, each.place))
         between = slice(int(np.ceil(low)), int(np.floor(high)) + 1)
-        if each.state.stable and branch.stable[between].all() and not any(low <= fold <= high for fold in branch.folds):
+        turned = any(low <= fold <= high for fold in branch.folds) or any(low <= gap < high for gap in branch.gaps)
+        if each.state.stable and branch.stable[between].all() and not turned:
             return each
     return None
 
 
-def _landed(model: TorsionalModel, motion: Settled, states: Sequence[OnBranch], left: bool) -> Running:
-    """Where a motion ended. left: whether it left the branch just now."""
-    scale = Scales.of(model).array
-    for each in states:
-        if motion.repeats == 1 and each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
-            return Running(each.state, each.place, left)
-    return Running(motion, None, left)
+def _landed(known: _Steady, motion: Settled, number: int, left: bool) -> Running:
+    """Where a motion ended at the speed of this number. left: whether it left the branch just now."""
+    if motion.repeats != 1:
+        return Running(motion, None, left)
+    same = _same(known, motion, number)
+    if same is None and len(known.branch.gaps) < MOST_PIECES:
+        try:
+            known.add(steady_state(known.model, float(known.periods[number]), motion.state))
+        except NoSteadyState:
+            return Running(motion, None, left)
+        same = _same(known, motion, number)
+    return Running(motion, None, left) if same is None else Running(same.state, same.place, left)
+
+
+def _same(known: _Steady, motion: Settled, number: int) -> OnBranch | None:
+    """The stable state that a motion has settled to, of those known at the speed of this number."""
+    scale = Scales.of(known.model).array
+    for each in known.coexisting[number]:
+        if each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
+            return each
+    return None

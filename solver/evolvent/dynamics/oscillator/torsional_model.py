@@ -19,7 +19,7 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 Derivatives = Floats
 """(2, 3): of s [mm] and v [mm/s] after a period, by s and v before it and by ln T."""
-BEYOND_MEASURE = 1000.0
+BEYOND_MEASURE = 100.0
 """Deflections of the mesh that no pair sees, over the static one and the swing of e: a motion that comes there goes on
 growing, as a mesh whose stiffness varies feeds more work in than a weak damper takes out."""
 

@@ -156,9 +156,15 @@ def _run(known: _Steady, order: range) -> list[Running]:
             found.append(Running(along.state, along.place, False))
             continue
         most = MOST_PERIODS if before.repeats else decay_periods(known.model, period)
-        motion = settled(known.model, period, before.motion.state, most)
+        motion = settled(known.model, period, _left_with(known.model, before), most)
         found.append(_landed(known, motion, number, before.place is not None))
     return found
+
+
+def _left_with(model: TorsionalModel, before: Running) -> Floats:
+    """State (2,) that a pair comes with from the speed before: from rest where that motion grew beyond measure."""
+    gone = isinstance(before.motion, Settled) and before.motion.escaped
+    return static_state(model) if gone else before.motion.state
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:

@@ -22,8 +22,8 @@ def flight() -> TorsionalModel:
 
 
 def exact(depth: float, after: float) -> Floats:
-    """State (2,) of a flight that a free one would lead `depth` [mm] beyond the back flanks, so that it reaches them with
-    v² = 2 depth F/m, `after` [s] it does: it touches them for 2/ω · arctan(ωv m/F) and flies on."""
+    """State (2,) of a flight that would go `depth` [mm] beyond the back flanks, so that it reaches them with
+    v² = 2 depth F/m, `after` [s] that: it touches them for 2/ω · arctan(ωv m/F) and flies on."""
     speed = np.sqrt(2.0 * depth * LOAD / MASS)
     touched = 2.0 / NATURAL * np.arctan(NATURAL * speed * MASS / LOAD)
     t = after - touched

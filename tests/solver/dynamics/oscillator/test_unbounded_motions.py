@@ -14,7 +14,7 @@ from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, sweep_speeds
 from evolvent.dynamics.oscillator.steady_state import NoSteadyState, steady_state
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE, TorsionalModel
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Reals
 
 MASS, STIFFNESS, LOAD, SHARE = 0.77e-3, 258.6e3, 2412.0, 0.3
 NATURAL = float(np.sqrt(STIFFNESS / MASS))
@@ -28,8 +28,8 @@ def meissner() -> TorsionalModel:
     return TorsionalModel(MASS, LOAD, MeshLaw(side, behind(side, 0.0)), DAMPING)
 
 
-def growth(ratio: float) -> Floats:
-    """Floquet's multipliers (2,) at a mesh frequency over the natural one: of two matrix exponentials."""
+def multipliers(ratio: float) -> Reals:
+    """Floquet's (2,) at a mesh frequency over the natural one: of two matrix exponentials."""
     whole = np.eye(2)
     for k, part in zip(LEVELS, (SHARE, 1.0 - SHARE)):
         matrix = np.array([[0.0, 1.0], [-k / MASS, -DAMPING / MASS]])
@@ -38,7 +38,12 @@ def growth(ratio: float) -> Floats:
 
 
 def largest(ratio: float) -> float:
-    return float(np.abs(growth(ratio)).max())
+    return float(np.abs(multipliers(ratio)).max())
+
+
+def to_1(ratio: float) -> float:
+    """(1 − λ_1)(1 − λ_2)."""
+    return float(np.real(np.prod(1.0 - multipliers(ratio))))
 
 
 @cache
@@ -47,8 +52,8 @@ def swept() -> SpeedSweep:
 
 
 def test_motions_grow_where_multipliers_are_above_1() -> None:
-    """At all speeds but those within 1 % of a border: the motion has escaped just where Floquet's multiplier is above 1;
-    elsewhere it is steady."""
+    """At all speeds but those within 1 % of a border: the motion has escaped just where Floquet's multiplier is above
+    1; elsewhere it is steady."""
     seen = set()
     for ratio in RATIOS:
         if len({largest(ratio * factor) > 1.0 for factor in (0.99, 1.0, 1.01)}) > 1:
@@ -65,9 +70,7 @@ def test_branch_ends_at_the_speeds_at_which_it_grows_beyond_measure() -> None:
     the branch ends just before both of these speeds, 2 %; at its ends the states are beyond measure, and both ends are
     said. Between them the motion escapes."""
     branch = swept().branch
-    lower, upper = (
-        brentq(lambda ratio: float(np.real(np.prod(1.0 - growth(ratio)))), *ends) for ends in ((0.8, 0.825), (0.825, 0.85))
-    )
+    lower, upper = brentq(to_1, 0.8, 0.825), brentq(to_1, 0.825, 0.85)
     (gap,) = branch.gaps
     below, above = 2.0 * np.pi / (NATURAL * branch.periods[[gap, gap + 1]])
     assert 0.98 * lower < below < lower < upper < above < 1.02 * upper

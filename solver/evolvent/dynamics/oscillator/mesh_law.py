@@ -23,12 +23,21 @@ NEVER = 1e6
 """Offset of a side that is never touched [mm]."""
 ROUNDING = 1e-12
 """Of offsets [mm]."""
+LOOKED_AT = 9
+"""Phases of an interval at which both sides are looked at."""
 LAST_BIT = 1e-14
 """Phases that differ by less are one."""
 
 
 class Jammed(ResultError):
-    """Both flanks of a tooth touch at once."""
+    """Both flanks of a tooth touch at once, by `overlap` [mm] at the most."""
+
+    def __init__(self, overlap: float) -> None:
+        super().__init__(
+            "backlash: wanted room for the teeth, found flanks that overlap on both sides, unloaded errors included, "
+            f"by {1e3 * overlap:.3g} µm; give so much more backlash (dynamics.backlash_um)"
+        )
+        self.overlap = overlap
 
 
 class MeshSide(NamedTuple):
@@ -57,15 +66,11 @@ class MeshLaw:
 
     def __post_init__(self) -> None:
         """Raises Jammed: the oscillator has at most one side in contact."""
-        stops, cells = self.stops()
-        for part in (0.0, 0.25, 0.5, 0.75, 1.0):
-            phases = stops[:-1] + part * np.diff(stops)
-            front, back = (_offsets(side, cells[:, i], phases) for i, side in enumerate((self.front, self.back)))
-            if (play := float((front + back).min())) < -ROUNDING:
-                raise Jammed(
-                    "backlash: wanted room for the teeth, found flanks that overlap on both sides, unloaded errors "
-                    f"included, by {-1e3 * play:.3g} µm; give so much more backlash (dynamics.backlash_um)"
-                )
+        (stops, cells), sides = self.stops(), (self.front, self.back)
+        phases = stops[:-1] + np.linspace(0.0, 1.0, LOOKED_AT)[:, None] * np.diff(stops)
+        overlap = -float(sum((_offsets(side, cells[:, i], phases) for i, side in enumerate(sides)), 0.0 * phases).min())
+        if overlap > ROUNDING:
+            raise Jammed(overlap)
 
     def stops(self, more: Floats | tuple[float, ...] = ()) -> tuple[Floats, Ints]:
         """Phases (k + 1,) from 0 to 1 between which both sides are polynomials of τ, and the intervals (k, 2) of front
@@ -150,8 +155,8 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
 
 
 def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
-    """e (n,) [mm] at phases (n,) in phase intervals (n,)."""
-    return np.asarray((side.offset[cells] * (phases - side.phases[cells])[:, None] ** np.arange(4)).sum(axis=1))
+    """e (..., n) [mm] at phases (..., n) in phase intervals (n,)."""
+    return np.asarray((side.offset[cells] * (phases - side.phases[cells])[..., None] ** np.arange(4)).sum(axis=-1))
 
 
 def _different(phases: Floats) -> Floats:

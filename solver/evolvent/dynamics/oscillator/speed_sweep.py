@@ -50,6 +50,11 @@ class Running:
         """Mesh periods after which it repeats; 0 where it does not, see `Settled`."""
         return self.motion.repeats if isinstance(self.motion, Settled) else 1
 
+    @property
+    def escaped(self) -> bool:
+        """Whether it grows beyond measure."""
+        return isinstance(self.motion, Settled) and self.motion.escaped
+
 
 @dataclass(frozen=True, eq=False)
 class SpeedSweep:
@@ -163,8 +168,7 @@ def _run(known: _Steady, order: range) -> list[Running]:
 
 def _left_with(model: TorsionalModel, before: Running) -> Floats:
     """State (2,) that a pair comes with from the speed before: from rest where that motion grew beyond measure."""
-    gone = isinstance(before.motion, Settled) and before.motion.escaped
-    return static_state(model) if gone else before.motion.state
+    return static_state(model) if before.escaped else before.motion.state
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:

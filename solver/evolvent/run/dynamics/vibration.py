@@ -11,6 +11,7 @@ from mpi4py import MPI
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive, geometric_backlash
 from evolvent.dynamics.results.response import (
     BRANCH,
@@ -21,6 +22,7 @@ from evolvent.dynamics.results.response import (
     largest_force,
     response_rows,
     responses,
+    speed_of,
     summary,
     write_response,
 )
@@ -112,7 +114,7 @@ def _written(
             return response_picture(vibrating, swept, found, branch)
 
         failures += draw([Picture(PICTURE, drawn)], folder).failures
-    return [*failures, *_warnings(vibrating, settings, known)]
+    return [*failures, *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept)]
 
 
 def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) -> list[str]:
@@ -128,5 +130,26 @@ def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) ->
         found.append(
             f"dynamics.torque_percents: the largest mesh force is {share:.3g} times that of the heaviest torque; "
             "beyond that the force goes on straight. Add heavier ones until this is below 1"
+        )
+    return found
+
+
+def _not_followed(vibrating: Drive, swept: SpeedSweep) -> list[str]:
+    """Where the branch of steady states ends, and motions that have no end."""
+    found, branch = [], swept.branch
+    if branch.gaps or branch.lost:
+        ends = [branch.points[i].period for gap in branch.gaps for i in (gap, gap + 1)]
+        speeds = ", ".join(f"{speed_of(vibrating, period):.0f}" for period in ends)
+        found.append(
+            f"steady states: found {len(branch.gaps) + 1} pieces that are not connected (branch.csv), with ends at "
+            f"{speeds or 'one end of the'} r/min. {' '.join(f'{each}.' for each in branch.lost)}".rstrip()
+        )
+    gone = {float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs) if run.escaped}
+    if gone:
+        slowest, fastest = (speed_of(vibrating, period) for period in (max(gone), min(gone)))
+        found.append(
+            f"response.csv: at {len(gone)} of {len(swept.periods)} speeds, from {slowest:.0f} to {fastest:.0f} r/min, "
+            f"the motion grows beyond {BEYOND_MEASURE:g} times the static deflection, as the varying stiffness feeds "
+            "in more than the dampers take out; its figures there are of the last mesh before. Give more damping"
         )
     return found

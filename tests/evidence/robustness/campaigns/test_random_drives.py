@@ -79,13 +79,13 @@ def test_outcomes_tell_refusals_from_crashes(monkeypatch: pytest.MonkeyPatch) ->
         monkeypatch.setattr(drive_outcomes, "sweep_speeds", broken)
         return drive_outcome_of(drawn, 7).verdict
 
-    assert raising(NoSteadyState("no")) is raising(Jammed("no")) is DriveVerdict.REFUSED
+    assert raising(NoSteadyState("no")) is raising(Jammed(1.0)) is DriveVerdict.REFUSED
     assert raising(ZeroDivisionError("no")) is DriveVerdict.CRASHED
 
 
 def test_drive_summary_counts_every_outcome() -> None:
     """Every outcome is counted, and every bad one has its line."""
-    good = DriveOutcome(0, DriveVerdict.VERIFIED, "", "steps, tangent", states=3, returned=1e-9, scaled=1e-9, energy=0.0)
+    good = DriveOutcome(0, DriveVerdict.VERIFIED, "", "steps, tangent", states=3, returned=1e-9, scaled=1e-9)
     bad = replace(good, seed=1, verdict=DriveVerdict.REFUSED, message="NoSteadyState: no", states=0)
     text = drive_summary([good, bad])
     assert "| verified | 1 |" in text and "| 1 | steps, tangent | refused, with a message | NoSteadyState: no |" in text

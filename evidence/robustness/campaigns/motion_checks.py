@@ -116,5 +116,7 @@ def _mesh(model: TorsionalModel, period: float, phases: Floats, s: Floats) -> tu
         stiffness = (c[:, 1:] * np.arange(1, 4) * d[:, None] ** np.arange(3)).sum(axis=1)
         pressed += stiffness * np.maximum(x - side.depths[-1], 0.0)
         force[inside] += side.sign * pressed[inside]
-        rate[inside], touching = side.sign * slope[inside] / period, touching | inside
+        touching |= inside
+        if not model.damped_apart:
+            rate[inside] = side.sign * slope[inside] / period
     return force, rate, touching

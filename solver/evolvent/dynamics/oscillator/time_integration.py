@@ -79,7 +79,7 @@ def _smooth_interval(
     while t < end:
         borders = [_border(sides[r], period, leaving=r == region) for r in sides if region in (0, r)]
         found = solve_ivp(
-            _motion(model, region, sides.get(region, sides[1]), period), (t, end), y, "DOP853", events=borders,
+            _motion(model, region, sides, period), (t, end), y, "DOP853", events=borders,
             rtol=relative, atol=tolerance, max_step=0.2 / model.fastest,
         )  # fmt: skip
         if found.status < 0:
@@ -91,8 +91,10 @@ def _smooth_interval(
     return y
 
 
-def _motion(model: TorsionalModel, region: int, side: _SmoothSide, period: float) -> Motion:
-    """Right side of the equation while a side touches, 1 or −1, or none, 0: then that of the loaded flanks."""
+def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], period: float) -> Motion:
+    """Right side of the equation while a side touches, 1 or −1, or none, 0."""
+    side = sides.get(region, sides[1])
+    damper = sides[1] if model.damped_apart else side
 
     def motion(t: float, y: Floats) -> list[float]:
         s, v = y.tolist()
@@ -100,7 +102,7 @@ def _motion(model: TorsionalModel, region: int, side: _SmoothSide, period: float
         if region:
             force -= side.sign * side.pressed(t / period, side.depth(t / period, s))
         if region or model.damped_apart:
-            force -= model.damping * (v - side.sign * side.error_slope(t / period) / period)
+            force -= model.damping * (v - damper.sign * damper.error_slope(t / period) / period)
         return [v, force / model.mass]
 
     return motion

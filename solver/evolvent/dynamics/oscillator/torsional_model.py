@@ -37,7 +37,8 @@ class TorsionalModel:
     damping: float = 0.0
     """c, of the mesh [N·s/mm]."""
     damped_apart: bool = False
-    """Whether c acts in free flight, too, as it does in He et al. (Eq. 15)."""
+    """Whether c acts in free flight, too, as it does in He et al. (Eq. 15); then with ė of the loaded flanks wherever
+    flanks touch."""
     ground_damping: float = 0.0
     """c_g, of the shafts against the ground [N·s/mm]."""
 

@@ -135,18 +135,18 @@ class _Steady:
 
     def _refined(self, period: float, first: int) -> Iterator[OnBranch]:
         """The steady states at a mesh period from the point `first` on, in their order along the branch."""
-        periods, gaps = self.branch.periods, {-1, *self.branch.gaps, len(self.branch.points) - 1}
-        for i in sorted({*self.branch.crossings(period), *np.flatnonzero(periods == period)}):
-            if i < first:
-                continue
-            if periods[i] == period:
-                if i in gaps or i - 1 in gaps:
-                    yield OnBranch(float(i), self.branch.points[i])
+        points, periods = self.branch.points, self.branch.periods
+        crossings = {int(i) for i in self.branch.crossings(period)}
+        begins, ends = {0, *(i + 1 for i in self.branch.gaps)}, {*self.branch.gaps, len(points) - 1}
+        alone = {i for i in begins - crossings if periods[i] == period}
+        alone |= {i for i in ends if periods[i] == period and i - 1 not in crossings}
+        for i in sorted(i for i in crossings | alone if i >= first):
+            if i in alone:
+                yield OnBranch(float(i), points[i])
                 continue
             share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
-            if 0.0 < share < 1.0:
-                start = between(self.branch.points[i], self.branch.points[i + 1], period)
-                yield OnBranch(float(i) + share, steady_state(self.model, period, start))
+            start = between(points[i], points[i + 1], period)
+            yield OnBranch(float(i) + share, steady_state(self.model, period, start))
 
 
 def _run(known: _Steady, order: range) -> list[Running]:

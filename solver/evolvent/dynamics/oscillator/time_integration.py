@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import OptimizeResult
 
 from evolvent.dynamics.oscillator.mesh_law import MeshSide
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
@@ -17,6 +18,8 @@ from evolvent_meshes.arrays import Floats
 
 RELATIVE = 1e-12
 """Tolerance, relative; that of s and ṡ themselves is this times the static deflection and its velocity."""
+AFTER_TURN = 0.02
+"""Of the stiffest oscillation [rad], in which a motion that has turned does not turn again."""
 Motion = Callable[[float, Floats], list[float]]
 
 
@@ -76,18 +79,35 @@ def _smooth_interval(
     sides = {r: _SmoothSide.around(side, middle) for r, side in ((1, model.law.front), (-1, model.law.back))}
     tolerance = relative * abs(model.load) / model.law.stiffest() * np.array([1.0, model.fastest])
     region = next((r for r, side in sides.items() if side.depth(t / period, float(y[0])) > 0.0), 0)
-    while t < end:
-        borders = [_border(sides[r], period, leaving=r == region) for r in sides if region in (0, r)]
+    motions = {r: _motion(model, r, sides, period) for r in (-1, 0, 1)}
+
+    def solved(y: Floats, begin: float, end: float, events: list[Event]) -> OptimizeResult:
         found = solve_ivp(
-            _motion(model, region, sides, period), (t, end), y, "DOP853", events=borders,
-            rtol=relative, atol=tolerance, max_step=0.2 / model.fastest,
+            motions[region], (begin, end), y, "DOP853", events=events, rtol=relative, atol=tolerance,
+            max_step=0.2 / model.fastest,
         )  # fmt: skip
         if found.status < 0:
-            raise RuntimeError(f"time integration at {t:.6g} s: {found.message}")
+            raise RuntimeError(f"time integration at {begin:.6g} s: {found.message}")
+        return found
+
+    turned = False
+    while t < end:
+        watched = [sides[r] for r in sides if region in (0, r)]
+        borders = [_border(side, period, leaving=region != 0) for side in watched]
+        turns = [_turn(side, period, leaving=region != 0) for side in watched]
+        if turned:
+            found = solved(y, t, min(end, t + AFTER_TURN / model.fastest), borders)
+        else:
+            found = solved(y, t, end, [*borders, *turns])
+        turned = found.status == 1 and not any(map(len, found.t_events[: len(borders)]))
+        if turned and any(border(found.t[-1], found.y[:, -1]) * border.direction > 0.0 for border in borders):
+            found, turned = solved(y, t, float(found.t[-1]), borders), False
         t, y = float(found.t[-1]), found.y[:, -1]
-        if found.status == 1:
+        if found.status == 1 and not turned:
             which = next(i for i, times in enumerate(found.t_events) if len(times))
-            region = 0 if region else (1, -1)[which]
+            other = -region if region else (1, -1)[which]
+            reached = sides[other].depth(t / period, float(y[0])) >= 0.0  # at once where there is no backlash
+            region = other if reached or not region else 0
     return y
 
 
@@ -108,14 +128,31 @@ def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], p
     return motion
 
 
-def _border(side: _SmoothSide, period: float, leaving: bool) -> Callable[[float, Floats], float]:
-    """Event: a side is touched, or left."""
+class Event:
+    """What SciPy's integrator stops at: where a value changes its sign in one direction."""
 
-    def border(t: float, y: Floats) -> float:
-        return side.depth(t / period, float(y[0]))
+    terminal = True
 
-    border.terminal, border.direction = True, -1.0 if leaving else 1.0  # type: ignore[attr-defined]
-    return border
+    def __init__(self, value: Callable[[float, Floats], float], direction: float) -> None:
+        self.value, self.direction = value, direction
+
+    def __call__(self, t: float, y: Floats) -> float:
+        """The value at a time [s] and a state (2,)."""
+        return self.value(t, y)
+
+
+def _border(side: _SmoothSide, period: float, leaving: bool) -> Event:
+    """A side is left, or touched."""
+    return Event(lambda t, y: side.depth(t / period, float(y[0])), -1.0 if leaving else 1.0)
+
+
+def _turn(side: _SmoothSide, period: float, leaving: bool) -> Event:
+    """The depth is least, or greatest: a border that is crossed for less than a step is seen there."""
+
+    def rate(t: float, y: Floats) -> float:
+        return side.sign * float(y[1]) - side.error_slope(t / period) / period
+
+    return Event(rate, 1.0 if leaving else -1.0)
 
 
 def _cubic(c: list[float], t: float) -> float:

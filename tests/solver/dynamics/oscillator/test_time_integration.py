@@ -98,3 +98,17 @@ def test_derivatives_of_the_period_map(model: TorsionalModel, start: str) -> Non
         difference, size = (ahead - before) / (2.0 * small) / scale, scale[column] if column < 2 else 1.0
         accuracy = 2e-6 * max(1.0, float(np.abs(difference).max()))
         assert exact[:, column] * size / scale == pytest.approx(difference, abs=accuracy)
+
+
+@pytest.mark.parametrize("speed", [2.5, 7.0])
+def test_no_backlash(speed: float) -> None:
+    """Both sides of the teeth one after the other, without free flight between, over three mesh periods: 1e-8."""
+    side = linear_side(STIFFNESS * (1.0 + wavy(0.2)), wavy(0.02 * STATIC))
+    model = TorsionalModel(MASS, LOAD, MeshLaw(side, behind(side, 0.0)), 0.04 * MASS * NATURAL)
+    y, scale, period = np.array([STATIC, -speed * STATIC * NATURAL]), np.array([1.0, NATURAL]) * STATIC, 7.0 / NATURAL
+    found = y
+    for _ in range(3):
+        path = history(model, period, found, np.linspace(0.0, 1.0, 200))
+        assert path.behind > 0.1 and path.apart < 1e-12
+        found, _ = period_map(model, period, found)
+    assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=1e-8)

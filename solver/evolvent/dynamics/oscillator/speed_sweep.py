@@ -160,7 +160,7 @@ def _run(known: _Steady, order: range) -> list[Running]:
         if along is not None:
             found.append(Running(along.state, along.place, False))
             continue
-        most = MOST_PERIODS if before.repeats else decay_periods(known.model, period)
+        most = decay_periods(known.model, period) if before.place is None else MOST_PERIODS
         motion = settled(known.model, period, _left_with(known.model, before), most)
         found.append(_landed(known, motion, number, before.place is not None))
     return found

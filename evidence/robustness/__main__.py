@@ -1,8 +1,8 @@
 """`python -m evidence.robustness [PART] [--out docs]`: measures a part, writes OUT/stress.md.
 
-PART: matrix, scenes, levels, wear, independence, faults, or all, the default. Each keeps its piece of the page in
-OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...` and `wear-seeds
-...` are the processes that `scenes`, `levels` and `wear` start.
+PART: matrix, scenes, levels, wear, dynamics, independence, faults, or all, the default. Each keeps its piece of the
+page in OUT/stress/PART.md, so that one can be measured again alone. `seeds FIRST COUNT`, `level-seeds ...`,
+`wear-seeds ...` and `drive-seeds ...` are the processes that `scenes`, `levels`, `wear` and `dynamics` start.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import Any
 from evidence import report
 from evidence.checkout import DOCS
 from evidence.claims import Claim
-from evidence.robustness.campaigns import summaries
-from evidence.robustness.campaigns.campaign import LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
+from evidence.robustness.campaigns import drive_summaries, summaries
+from evidence.robustness.campaigns.campaign import DRIVES, LEVELS, SCENES, WEAR, Trial, campaign, solve_seeds
 from evidence.robustness.faults import fault_claims
 from evidence.robustness.settings.independence import cylinder_claims, gear_claims, iteration_claims, theta_claims
 from evidence.robustness.settings.level_independence import level_claims
@@ -32,7 +32,7 @@ INTRODUCTION = """What happens at the edge of what can be asked: every setting o
 sense, random gear pairs that pass validation, and the method's own parameters. A cell that says "refused" ended with a
 message and no result; what was refused is listed below its figure."""
 PICTURES = "pictures/stress"
-COUNTS = {SCENES.command: 500, LEVELS.command: 40, WEAR.command: 100}
+COUNTS = {SCENES.command: 500, LEVELS.command: 40, WEAR.command: 100, DRIVES.command: 200}
 CLAIMS = Table(
     Claim,
     (
@@ -81,6 +81,13 @@ def wear(out: Path) -> list[str]:
     return ["## Random wear studies", summaries.wear_summary(outcomes)]
 
 
+def dynamics(out: Path) -> list[str]:
+    """Random drives over the speed, counted, and their motions verified."""
+    outcomes = _outcomes(DRIVES)
+    drive_summaries.DRIVES.write(out / "stress/dynamics.csv", outcomes)
+    return ["## Random vibrating pairs", drive_summaries.drive_summary(outcomes)]
+
+
 def _outcomes(trial: Trial) -> list[Any]:
     """Of all seeds. Control-C ends them early: the page says how many there were."""
     outcomes: list[Any] = []
@@ -106,9 +113,10 @@ def faults(_: Path) -> list[str]:
 
 
 PARTS: Mapping[str, Callable[[Path], list[str]]] = {
-    "matrix": matrix, "scenes": scenes, "levels": levels, "wear": wear, "independence": independence, "faults": faults,
+    "matrix": matrix, "scenes": scenes, "levels": levels, "wear": wear, "dynamics": dynamics,
+    "independence": independence, "faults": faults,
 }  # fmt: skip
-TRIALS = {trial.command: trial for trial in (SCENES, LEVELS, WEAR)}
+TRIALS = {trial.command: trial for trial in (SCENES, LEVELS, WEAR, DRIVES)}
 
 
 def main(arguments: list[str]) -> None:

@@ -1,4 +1,4 @@
-"""Random scenes or wear studies by the hundred, one after the other in a process that may crash or hang.
+"""Random scenes, wear studies or drives by the hundred, one after the other in a process that may crash or hang.
 
 The process writes one line of JSON a seed. It is killed where a seed takes too long, and started again with the next.
 """
@@ -15,6 +15,8 @@ from threading import Thread
 from typing import Any
 
 from evidence.processes import environment, module_run
+from evidence.robustness.campaigns.drive_outcomes import DriveOutcome, DriveVerdict, drive_outcome_of
+from evidence.robustness.campaigns.random_drives import random_drive
 from evidence.robustness.campaigns.random_scenes import random_scene
 from evidence.robustness.campaigns.random_wear import random_study
 from evidence.robustness.campaigns.scene_outcomes import Outcome, Verdict, outcome_of
@@ -42,6 +44,7 @@ SCENES = Trial("seeds", lambda seed: outcome_of(random_scene(seed), seed), Outco
 LEVELS = Trial(
     "level-seeds", lambda seed: outcome_of(random_scene(seed, plane=False), seed, in_levels=True), Outcome, Verdict
 )
+DRIVES = Trial("drive-seeds", lambda seed: drive_outcome_of(random_drive(seed), seed), DriveOutcome, DriveVerdict)
 WEAR = Trial("wear-seeds", lambda seed: wear_outcome_of(random_study(seed), seed), WearOutcome, WearVerdict)
 
 

@@ -177,6 +177,7 @@ class OperatingPoint:
         pair = drive(model.pair, excitation, float(excitation.loaded.forces[shares.index(1.0)]), self.settings)
         period = float(speeds_to_periods(np.array([self.speed]), pair.teeth)[0])
         motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
+        motion = _bounded(motion, self.speed)
         paths = _paths(pair, period, motion)
         course, lifted = _course(model.pair, pair, paths)
         return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted, positions)
@@ -210,7 +211,8 @@ class OperatingPoint:
         periods = speeds_to_periods(np.linspace(other, self.speed, RUN_SPEEDS), pair.teeth)
         motion: Motion = settled(pair.model, float(periods[0]), static_state(pair.model))
         for each in periods[1:]:
-            motion = _followed(pair, float(each), motion.state)
+            escaped = isinstance(motion, Settled) and motion.escaped  # then from rest
+            motion = _followed(pair, float(each), static_state(pair.model) if escaped else motion.state)
         return motion
 
 
@@ -223,6 +225,17 @@ def _followed(pair: Drive, period: float, before: Floats) -> Motion:
     if found is not None and found.stable:
         return found
     return settled(pair.model, period, before)
+
+
+def _bounded(motion: Motion, speed: float) -> Motion:
+    """The motion. Raises NoSteadyState where it grows beyond measure."""
+    if isinstance(motion, Settled) and motion.escaped:
+        raise NoSteadyState(
+            f"vibration at {speed:g} r/min: wanted a motion that stays bounded, found one that grows beyond measure, as "
+            "the varying stiffness feeds in more than the dampers take out; give more damping (dynamics.damping_ratio) "
+            "or another speed (dynamics.operating_rpm)"
+        )
+    return motion
 
 
 def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:

@@ -10,11 +10,13 @@ import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.oscillator.mesh_law import MeshLaw
+from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
+OVERLAP = 0.01
+"""Of both sides of the teeth, over the static deflection, that a spline through their errors makes by itself."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,8 @@ class DriveSettings:
     damping_ratio: float
     """Of the mesh, over the critical one at the mean tangent stiffness."""
     backlash: float
-    """Along the line of action, from flank to flank [mm]."""
+    """Along the line of action, from flank to flank [mm]; a hundredth of the static deflection may be added to leave
+    room for the splines through both sides' errors."""
     damped_apart: bool = False
     """Whether this damping acts in free flight, too."""
     ground_damping_ratio: float = 0.0
@@ -56,7 +59,7 @@ class Drive:
 
 def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: DriveSettings) -> Drive:
     """The pair under a load, F_0 [N]. The force surface serves every load up to its heaviest; stiffnesses under a load
-    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest."""
+    between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest, Jammed."""
     mass = equivalent_mass(pair, settings.inertias)
     mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
     mean = float(np.mean(mesh.under(load)[1]))
@@ -78,7 +81,14 @@ def geometric_backlash(pair: GearPair) -> float:
 
 
 def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSettings) -> MeshLaw:
-    """Of both sides of the teeth."""
+    """Of both sides of the teeth. Raises Jammed where they overlap by more than the splines through their errors can
+    have it; less is added to the backlash."""
     if settings.mesh == "force_surface":
-        return mirrored_law(mesh.force_surface(), pair, settings.backlash)
+        side = mesh.force_surface()
+        try:
+            return mirrored_law(side, pair, settings.backlash)
+        except Jammed as jammed:
+            if jammed.overlap > OVERLAP * float(np.mean(mesh.under(load)[0])):
+                raise
+            return mirrored_law(side, pair, settings.backlash + jammed.overlap)
     return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)

@@ -13,6 +13,7 @@ from evolvent.cli import Exit
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.scene import load_scene
 from evolvent.wear.results.archive import read_checkpoint
+from evolvent_meshes.arrays import Floats
 from tests.support.running.processes import BROKEN_RUN, Run
 
 SCENE = "demos/he2022_wear.toml"
@@ -34,7 +35,7 @@ def computed(run_script: Run, out: Path, *words: str, how: str = "ok", ranks: in
     return done.returncode
 
 
-def columns(path: Path, *without: str) -> dict[str, np.ndarray]:
+def columns(path: Path, *without: str) -> dict[str, Floats]:
     """The columns of a table."""
     with open(path, encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))

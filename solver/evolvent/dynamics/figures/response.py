@@ -103,10 +103,11 @@ def _mark_unrepeated(axes: Axes, speeds: Floats, values: Sequence[float], runs: 
 
 
 def _draw_branch(axes: Axes, branch: Sequence[BranchRow]) -> None:
-    """All steady states, those that are not stable dotted."""
-    speed = np.array([row.speed_rpm for row in branch])
-    size = np.array([row.equivalent_amplitude_um for row in branch])
-    stable = np.array([row.stable for row in branch])
+    """All steady states, those that are not stable dotted; pieces that are not connected apart."""
+    pieces = [i for i, row in enumerate(branch) if i and not row.connected]
+    speed = np.insert([row.speed_rpm for row in branch], pieces, np.nan)
+    size = np.insert([row.equivalent_amplitude_um for row in branch], pieces, np.nan)
+    stable = np.insert([row.stable for row in branch], pieces, True)
     axes.plot(speed, np.where(stable, size, np.nan), color=FAINT, lw=3.0, alpha=0.5, zorder=1, label="all stable ones")
     if not stable.all():
         axes.plot(speed, np.where(stable, np.nan, size), ":", color=INK, lw=1.2, label="unstable ones")

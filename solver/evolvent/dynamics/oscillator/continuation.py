@@ -22,13 +22,15 @@ from evolvent.dynamics.oscillator.steady_state import (
     steady_state,
     unscaled,
 )
-from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE, TorsionalModel
 from evolvent_meshes.arrays import Bools, Floats, Ints
 
 SPEED_SCALE = 0.1
 """Change of ln(speed) that counts as much as one static deflection."""
 LONGEST, SHORTEST = 0.1, 1e-9
-"""Steps along a branch, in static deflections."""
+"""Steps along a branch, in static deflections; of the state over its size where that is above 1."""
+SHARPEST = 1e-3
+"""Damping ratio of the narrowest resonance that is not stepped over: each point is as near in ln(speed)."""
 TURN = 0.97
 """Least cosine of the angle between the tangents of two points."""
 NEWTON_STEPS = 6
@@ -48,6 +50,10 @@ class Branch:
     """From the first speed to the last."""
     folds: tuple[int, ...]
     """Which of them are folds."""
+    gaps: tuple[int, ...] = ()
+    """Points i of which i + 1 is not the next one: there the branch could not be followed further, from either side."""
+    lost: tuple[str, ...] = ()
+    """Why not, in sentences."""
 
     @cached_property
     def periods(self) -> Floats:
@@ -62,7 +68,28 @@ class Branch:
     def crossings(self, period: float) -> Ints:
         """Points i (n,) after which the branch passes a mesh period: between i and i + 1."""
         beyond = self.periods > period
-        return np.flatnonzero(beyond[1:] != beyond[:-1])
+        return np.setdiff1d(np.flatnonzero(beyond[1:] != beyond[:-1]), self.gaps)
+
+    def backwards(self) -> Branch:
+        """From the last point to the first."""
+        last = len(self.points) - 1
+        folds, gaps = (last - i for i in reversed(self.folds)), (last - 1 - i for i in reversed(self.gaps))
+        return Branch(self.points[::-1], tuple(folds), tuple(gaps), self.lost)
+
+    def and_then(self, other: Branch) -> Branch:
+        """Both, not connected."""
+        here = len(self.points)
+        folds = self.folds + tuple(here + i for i in other.folds)
+        gaps = (*self.gaps, here - 1, *(here + i for i in other.gaps))
+        return Branch(self.points + other.points, folds, gaps, self.lost + other.lost)
+
+    def go_on(self, other: Branch) -> Branch:
+        """Both, of which the other one begins with the last point of this one."""
+        here = len(self.points) - 1
+        folds, gaps = (here + i for i in other.folds), (here + i for i in other.gaps)
+        return Branch(
+            self.points + other.points[1:], (*self.folds, *folds), (*self.gaps, *gaps), self.lost + other.lost
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +109,18 @@ class _Track:
 
     model: TorsionalModel
     scales: Scales
+
+    @cached_property
+    def narrow(self) -> float:
+        """Longest step of ln(speed), in scaled units: half the width of a resonance."""
+        model = self.model
+        ratio = (model.damping + model.ground_damping) / (2.0 * model.mass * model.fastest)
+        return min(LONGEST, max(ratio, SHARPEST) / SPEED_SCALE)
+
+    def longest(self, here: _Point) -> float:
+        """Longest step from a point."""
+        size, along = max(1.0, float(np.linalg.norm(here.z[:2]))), np.abs(here.tangent)
+        return float(1.0 / max(np.linalg.norm(along[:2]) / (LONGEST * size), along[2] / self.narrow))
 
     def steady(self, z: Floats) -> tuple[Floats, Floats, SteadyState]:
         """Residual (2,), derivatives (2, 3) by z, and the state at z (3,)."""
@@ -103,6 +142,8 @@ class _Track:
             found, change, state = self.steady(z)
             if np.abs(found).max() <= ACCURACY * max(1.0, float(np.abs(z[:2]).max())):
                 return _Point(z, _tangent(change, start.tangent), state), count
+            if not np.isfinite(change).all():
+                break
             plane = np.append(found, start.tangent @ (z - start.z) - length)
             z = z - np.linalg.lstsq(np.vstack([change, start.tangent]), plane, rcond=None)[0]
             if not np.linalg.norm(z - start.z) < FARTHEST * length:
@@ -111,17 +152,19 @@ class _Track:
 
 
 def follow(model: TorsionalModel, start: SteadyState, last_period: float) -> Branch:
-    """The branch from a steady state until the mesh period is `last_period` [s] or the first one again.
-
-    Raises NoSteadyState where the branch cannot be followed.
-    """
+    """The branch from a steady state until the mesh period is `last_period` [s] or the first one again, or until it
+    cannot be followed further: then `lost` says why."""
     track = _Track(model, Scales.of(model))
-    points, folds = [start], []
-    for point, fold in _points(track, start, last_period):
-        if fold:
-            folds.append(len(points))
-        points.append(point)
-    return Branch(tuple(points), tuple(folds))
+    points, folds = [start], list[int]()
+    lost: tuple[str, ...] = ()
+    try:
+        for point, fold in _points(track, start, last_period):
+            if fold:
+                folds.append(len(points))
+            points.append(point)
+    except NoSteadyState as error:
+        lost = (str(error),)
+    return Branch(tuple(points), tuple(folds), lost=lost)
 
 
 def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[tuple[SteadyState, bool]]:
@@ -142,20 +185,30 @@ def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[t
             yield steady_state(track.model, end, between(here.state, following.state, end)), False
             return
         yield following.state, False
+        if track.model.escaped(following.state.state):
+            raise NoSteadyState(
+                f"branch of steady states at a mesh period of {following.state.period:.6g} s: wanted motions of a gear "
+                f"pair, found one whose mesh deflects by {BEYOND_MEASURE:g} times the static deflection and its "
+                "unloaded error, and growing; give more damping"
+            )
         here = following
-    raise NoSteadyState(f"branch of steady states: wanted its end within {MOST_POINTS} points, found none")
+    raise NoSteadyState(
+        f"branch of steady states at a mesh period of {here.state.period:.6g} s: wanted its end within {MOST_POINTS} "
+        "points, found none; ask for a narrower range of speeds, or give more damping"
+    )
 
 
 def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
     """The next point, and the step to take from it."""
+    length = min(length, track.longest(here))
     while length > SHORTEST:
         found = track.onto(here, length)
         if found is not None and found[0].tangent @ here.tangent > TURN:
-            return found[0], min(LONGEST, length * (2.0 if found[1] <= 3 else 1.0))
+            return found[0], length * (2.0 if found[1] <= 3 else 1.0)
         length *= 0.5
     raise NoSteadyState(
         f"branch of steady states at a mesh period of {here.state.period:.6g} s: wanted a next one, found none however "
-        "near; the motion may graze a side of the teeth there"
+        "near; ask for speeds on one side of it, or give more damping"
     )
 
 

@@ -35,7 +35,7 @@ class Oscillator(NamedTuple):
     damping: float
     """c of the mesh [N·s/mm]."""
     always: bool
-    """Whether it acts in free flight, too."""
+    """Whether it acts in free flight, too, then with ė of the loaded flanks wherever flanks touch."""
     ground: float
     """c_g [N·s/mm]."""
     load: float
@@ -96,8 +96,9 @@ def acceleration(
         pressed, stiffness = force_at(side, cell, abs(region) - 1, τ, side.sign * s - e)
         force -= side.sign * pressed
         by_s -= stiffness
+    # always acting, with ė of the loaded flanks on both sides: with that of the others it would jump where they touch
+    rate = offset_at(o.front, front, τ)[1] / T if o.always else side.sign * slope / T
     if region != FREE or o.always:
-        rate = side.sign * slope / T
         force -= o.damping * (v - rate)
         by_v -= o.damping
         by_T -= o.damping * rate

@@ -9,6 +9,7 @@ backlash.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +17,27 @@ from scipy.interpolate import CubicSpline, PPoly
 from scipy.special import comb
 
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.errors import ResultError
 
 NEVER = 1e6
 """Offset of a side that is never touched [mm]."""
+ROUNDING = 1e-12
+"""Of offsets [mm]."""
+LOOKED_AT = 9
+"""Phases of an interval at which both sides are looked at."""
 LAST_BIT = 1e-14
 """Phases that differ by less are one."""
+
+
+class Jammed(ResultError):
+    """Both flanks of a tooth touch at once, by `overlap` [mm] at the most."""
+
+    def __init__(self, overlap: float) -> None:
+        super().__init__(
+            "backlash: wanted room for the teeth, found flanks that overlap on both sides, unloaded errors included, "
+            f"by {1e3 * overlap:.3g} µm; give so much more backlash (dynamics.backlash_um)"
+        )
+        self.overlap = overlap
 
 
 class MeshSide(NamedTuple):
@@ -47,6 +64,14 @@ class MeshLaw:
     back: MeshSide
     """The others."""
 
+    def __post_init__(self) -> None:
+        """Raises Jammed: the oscillator has at most one side in contact."""
+        (stops, cells), sides = self.stops(), (self.front, self.back)
+        phases = stops[:-1] + np.linspace(0.0, 1.0, LOOKED_AT)[:, None] * np.diff(stops)
+        overlap = -float(sum((_offsets(side, cells[:, i], phases) for i, side in enumerate(sides)), 0.0 * phases).min())
+        if overlap > ROUNDING:
+            raise Jammed(overlap)
+
     def stops(self, more: Floats | tuple[float, ...] = ()) -> tuple[Floats, Ints]:
         """Phases (k + 1,) from 0 to 1 between which both sides are polynomials of τ, and the intervals (k, 2) of front
         and back there. more: further phases to stop at."""
@@ -58,6 +83,10 @@ class MeshLaw:
 
     def stiffest(self) -> float:
         """The largest ∂F/∂x [N/mm] at the ends and middles of all intervals, from which steps in time are chosen."""
+        return self._stiffest
+
+    @cached_property
+    def _stiffest(self) -> float:
         return max(float(_slopes(side).max()) for side in (self.front, self.back))
 
 
@@ -123,6 +152,11 @@ def mirrored(side: MeshSide, meeting: float, backlash: float) -> MeshSide:
     force = np.einsum("nkj,nmij->nmik", taylor, side.force[cell])
     offset[:, 0] += backlash
     return MeshSide(-side.sign, phases, offset, side.depths, np.ascontiguousarray(force))
+
+
+def _offsets(side: MeshSide, cells: Ints, phases: Floats) -> Floats:
+    """e (..., n) [mm] at phases (..., n) in phase intervals (n,)."""
+    return np.asarray((side.offset[cells] * (phases - side.phases[cells])[..., None] ** np.arange(4)).sum(axis=-1))
 
 
 def _different(phases: Floats) -> Floats:

@@ -13,12 +13,13 @@ from evolvent_meshes.arrays import Floats
 
 MOST_PERIODS = 4000
 """Of the mesh that are waited for; a motion of damping ratio 0.01 is then 1e-100 from where it ends."""
+FEWEST_PERIODS = 400
+"""That are waited for at the least. A pair that comes to a speed with a motion on no branch is not waited for longer
+than `decay_periods`: such motions may go on without repeating over many speeds."""
 LONGEST_REPEAT = 16
 """Mesh periods after which a subharmonic motion repeats at the latest, to be told as one."""
 SETTLED = 1e-9
 """Change from repeat to repeat, over the static deflection, of a motion that has settled."""
-
-
 DIFFERENT = 1e-5
 """Least change after fewer meshes of a motion that repeats after several: one that spirals in on a steady state comes
 closest to itself after several, too."""
@@ -32,9 +33,11 @@ class Settled:
     """s [mm] and ṡ [mm/s] (2,) at phase 0."""
     repeats: int
     """Mesh periods after which it repeats: 1 with the mesh, more where it is subharmonic, 0 where it does not within
-    `LONGEST_REPEAT`: quasi-periodic, chaotic, or not settled after `MOST_PERIODS`."""
+    `LONGEST_REPEAT`: quasi-periodic, chaotic, not settled after `MOST_PERIODS`, or escaped."""
     waited: int
     """Mesh periods integrated."""
+    escaped: bool = False
+    """Whether it grew beyond measure, see `TorsionalModel.escaped`; `state` is the last one within."""
 
 
 def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOST_PERIODS) -> Settled:
@@ -44,12 +47,21 @@ def settled(model: TorsionalModel, period: float, start: Floats, most: int = MOS
     for count in range(1, most + 1):
         last = np.vstack([state, last[:-1]])
         state = period_map(model, period, state)[0]
+        if model.escaped(state):
+            return Settled(last[0], 0, count, escaped=True)
         change = np.abs((last - state) / scales).max(axis=1)
         close = change <= SETTLED
         repeats = int(np.argmax(close)) + 1
         if close.any() and (change[: repeats - 1] > DIFFERENT).all():
             return Settled(state, repeats, count)
     return Settled(state, 0, most)
+
+
+def decay_periods(model: TorsionalModel, period: float) -> int:
+    """Mesh periods [s] in which a disturbance dies out in contact, to `SETTLED` twice over; `FEWEST_PERIODS` at least,
+    `MOST_PERIODS` at most."""
+    rate = (model.damping + model.ground_damping) / (2.0 * model.mass) * period
+    return int(np.clip(2.0 * np.log(1.0 / SETTLED) / max(rate, 1e-9), FEWEST_PERIODS, MOST_PERIODS))
 
 
 def static_state(model: TorsionalModel) -> Floats:

@@ -8,14 +8,14 @@ a doubled period, the motion is integrated in time until it repeats, and the bra
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
 from evolvent.dynamics.oscillator.continuation import Branch, between, follow
-from evolvent.dynamics.oscillator.settling import Settled, settled, static_state
-from evolvent.dynamics.oscillator.steady_state import Scales, SteadyState, steady_state
+from evolvent.dynamics.oscillator.settling import MOST_PERIODS, Settled, decay_periods, settled, static_state
+from evolvent.dynamics.oscillator.steady_state import NoSteadyState, Scales, SteadyState, damped_less, steady_state
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
 from evolvent_meshes.arrays import Floats
 
@@ -23,6 +23,8 @@ SAME = 1e-6
 """Distance of two states that are one, in static deflections."""
 STABILITY_ACCURACY = 1e-9
 """Of the mesh period at which a branch loses its stability."""
+MOST_PIECES = 20
+"""Of the branch that are not connected; more are not looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,11 @@ class Running:
         """Mesh periods after which it repeats; 0 where it does not, see `Settled`."""
         return self.motion.repeats if isinstance(self.motion, Settled) else 1
 
+    @property
+    def escaped(self) -> bool:
+        """Whether it grows beyond measure."""
+        return isinstance(self.motion, Settled) and self.motion.escaped
+
 
 @dataclass(frozen=True, eq=False)
 class SpeedSweep:
@@ -80,16 +87,13 @@ def sweep_speeds(model: TorsionalModel, periods: Floats, beyond: tuple[float, fl
     beyond: longest and shortest mesh period from and to which the branch is followed, where those of the speeds lie
     within: a branch that turns back within the speeds may leave them on its way.
 
-    Raises NoSteadyState.
+    Raises NoSteadyState where there is none to begin with, neither at the longest nor at the shortest of them.
     """
     longest, shortest = beyond or (0.0, np.inf)
     begin, end = max(longest, float(periods[0])), min(shortest, float(periods[-1]))
-    first = settled(model, begin, static_state(model))
-    branch = follow(model, steady_state(model, begin, first.state), end)
-    coexisting = [tuple(_refined(model, branch, float(period))) for period in periods]
-    up = _run(model, branch, periods, coexisting)
-    down = _run(model, branch, periods[::-1], coexisting[::-1])[::-1]
-    return SpeedSweep(np.asarray(periods), branch, tuple(coexisting), tuple(up), tuple(down))
+    known = _Steady(model, np.asarray(periods, dtype=float), (begin, end), _branch(model, begin, end))
+    up, down = _run(known, range(len(periods))), _run(known, range(len(periods))[::-1])[::-1]
+    return SpeedSweep(known.periods, known.branch, tuple(map(tuple, known.coexisting)), tuple(up), tuple(down))
 
 
 def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
@@ -97,37 +101,84 @@ def speeds_to_periods(speeds: Floats, teeth: int) -> Floats:
     return 60.0 / (np.asarray(speeds, dtype=float) * teeth)
 
 
-def _refined(model: TorsionalModel, branch: Branch, period: float) -> Iterator[OnBranch]:
-    """The branch's steady states at a mesh period, in their order along it."""
-    periods, last = branch.periods, len(branch.points) - 1
-    if period == periods[0]:
-        yield OnBranch(0.0, branch.points[0])
-    for i in branch.crossings(period):
-        share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
-        if 0.0 < i + share < last:
-            start = between(branch.points[i], branch.points[i + 1], period)
-            yield OnBranch(float(i) + share, steady_state(model, period, start))
-    if period == periods[last]:
-        yield OnBranch(float(last), branch.points[last])
+def _branch(model: TorsionalModel, begin: float, end: float) -> Branch:
+    """From one mesh period to another, followed from both of them where it cannot be from one."""
+    try:
+        first = follow(model, _some_steady_state(model, begin), end)
+    except NoSteadyState as error:
+        second = follow(model, _some_steady_state(model, end), begin).backwards()
+        return replace(second, lost=(str(error), *second.lost))
+    if first.points[-1].period == end:
+        return first
+    try:
+        second = follow(model, _some_steady_state(model, end), begin).backwards()
+    except NoSteadyState as error:
+        return replace(first, lost=(*first.lost, str(error)))
+    return first.and_then(second)
 
 
-def _run(
-    model: TorsionalModel, branch: Branch, periods: Floats, coexisting: Sequence[Sequence[OnBranch]]
-) -> list[Running]:
-    """The motions of a pair that takes the speeds one after the other."""
-    stable = [each for each in coexisting[0] if each.state.stable]
-    rising = periods[0] > periods[-1]
-    found = [_start(model, float(periods[0]), stable if rising else stable[::-1])]
-    for period, states in zip(periods[1:], coexisting[1:]):
-        before = found[-1]
-        along = None if before.place is None else _along(branch, before.place, states)
+def _some_steady_state(model: TorsionalModel, period: float) -> SteadyState:
+    """The one that a pair settles to from rest, or one near that where it settles to none. Raises NoSteadyState."""
+    motion = settled(model, period, static_state(model))
+    if motion.repeats == 1:
+        return steady_state(model, period, motion.state)
+    return damped_less(model, period, static_state(model))
+
+
+class _Steady:
+    """The steady states that are known so far. Pieces of the branch are added at its end, so that places stay."""
+
+    def __init__(self, model: TorsionalModel, periods: Floats, ends: tuple[float, float], branch: Branch) -> None:
+        """ends: mesh periods between which branches are followed."""
+        self.model, self.periods, self.ends, self.branch = model, periods, ends, branch
+        self.coexisting = [list(self._refined(float(period), 0)) for period in periods]
+
+    def add(self, state: SteadyState) -> None:
+        """The branch through a steady state that is not on the one that is known."""
+        both = [follow(self.model, state, end) for end in self.ends]
+        piece = both[0].backwards().go_on(both[1])
+        first = len(self.branch.points)
+        self.branch = self.branch.and_then(piece)
+        for period, states in zip(self.periods, self.coexisting):
+            states += self._refined(float(period), first)
+
+    def _refined(self, period: float, first: int) -> Iterator[OnBranch]:
+        """The steady states at a mesh period from the point `first` on, in their order along the branch."""
+        points, periods = self.branch.points, self.branch.periods
+        crossings = {int(i) for i in self.branch.crossings(period)}
+        begins, ends = {0, *(i + 1 for i in self.branch.gaps)}, {*self.branch.gaps, len(points) - 1}
+        alone = {i for i in begins - crossings if periods[i] == period}
+        alone |= {i for i in ends if periods[i] == period and i - 1 not in crossings}
+        for i in sorted(i for i in crossings | alone if i >= first):
+            if i in alone:
+                yield OnBranch(float(i), points[i])
+                continue
+            share = float((period - periods[i]) / (periods[i + 1] - periods[i]))
+            start = between(points[i], points[i + 1], period)
+            yield OnBranch(float(i) + share, steady_state(self.model, period, start))
+
+
+def _run(known: _Steady, order: range) -> list[Running]:
+    """The motions of a pair that takes the speeds one after the other, in this order of their numbers."""
+    stable = [each for each in known.coexisting[order[0]] if each.state.stable]
+    first = float(known.periods[order[0]])
+    found = [_start(known.model, first, stable if order.step > 0 else stable[::-1])]
+    for number in order[1:]:
+        before, period = found[-1], float(known.periods[number])
+        along = None if before.place is None else _along(known.branch, before.place, known.coexisting[number])
         if along is not None:
             found.append(Running(along.state, along.place, None))
             continue
-        motion = settled(model, float(period), before.motion.state)
-        left_at = _left_at(model, branch, before, states, float(period), rising)
-        found.append(_landed(model, motion, states, left_at))
+        left_at = _left_at(known, before, number, rising=order.step > 0)
+        most = decay_periods(known.model, period) if before.place is None else MOST_PERIODS
+        motion = settled(known.model, period, _left_with(known.model, before), most)
+        found.append(_landed(known, motion, number, left_at))
     return found
+
+
+def _left_with(model: TorsionalModel, before: Running) -> Floats:
+    """State (2,) that a pair comes with from the speed before: from rest where that motion grew beyond measure."""
+    return static_state(model) if before.escaped else before.motion.state
 
 
 def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> Running:
@@ -138,36 +189,34 @@ def _start(model: TorsionalModel, period: float, stable: Sequence[OnBranch]) -> 
 
 
 def _along(branch: Branch, place: float, states: Sequence[OnBranch]) -> OnBranch | None:
-    """The state that the branch leads to without a fold, stable all the way; None where there is none."""
+    """The state that the branch leads to without a fold or a gap, stable all the way; None where there is none."""
     for each in states:
         low, high = sorted((place, each.place))
         between = slice(int(np.ceil(low)), int(np.floor(high)) + 1)
-        if each.state.stable and branch.stable[between].all() and not any(low <= fold <= high for fold in branch.folds):
+        turned = any(low <= fold <= high for fold in branch.folds) or any(low <= gap < high for gap in branch.gaps)
+        if each.state.stable and branch.stable[between].all() and not turned:
             return each
     return None
 
 
-def _left_at(
-    model: TorsionalModel, branch: Branch, before: Running, states: Sequence[OnBranch], period: float, rising: bool
-) -> float | None:
-    """Mesh period [s] at which the branch ends for a pair that follows it to a speed beyond its end; None where the
-    pair was not on it.
-
-    states: on the branch at that speed.
-    period: of that speed, which stands where no end is found before it.
-    """
+def _left_at(known: _Steady, before: Running, number: int, rising: bool) -> float | None:
+    """Mesh period [s] at which the branch ends for a pair that follows it to the speed of this number, beyond its end;
+    None where the pair was not on it. Where no end is found before that speed, it is that."""
+    model, branch, period = known.model, known.branch, float(known.periods[number])
     if before.place is None or not isinstance(before.motion, SteadyState):
         return None
     first, last = max(int(np.ceil(before.place)) - 1, 0), before.motion
     step = 1 if (branch.periods[first + 1] < branch.periods[first]) == rising else -1
     i = first + 1 if step > 0 else int(np.floor(before.place))
     while 0 <= i < len(branch.points) and (branch.periods[i] > period) == rising:
+        if min(i, i - step) in branch.gaps:
+            return last.period
         if i in branch.folds:
             return float(branch.periods[i])
         if not branch.stable[i]:
             return _unstable_from(model, last, branch.points[i])
         last, i = branch.points[i], i + step
-    ahead = [each for each in states if (each.place - before.place) * step > 0.0]
+    ahead = [each for each in known.coexisting[number] if (each.place - before.place) * step > 0.0]
     beyond = min(ahead, key=lambda each: abs(each.place - float(before.place or 0.0)), default=None)
     return _unstable_from(model, last, beyond.state) if beyond and not beyond.state.stable else period
 
@@ -183,10 +232,24 @@ def _unstable_from(model: TorsionalModel, stable: SteadyState, unstable: SteadyS
     return float(brentq(excess, stable.period, unstable.period, rtol=STABILITY_ACCURACY))
 
 
-def _landed(model: TorsionalModel, motion: Settled, states: Sequence[OnBranch], left_at: float | None) -> Running:
-    """Where a motion ended. left_at: as in `Running`."""
-    scale = Scales.of(model).array
-    for each in states:
-        if motion.repeats == 1 and each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
-            return Running(each.state, each.place, left_at)
-    return Running(motion, None, left_at)
+def _landed(known: _Steady, motion: Settled, number: int, left_at: float | None) -> Running:
+    """Where a motion ended at the speed of this number. left_at: as in `Running`."""
+    if motion.repeats != 1:
+        return Running(motion, None, left_at)
+    same = _same(known, motion, number)
+    if same is None and len(known.branch.gaps) < MOST_PIECES:
+        try:
+            known.add(steady_state(known.model, float(known.periods[number]), motion.state))
+        except NoSteadyState:
+            return Running(motion, None, left_at)
+        same = _same(known, motion, number)
+    return Running(motion, None, left_at) if same is None else Running(same.state, same.place, left_at)
+
+
+def _same(known: _Steady, motion: Settled, number: int) -> OnBranch | None:
+    """The stable state that a motion has settled to, of those known at the speed of this number."""
+    scale = Scales.of(known.model).array
+    for each in known.coexisting[number]:
+        if each.state.stable and np.abs((each.state.state - motion.state) / scale).max() < SAME:
+            return each
+    return None

@@ -6,7 +6,7 @@ derivatives of P. The eigenvalues of ∂P/∂y, Floquet's multipliers, say wheth
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from evolvent_meshes.errors import ResultError
 TOLERANCE = 1e-11
 """Of the residual, over the static deflection."""
 ITERATIONS = 30
+GROUND_HALVINGS = 14
+"""From critical damping on, until the last bit is taken away."""
 
 
 class NoSteadyState(ResultError):
@@ -87,6 +89,8 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
         size = float(np.abs(found).max())
         if size <= TOLERANCE * max(1.0, float(np.abs(state / scales.array).max())):
             return SteadyState(period, state, unscaled(change, scales))
+        if not np.isfinite(change).all():
+            break
         move = np.linalg.lstsq(change[:, :2], -found, rcond=None)[0] * scales.array
         for _ in range(12):
             trial = state + move
@@ -101,6 +105,19 @@ def steady_state(model: TorsionalModel, period: float, start: Floats) -> SteadyS
         f"steady state of a mesh period of {period:.6g} s: wanted a residual of {TOLERANCE}, found "
         f"{np.abs(found).max():.2e}; start nearer, or follow a branch of steady states from another speed"
     )
+
+
+def damped_less(model: TorsionalModel, period: float, start: Floats) -> SteadyState:
+    """A steady state for which there is no start nearby: that of the model with strong damping against the ground,
+    which is taken away by halves. start: (2,), for the first of them.
+
+    Raises NoSteadyState.
+    """
+    damping = 2.0 * model.mass * model.fastest
+    for part in (*(0.5 ** np.arange(GROUND_HALVINGS)), 0.0):
+        helped = replace(model, ground_damping=model.ground_damping + part * damping)
+        start = steady_state(helped, period, start).state
+    return steady_state(model, period, start)
 
 
 def unscaled(change: Derivatives, scales: Scales) -> Derivatives:

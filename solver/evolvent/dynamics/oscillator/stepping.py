@@ -34,10 +34,13 @@ FAR = 1e300
 ROOT_STEPS = 60
 CLOSE = 1e-15
 """Accuracy of the length of a step that ends at a border, over the step."""
-HALVINGS = 40
-"""Of a step within which a border is crossed and crossed again."""
-SAMPLES = 8
-"""Of a step, at which a cubic is looked at for that."""
+TURN = 1e-9
+"""Accuracy of the length of a step that ends where the distance to a border is least, over the step: the distance is
+then right to its square."""
+TRIES = 8
+"""To find a step in which no border is crossed before its end: of both borders each may be touched on the way."""
+NOWHERE = -1
+"""No border."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -106,17 +109,67 @@ def length_to_border(
 
 
 @njit(cache=True, error_model="numpy")
-def dips(h: float, begin: Floats, end: Floats) -> bool:
-    """Whether a cubic with these values and slopes (2,) at both ends of a step falls below 0 between them."""
-    if not (begin[1] < 0.0 < end[1]) or begin[0] <= 0.0:
+def may_dip(h: float, begin: Floats, end: Floats) -> bool:
+    """Whether a distance above 0 at both ends of a step, with these values and slopes (2,), may fall below 0 between
+    them: a convex one stays above both tangents, so above the point where they meet."""
+    if not (begin[1] < 0.0 < end[1]):
         return False
-    for i in range(1, SAMPLES):
-        t = i / SAMPLES
-        u = 1.0 - t
-        first = (1.0 + 2.0 * t) * begin[0] + t * h * begin[1]
-        if u * u * first + t * t * ((3.0 - 2.0 * t) * end[0] - u * h * end[1]) < 0.0:
-            return True
-    return False
+    return begin[0] + begin[1] * (begin[0] - end[0] + end[1] * h) / (end[1] - begin[1]) < 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def length_to_turn(
+    o: Oscillator, region: int, border: int, front: int, back: int, τ: float, h: float, T: float, y: Floats,
+    stages: Floats, begin: Floats, out: Floats, left: Floats,
+) -> float:  # fmt: skip
+    """Length of the step from y at whose end the distance to a border, in left, is least, a last bit late, or already
+    below 0; h is one after it. By regula falsi on its slope, in the Illinois form."""
+    low, high, slope_low, slope_high, ahead = 0.0, h, begin[border, 1], left[border, 1], 0
+    for _ in range(ROOT_STEPS):
+        length = (low * slope_high - high * slope_low) / (slope_high - slope_low)
+        if high - low <= TURN * h or not low < length < high:
+            break
+        step(o, region, front, back, τ, length, T, y, stages, out)
+        reserves(o, region, front, back, τ + length, T, out, left)
+        if left[border, 0] < 0.0:
+            return length
+        if left[border, 1] < 0.0:
+            low, slope_low = length, left[border, 1]
+            slope_high *= 0.5 if ahead > 0 else 1.0
+            ahead = 1
+        else:
+            high, slope_high = length, left[border, 1]
+            slope_low *= 0.5 if ahead < 0 else 1.0
+            ahead = -1
+    step(o, region, front, back, τ, high, T, y, stages, out)
+    reserves(o, region, front, back, τ + high, T, out, left)
+    return high
+
+
+@njit(cache=True, error_model="numpy")
+def step_in_region(
+    o: Oscillator, region: int, front: int, back: int, τ: float, h: float, T: float, y: Floats, stages: Floats,
+    begin: Floats, out: Floats, left: Floats,
+) -> tuple[float, int]:  # fmt: skip
+    """One step of length h from y at the most, into out, that ends where the region does. Its length, and the border
+    that it ends at, or NOWHERE. begin, left: room for the distances at its ends."""
+    reserves(o, region, front, back, τ, T, y, begin)
+    step(o, region, front, back, τ, h, T, y, stages, out)
+    reserves(o, region, front, back, τ + h, T, out, left)
+    border = NOWHERE
+    for _ in range(TRIES):
+        nearer = 0 if left[0, 0] < left[1, 0] else 1
+        if border == NOWHERE and left[nearer, 0] < 0.0:
+            border = nearer
+            h = length_to_border(o, region, border, front, back, τ, h, T, y, stages, out, left)
+        touched = NOWHERE
+        for other in range(2):
+            if other != border and may_dip(h, begin[other], left[other]):
+                touched = other
+        if touched == NOWHERE:
+            break
+        h, border = length_to_turn(o, region, touched, front, back, τ, h, T, y, stages, begin, out, left), NOWHERE
+    return h, border
 
 
 @njit(cache=True, error_model="numpy")
@@ -171,29 +224,16 @@ def advance(
         τ, end = stops[k], stops[k + 1]
         while end - τ > 0.0:
             count = np.ceil((end - τ) / longest)
-            h, ends = (end - τ) / count, count == 1.0
-            reserves(o, region, front, back, τ, T, y, begin)
-            for _ in range(HALVINGS):
-                step(o, region, front, back, τ, h, T, y, stages, out)
-                reserves(o, region, front, back, τ + h, T, out, left)
-                if min(left[0, 0], left[1, 0]) < 0.0 or not (
-                    dips(h, begin[0], left[0]) or dips(h, begin[1], left[1])
-                ):
-                    break
-                h, ends = 0.5 * h, False
-            border = 0 if left[0, 0] < left[1, 0] else 1
-            crossed = left[border, 0] < 0.0
-            if crossed:
-                h = length_to_border(o, region, border, front, back, τ, h, T, y, stages, out, left)
-                ends = False
+            whole = (end - τ) / count
+            h, border = step_in_region(o, region, front, back, τ, whole, T, y, stages, begin, out, left)
             if region == FREE:
                 apart += h
             elif region < FREE:
                 behind += h
-            τ = end if ends else τ + h
+            τ = end if count == 1.0 and border == NOWHERE and h == whole else τ + h
             for n in range(SIZE):
                 y[n] = out[n]
-            if crossed:
+            if border != NOWHERE:
                 following = beyond(region, border)
                 if region == FREE or following == FREE:
                     cross(o, following == FREE, y)

@@ -19,6 +19,9 @@ from evolvent_meshes.arrays import Bools, Floats, Ints
 
 Derivatives = Floats
 """(2, 3): of s [mm] and v [mm/s] after a period, by s and v before it and by ln T."""
+BEYOND_MEASURE = 100.0
+"""Deflections of the mesh that no pair sees, over the static one and the swing of e: a motion that comes there goes on
+growing, as a mesh whose stiffness varies feeds more work in than a weak damper takes out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +37,8 @@ class TorsionalModel:
     damping: float = 0.0
     """c, of the mesh [N·s/mm]."""
     damped_apart: bool = False
-    """Whether c acts in free flight, too, as it does in He et al. (Eq. 15)."""
+    """Whether c acts in free flight, too, as it does in He et al. (Eq. 15); then with ė of the loaded flanks wherever
+    flanks touch."""
     ground_damping: float = 0.0
     """c_g, of the shafts against the ground [N·s/mm]."""
 
@@ -50,6 +54,18 @@ class TorsionalModel:
     def fastest(self) -> float:
         """Angular frequency [rad/s] on the stiffest mesh: what steps in time are chosen by."""
         return float(np.sqrt(self.law.stiffest() / self.mass))
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest deflection of the mesh [mm] that is still a motion of a gear pair, see `BEYOND_MEASURE`."""
+        swing = max(float(np.ptp(side.offset[:, 0])) for side in (self.law.front, self.law.back))
+        return BEYOND_MEASURE * (abs(self.load) / self.law.stiffest() + swing)
+
+    def escaped(self, state: Floats) -> bool:
+        """Whether a state (2,) at phase 0 is beyond measure, or no number."""
+        s, v = state
+        depth = max(side.sign * s - side.offset[0, 0] for side in (self.law.front, self.law.back))
+        return not (depth <= self.reach and abs(v) <= self.reach * self.fastest)
 
     @cached_property
     def intervals(self) -> tuple[Floats, Ints]:

@@ -30,7 +30,8 @@ class ResponseRow:
     way: str
     """up or down: from which side the pair has come to the speed, slowly."""
     repeats: int
-    """Mesh periods after which the motion repeats; 0 where it does not within sixteen."""
+    """Mesh periods after which the motion repeats; 0 where it does not within sixteen, or grows beyond a hundred
+    static deflections."""
     jumped: bool
     """Whether it left the branch of steady states, or came to another part of it, since the speed before."""
     equivalent_amplitude_um: float
@@ -86,6 +87,9 @@ class BranchRow:
     """Whether small disturbances die out."""
     fold: bool
     """Whether the branch turns back here: a pair that follows the speed jumps."""
+    connected: bool
+    """Whether the row before is the next one on the branch; false where it could not be followed on, and another piece
+    of it begins."""
 
 
 @dataclass(frozen=True)
@@ -144,10 +148,11 @@ def speed_of(drive: Drive, period: float) -> float:
 
 
 def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
-    """Of all speeds, "up" and "down"; a motion that does not repeat is taken over sixteen mesh periods."""
+    """Of all speeds, "up" and "down"; a motion that does not repeat is taken over sixteen mesh periods, one that grows
+    beyond measure over the last within."""
     return {
         way: [
-            response(drive.model, float(period), run.motion.state, run.repeats or LONGEST_REPEAT)
+            response(drive.model, float(period), run.motion.state, 1 if run.escaped else run.repeats or LONGEST_REPEAT)
             for period, run in zip(swept.periods, runs)
         ]
         for way, runs in (("up", swept.up), ("down", swept.down))
@@ -177,9 +182,11 @@ def _five(amplitudes: Floats) -> tuple[float, float, float, float, float]:
 
 def branch_rows(drive: Drive, swept: SpeedSweep) -> Iterator[BranchRow]:
     """From the lowest speed to the highest, through all folds."""
+    gaps = swept.branch.gaps
     for i, (state, stable) in enumerate(zip(swept.branch.points, swept.branch.stable)):
         size = response(drive.model, state.period, state.state).equivalent_amplitude
-        yield BranchRow(speed_of(drive, state.period), UM * size, bool(stable), i in swept.branch.folds)
+        fold, connected = i in swept.branch.folds, i > 0 and i - 1 not in gaps
+        yield BranchRow(speed_of(drive, state.period), UM * size, bool(stable), fold, connected)
 
 
 def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:

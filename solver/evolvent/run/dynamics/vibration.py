@@ -12,6 +12,7 @@ from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
+from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
 from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
 from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows, motions, write_histories
@@ -25,6 +26,7 @@ from evolvent.dynamics.results.response import (
     largest_force,
     response_rows,
     responses,
+    speed_of,
     summary,
     write_response,
 )
@@ -116,8 +118,8 @@ def _written(
             write_torque_map(folder, over_torque.rows)
         pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
         failures += draw(pictures, folder).failures
-    said = *_warnings(vibrating, settings, known), *_branch_warnings(swept), *_iso_warnings(first)
-    return [*failures, *said, *over_torque.warnings]
+    said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
+    return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
 
 
 def _over_torque(
@@ -176,6 +178,27 @@ def _warnings(vibrating: Drive, settings: DriveSettings, known: DriveSummary) ->
         found.append(
             f"dynamics.torque_percents: the largest mesh force is {share:.3g} times that of the heaviest torque; "
             "beyond that the force goes on straight. Add heavier ones until this is below 1"
+        )
+    return found
+
+
+def _not_followed(vibrating: Drive, swept: SpeedSweep) -> list[str]:
+    """Where the branch of steady states ends, and motions that have no end."""
+    found, branch = [], swept.branch
+    if branch.gaps or branch.lost:
+        ends = [branch.points[i].period for gap in branch.gaps for i in (gap, gap + 1)]
+        speeds = ", ".join(f"{speed_of(vibrating, period):.0f}" for period in ends)
+        found.append(
+            f"steady states: found {len(branch.gaps) + 1} pieces that are not connected (branch.csv), with ends at "
+            f"{speeds or 'one end of the'} r/min. {' '.join(f'{each}.' for each in branch.lost)}".rstrip()
+        )
+    gone = {float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs) if run.escaped}
+    if gone:
+        slowest, fastest = (speed_of(vibrating, period) for period in (max(gone), min(gone)))
+        found.append(
+            f"response.csv: at {len(gone)} of {len(swept.periods)} speeds, from {slowest:.0f} to {fastest:.0f} r/min, "
+            f"the motion grows beyond {BEYOND_MEASURE:g} times the static deflection, as the varying stiffness feeds "
+            "in more than the dampers take out; its figures there are of the last mesh before. Give more damping"
         )
     return found
 

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from evolvent.dynamics.oscillator.equation import force_at, interval_at, offset_at
-from evolvent.dynamics.oscillator.mesh_law import MeshLaw, MeshSide, behind, force_side, linear_side, mirrored, no_side
+from evolvent.dynamics.oscillator.mesh_law import (
+    Jammed,
+    MeshLaw,
+    MeshSide,
+    behind,
+    force_side,
+    linear_side,
+    mirrored,
+    no_side,
+)
 
 DEPTHS = np.array([0.0, 0.5, 1.2, 2.0])
 PHASES = np.arange(8) / 8
@@ -67,3 +76,16 @@ def test_stiffest_of_a_linear_side() -> None:
     """The largest of a cosine's knots and middles: exact at a knot."""
     stiffness = 3.0 + np.cos(2.0 * np.pi * PHASES)
     assert MeshLaw(linear_side(stiffness, 0.0 * PHASES), no_side()).stiffest() == pytest.approx(4.0, abs=1e-12)
+
+
+def test_teeth_that_jam_are_refused() -> None:
+    """Flanks that stand 2 µm proud at one phase: 1.9 µm of backlash leave an overlap of 0.1 µm, which is said; 2.1 µm
+    are room enough."""
+    front = linear_side(np.full(8, 1e5), np.where(np.arange(8) == 3, -2e-3, 0.0))
+
+    def back(backlash: float) -> MeshSide:
+        return linear_side(np.full(8, 1e5), np.full(8, backlash), -1.0)
+
+    MeshLaw(front, back(2.1e-3))
+    with pytest.raises(Jammed, match=r"overlap.*by 0\.1 µm"):
+        MeshLaw(front, back(1.9e-3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evolvent.dynamics.oscillator import torsional_model
-from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, force_side, linear_side
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, force_side, linear_side, mirrored
 from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history, period_map
 from evolvent_meshes.arrays import Floats
@@ -21,14 +21,14 @@ def wavy(amplitude: float) -> Floats:
     return amplitude * (np.cos(2.0 * np.pi * PHASES) + 0.4 * np.sin(4.0 * np.pi * PHASES))
 
 
-def surface(damped_apart: bool = False) -> TorsionalModel:
+def surface(damped_apart: bool = False, image: bool = False) -> TorsionalModel:
     """A force that stiffens with its depth and varies over the phase, on flanks with an error and backlash; the hardest
-    blows go beyond the last depth."""
+    blows go beyond the last depth. image: on back flanks that are the loaded ones' mirror image."""
     depths = STATIC * np.array([0.0, 0.2, 0.6, 1.2, 2.0, 4.0])
     force = STIFFNESS * np.outer(1.0 + wavy(0.15), depths) * (1.0 + 0.2 * np.tanh(depths / STATIC))
     front = force_side(depths, force, wavy(0.05 * STATIC))
-    law = MeshLaw(front, behind(front, 3.0 * STATIC))
-    return TorsionalModel(MASS, LOAD, law, 0.06 * MASS * NATURAL, damped_apart, 2e-3)
+    back = mirrored(front, 0.3, 3.0 * STATIC) if image else behind(front, 3.0 * STATIC)
+    return TorsionalModel(MASS, LOAD, MeshLaw(front, back), 0.06 * MASS * NATURAL, damped_apart, 2e-3)
 
 
 def linear() -> TorsionalModel:
@@ -44,7 +44,9 @@ START = {
 
 
 MODELS = pytest.mark.parametrize(
-    "model", [linear(), surface(), surface(damped_apart=True)], ids=["k x", "F(x)", "damped apart"]
+    "model",
+    [linear(), surface(), surface(damped_apart=True), surface(image=True), surface(damped_apart=True, image=True)],
+    ids=["k x", "F(x)", "damped apart", "mirrored", "mirrored, damped apart"],
 )
 
 
@@ -96,3 +98,17 @@ def test_derivatives_of_the_period_map(model: TorsionalModel, start: str) -> Non
         difference, size = (ahead - before) / (2.0 * small) / scale, scale[column] if column < 2 else 1.0
         accuracy = 2e-6 * max(1.0, float(np.abs(difference).max()))
         assert exact[:, column] * size / scale == pytest.approx(difference, abs=accuracy)
+
+
+@pytest.mark.parametrize("speed", [2.5, 7.0])
+def test_no_backlash(speed: float) -> None:
+    """Both sides of the teeth one after the other, without free flight between, over three mesh periods: 1e-8."""
+    side = linear_side(STIFFNESS * (1.0 + wavy(0.2)), wavy(0.02 * STATIC))
+    model = TorsionalModel(MASS, LOAD, MeshLaw(side, behind(side, 0.0)), 0.04 * MASS * NATURAL)
+    y, scale, period = np.array([STATIC, -speed * STATIC * NATURAL]), np.array([1.0, NATURAL]) * STATIC, 7.0 / NATURAL
+    found = y
+    for _ in range(3):
+        path = history(model, period, found, np.linspace(0.0, 1.0, 200))
+        assert path.behind > 0.1 and path.apart < 1e-12
+        found, _ = period_map(model, period, found)
+    assert found / scale == pytest.approx(integrate(model, period, y, 3) / scale, abs=1e-8)

@@ -1,0 +1,71 @@
+"""Branches of steady states that cannot be followed from the lowest speed to the highest in one piece."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.dynamics.oscillator.continuation import follow
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
+from evolvent.dynamics.oscillator.speed_sweep import OnBranch, sweep_speeds
+from evolvent.dynamics.oscillator.steady_state import SteadyState, damped_less, steady_state
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent_meshes.arrays import Floats
+
+MASS, STIFFNESS, LOAD, KNOTS = 0.77e-3, 258.6e3, 2412.0, 64
+NATURAL, STATIC = float(np.sqrt(STIFFNESS / MASS)), LOAD / STIFFNESS
+SCALE = STATIC * np.array([1.0, NATURAL])
+
+
+def softening(swing: float, share: float) -> TorsionalModel:
+    """Stiffness with one harmonic: flanks part near resonance, which leans to lower speeds."""
+    k = STIFFNESS * (1.0 + swing * np.cos(2.0 * np.pi * np.arange(16) / 16))
+    return TorsionalModel(MASS, LOAD, MeshLaw(linear_side(k, np.zeros(16)), no_side()), 2.0 * share * MASS * NATURAL)
+
+
+def periods(*ratios: float) -> Floats:
+    """[s] at mesh frequencies over the natural one."""
+    return 2.0 * np.pi / (np.array(ratios) * NATURAL)
+
+
+def test_branch_that_turns_back_is_taken_up_from_the_other_end() -> None:
+    """Speeds that begin between both folds: from below the branch turns back to where it began, from above it comes to
+    the upper motion there. Together they are the three motions at each speed below the upper fold that the branch has
+    which begins far below: 1e-8."""
+    model, ratios = softening(0.15, 0.03), np.linspace(0.86, 1.2, 18)
+    found = sweep_speeds(model, periods(*ratios))
+    whole = sweep_speeds(model, periods(*ratios), (float(periods(0.6)[0]), float(periods(1.3)[0])))
+    assert found.branch.gaps and not whole.branch.gaps
+    assert max(map(len, whole.coexisting)) == 3
+
+    def states(coexisting: tuple[OnBranch, ...]) -> list[list[float]]:
+        return sorted((each.state.state / SCALE).tolist() for each in coexisting)
+
+    for one, other in zip(found.coexisting, whole.coexisting, strict=True):
+        assert np.array(states(one)) == pytest.approx(np.array(states(other)), abs=1e-8)
+    for run, other_run in zip((*found.up, *found.down), (*whole.up, *whole.down), strict=True):
+        assert run.motion.state / SCALE == pytest.approx(other_run.motion.state / SCALE, abs=1e-8)
+
+
+@pytest.mark.parametrize("share", [0.001, 0.003])
+def test_narrow_resonance_is_not_stepped_over(share: float) -> None:
+    """Constant stiffness and the fifth harmonic of an unloaded error: the largest amplitude on the branch around a
+    fifth of the resonance is within 30 % of the exact one, e_5/(2ζ), a hundredth of the static deflection; a width of
+    the resonance away half of it is left."""
+    error = 0.02 * share * STATIC * np.cos(10.0 * np.pi * np.arange(KNOTS) / KNOTS)
+    law = MeshLaw(linear_side(np.full(KNOTS, STIFFNESS), error), no_side())
+    model = TorsionalModel(MASS, LOAD, law, 2.0 * share * MASS * NATURAL)
+    begin, end = periods(0.19, 0.21)
+    start: SteadyState = steady_state(model, float(begin), np.array([STATIC, 0.0]))
+    branch = follow(model, start, float(end))
+    size = [np.linalg.norm(point.state / SCALE - (1.0, 0.0)) for point in branch.points]
+    assert max(size) == pytest.approx(0.01, rel=0.3)
+
+
+def test_steady_state_without_a_start_nearby() -> None:
+    """Twice the natural speed, where a strongly varying stiffness shakes the pair at half of it: the motion that
+    repeats with the mesh is found, and a real multiplier below −1."""
+    model, period = softening(0.6, 0.02), float(periods(2.0)[0])
+    found = damped_less(model, period, np.array([STATIC, 0.0]))
+    assert not found.stable
+    assert np.real(found.multipliers).min() < -1.0

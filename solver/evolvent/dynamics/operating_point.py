@@ -231,9 +231,9 @@ def _bounded(motion: Motion, speed: float) -> Motion:
     """The motion. Raises NoSteadyState where it grows beyond measure."""
     if isinstance(motion, Settled) and motion.escaped:
         raise NoSteadyState(
-            f"vibration at {speed:g} r/min: wanted a motion that stays bounded, found one that grows beyond measure, as "
-            "the varying stiffness feeds in more than the dampers take out; give more damping (dynamics.damping_ratio) "
-            "or another speed (dynamics.operating_rpm)"
+            f"vibration at {speed:g} r/min: wanted a motion that stays bounded, found one that grows beyond measure, "
+            "as the varying stiffness feeds in more than the dampers take out; give more damping "
+            "(dynamics.damping_ratio) or another speed (dynamics.operating_rpm)"
         )
     return motion
 

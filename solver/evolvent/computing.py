@@ -150,7 +150,7 @@ def excitation(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.dynamics.excitation import run_excitation
 
-        scenes = list(_scenes(loaded, percent, force).values())
+        scenes = list(_scenes(_unworn(loaded), percent, force).values())
         _warn(run_excitation(scenes, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
@@ -179,11 +179,16 @@ def dynamics(
         from evolvent.scene.schema.dynamics import DynamicsSection
 
         section = loaded.dynamics or DynamicsSection()
-        scenes = list(_scenes(loaded, section.torque_percents, force).values())
+        scenes = list(_scenes(_unworn(loaded), section.torque_percents, force).values())
         _warn(run_dynamics(scenes, section, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
             typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")
+
+
+def _unworn(scene: Scene) -> Scene:
+    """The scene without [wear]: excitation and vibration are those of its flanks as they are."""
+    return scene.model_copy(update={"wear": None})
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -227,3 +227,10 @@ def test_results_are_not_replaced_unasked(out: Path, capsys: pytest.CaptureFixtu
     """Status 2 before anything is computed."""
     assert main(["dynamics", str(ROOT / "demos/he2022_dynamics.toml"), "--out", str(out)]) == 2
     assert "--overwrite" in capsys.readouterr().err
+
+
+def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:
+    """A scene with [wear]: the vibration of the pair as it is."""
+    words = [word for setting in (*QUIET, *SETTINGS) for word in ("--set", setting)]
+    assert main(["dynamics", str(ROOT / "demos/he2022_wear.toml"), "--out", str(tmp_path), "--quiet", *words]) == 0
+    assert rows(tmp_path / "response.csv")

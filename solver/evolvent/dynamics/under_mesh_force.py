@@ -19,11 +19,14 @@ class UnderMeshForce:
 
     point: where the pair runs.
     prepared: makes the condensed gears under the static torque.
+    begins: called before their vibration is computed.
     operation: None before the first gears.
     """
 
-    def __init__(self, point: OperatingPoint, prepared: Preparer = prepare_model) -> None:
-        self.point, self.prepared = point, prepared
+    def __init__(
+        self, point: OperatingPoint, prepared: Preparer = prepare_model, begins: Callable[[], None] = lambda: None
+    ) -> None:
+        self.point, self.prepared, self.begins = point, prepared, begins
         self.operation: Operation | None = None
 
     def __call__(
@@ -36,6 +39,7 @@ class UnderMeshForce:
         """Collective. Raises as `prepare_model` and `OperatingPoint.on`."""
         gears: Preparation = self.prepared(problem, comm, mesh, meshed)
         if self.operation is None:
+            self.begins()
             self.operation = self.point.on(gears.model, problem.flanks, comm)
         load = replace(gears.model.load, course=self.operation.load.course)
         return replace(gears, model=replace(gears.model, load=load))

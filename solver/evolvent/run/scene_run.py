@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from contextlib import ExitStack
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from mpi4py import MPI
@@ -25,7 +27,7 @@ from evolvent.run.context import RunContext, run_context
 from evolvent.run.folder_checks import check_folder, foreign_files
 from evolvent.run.output import ExtraResults, log_pictures, write_output
 from evolvent.run.pitch_run import sweep_scene
-from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT
+from evolvent.run.progress import DEFORMATION, ERROR_BARS, OUTPUT, VIBRATION
 from evolvent.run.start import ResumePoint, no_results_warning, resume_point, scene_to_solve
 from evolvent.run.wear_run import wear_scene, write_wear
 from evolvent.scene.gear_problem import gear_problem
@@ -64,10 +66,11 @@ def run_scene(
         dolfinx_compat.silence_logs()
         solved = on_first(comm, lambda: scene_to_solve(scene, Archive(out, scene), resume))
         completed = on_first(comm, lambda: resume_point(solved, Archive(out, solved), resume))
-        point = operating_point(solved)
-        vibrating = None if point is None else UnderMeshForce(point, prepare or prepare_model)
-        prepare = vibrating or prepare
+        point, vibrating = operating_point(solved), None
         with run_context(folder, comm, resume, quiet, begin, prepare) as run:  # no file has been touched yet
+            if point is not None:
+                vibrating = UnderMeshForce(point, prepare or prepare_model, partial(run.progress.stage, VIBRATION))
+                run = replace(run, prepare=vibrating)
             _log_beginning(run, solved)
             _compute(run, solved, completed)
             if vibrating is not None and vibrating.operation is not None:

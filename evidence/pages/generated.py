@@ -11,7 +11,7 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.checkout import ROOT
-from evidence.pages import outputs, promises, readme, tutorial, yang
+from evidence.pages import he, outputs, promises, readme, tutorial, yang
 
 
 def generated(root: Path = ROOT) -> dict[Path, str]:
@@ -26,6 +26,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         },
         docs / "scene.md": {"levels": yang.levels(docs)},
         docs / "yang2022.md": {"accuracy": yang.accuracy(docs), "points": yang.points(docs)},
+        docs / "he2022.md": {"points": he.points(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "tutorial.md": {

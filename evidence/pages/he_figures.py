@@ -1,4 +1,4 @@
-"""`python -m evidence.pages.he_figures OUT [--few]`: computes and keeps the figures of docs/he2022.md.
+"""`python -m evidence.pages.he_figures --out DIR [--few]`: computes and keeps the figures of docs/he2022.md.
 
 The vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact at
 2000 r/min, and the pair worn by 1.6 million meshes with its vibration. `python -m evidence.pages` then writes the page.
@@ -7,8 +7,8 @@ The vibration of He's pair over the speed with several models of its mesh, bores
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from evolvent.results.run_data import read_run
 from evolvent.scene.scene import Scene, load_scene
 
 KEPT = "he2022/figures.csv"
-COMMAND = "python -m evidence.pages.he_figures OUT"
+COMMAND = "python -m evidence.pages.he_figures --out DIR"
 PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
 """Measured resonance; the speed of the paper's Figures 14b to 22."""
 BORES = 40, 70, 100  # mm
@@ -143,9 +143,12 @@ def _worn(runs: HeRuns) -> Named:
 
 def main() -> None:
     """Computes, and keeps unless there are few positions."""
-    few = "--few" in sys.argv
-    found = figures(HeRuns(Path(sys.argv[1]), FEW if few else ()))
-    if few:
+    parser = argparse.ArgumentParser(description=COMMAND)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    parser.add_argument("--few", action="store_true", help="few positions and speeds; nothing is kept")
+    given = parser.parse_args()
+    found = figures(HeRuns(given.out, FEW if given.few else ()))
+    if given.few:
         print(dict(found))
     else:
         print(kept.keep(DOCS / KEPT, found))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 
 CHEAP = (
@@ -22,7 +23,7 @@ CHEAP = (
 FEW = ("sweep.positions=6",)
 FEWER = {
     "run": CHEAP, "loads": CHEAP, "excitation": FEW,
-    "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100]", "dynamics.mesh=\"tangent\""),
+    "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100,200]", "dynamics.mesh=\"tangent\""),
 }
 """Command -> its settings."""
 NAMES = ("docker", "evolvent", "git", "make", "paraview", "python")
@@ -71,15 +72,16 @@ def paraview(words: list[str]) -> None:
 
 
 def python(words: list[str]) -> None:
-    """`python -m evidence.MODULE`: a module that can be run; its files are there."""
+    """`python -m evidence.MODULE`: a module that can be run; its files are there, but for what it makes (`--out`)."""
     require(words[0] == "-m" and words[1].startswith("evidence."), "python -m evidence.MODULE")
     spec = find_spec(words[1])
     require(spec is not None and spec.origin is not None, f"the module {words[1]}")
     assert spec is not None and spec.origin is not None
     runs = Path(spec.origin).with_name("__main__.py") if spec.submodule_search_locations else Path(spec.origin)
     require(runs.is_file() and "__main__" in runs.read_text(encoding="utf-8"), f"a main program in {words[1]}")
-    for word in words[2:]:
-        require(word.startswith("-") or "/" not in word or Path(word).exists(), word)
+    for before, word in pairwise(words[1:]):
+        made = before == "--out"
+        require(made or word.startswith("-") or "/" not in word or Path(word).exists(), word)
 
 
 def require(holds: bool, wanted: str) -> None:

@@ -10,7 +10,6 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import OptimizeResult
 
 from evolvent.dynamics.oscillator.mesh_law import MeshSide
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
@@ -18,8 +17,10 @@ from evolvent_meshes.arrays import Floats
 
 RELATIVE = 1e-12
 """Tolerance, relative; that of s and ṡ themselves is this times the static deflection and its velocity."""
-AFTER_TURN = 0.02
-"""Of the stiffest oscillation [rad], in which a motion that has turned does not turn again."""
+AFTER_BORDER = 1e-3
+"""Of the stiffest oscillation [rad], after a border or a turn near it, in which that border is not looked at."""
+SAME_PLACE = 1e-12
+"""Of the static deflection: borders of both sides that are one."""
 Motion = Callable[[float, Floats], list[float]]
 
 
@@ -77,38 +78,69 @@ def _smooth_interval(
     """From one time [s] to another, between which e and the stiffness are smooth."""
     middle, t = 0.5 * (begin + end) / period, begin
     sides = {r: _SmoothSide.around(side, middle) for r, side in ((1, model.law.front), (-1, model.law.back))}
-    tolerance = relative * abs(model.load) / model.law.stiffest() * np.array([1.0, model.fastest])
-    region = next((r for r, side in sides.items() if side.depth(t / period, float(y[0])) > 0.0), 0)
-    motions = {r: _motion(model, r, sides, period) for r in (-1, 0, 1)}
+    deflection = abs(model.load) / model.law.stiffest()
+    legs = _Legs(model, sides, period, relative, relative * deflection * np.array([1.0, model.fastest]))
+    region, passed = legs.touching(t, y), 0
+    while t < end:
+        t, y, event = legs.next(region, passed, t, y, end)
+        if event is None:
+            region, passed = legs.touching(t, y), 0
+        elif event.turn:
+            passed = event.side
+        elif region == 0 or sides[-region].depth(t / period, float(y[0])) >= -SAME_PLACE * deflection:
+            region = passed = event.side if region == 0 else -region  # at once where there is no backlash
+        else:
+            region, passed = 0, region
+    return y
 
-    def solved(y: Floats, begin: float, end: float, events: list[Event]) -> OptimizeResult:
+
+@dataclass(frozen=True, eq=False)
+class _Legs:
+    """Parts of a smooth interval between borders of contact, and the turns before them: a contact or a flight that is
+    shorter than a step is seen where its depth is greatest or least."""
+
+    model: TorsionalModel
+    sides: dict[int, _SmoothSide]
+    period: float
+    relative: float
+    """Tolerance."""
+    absolute: Floats
+    """(2,) [mm, mm/s]."""
+
+    def touching(self, t: float, y: Floats) -> int:
+        """The side that touches, 1 or −1, or none, 0."""
+        return next((r for r, side in self.sides.items() if side.depth(t / self.period, float(y[0])) > 0.0), 0)
+
+    def next(
+        self, region: int, passed: int, t: float, y: Floats, end: float
+    ) -> tuple[float, Floats, _Event | None]:  # fmt: skip
+        """Time [s] and state (2,) at the end of the next leg, and what ends it. passed: the side at whose border, or
+        turn before it, the leg begins: it is short then, and does not end there; 0 for none."""
+        watched = [r for r in self.sides if region in (0, r) and r != passed]
+        borders = [self._event(r, leaving=region != 0) for r in watched]
+        turns = [self._event(r, leaving=region != 0, turn=True) for r in watched]
+        if passed:
+            return self._until(borders, region, t, y, min(end, t + AFTER_BORDER / self.model.fastest))
+        after, state, event = self._until([*borders, *turns], region, t, y, end)
+        if event is not None and event.turn and any(each(after, state) * each.direction > 0.0 for each in borders):
+            return self._until(borders, region, t, y, after)
+        return after, state, event
+
+    def _until(
+        self, events: list[_Event], region: int, t: float, y: Floats, end: float
+    ) -> tuple[float, Floats, _Event | None]:  # fmt: skip
+        """To the first of the events, or the end [s]."""
         found = solve_ivp(
-            motions[region], (begin, end), y, "DOP853", events=events, rtol=relative, atol=tolerance,
-            max_step=0.2 / model.fastest,
+            _motion(self.model, region, self.sides, self.period), (t, end), y, "DOP853", events=events,
+            rtol=self.relative, atol=self.absolute, max_step=0.2 / self.model.fastest,
         )  # fmt: skip
         if found.status < 0:
-            raise RuntimeError(f"time integration at {begin:.6g} s: {found.message}")
-        return found
+            raise RuntimeError(f"time integration at {t:.6g} s: {found.message}")
+        event = next((each for each, times in zip(events, found.t_events or ()) if len(times)), None)
+        return float(found.t[-1]), found.y[:, -1], event
 
-    turned = False
-    while t < end:
-        watched = [sides[r] for r in sides if region in (0, r)]
-        borders = [_border(side, period, leaving=region != 0) for side in watched]
-        turns = [_turn(side, period, leaving=region != 0) for side in watched]
-        if turned:
-            found = solved(y, t, min(end, t + AFTER_TURN / model.fastest), borders)
-        else:
-            found = solved(y, t, end, [*borders, *turns])
-        turned = found.status == 1 and not any(map(len, found.t_events[: len(borders)]))
-        if turned and any(border(found.t[-1], found.y[:, -1]) * border.direction > 0.0 for border in borders):
-            found, turned = solved(y, t, float(found.t[-1]), borders), False
-        t, y = float(found.t[-1]), found.y[:, -1]
-        if found.status == 1 and not turned:
-            which = next(i for i, times in enumerate(found.t_events) if len(times))
-            other = -region if region else (1, -1)[which]
-            reached = sides[other].depth(t / period, float(y[0])) >= 0.0  # at once where there is no backlash
-            region = other if reached or not region else 0
-    return y
+    def _event(self, r: int, leaving: bool, turn: bool = False) -> _Event:
+        return _Event(self.sides[r], self.period, r, -1.0 if leaving != turn else 1.0, turn)
 
 
 def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], period: float) -> Motion:
@@ -128,31 +160,24 @@ def _motion(model: TorsionalModel, region: int, sides: dict[int, _SmoothSide], p
     return motion
 
 
-class Event:
-    """What SciPy's integrator stops at: where a value changes its sign in one direction."""
+@dataclass(frozen=True, eq=False)
+class _Event:
+    """What SciPy's integrator stops at: a border of contact, or a turn of the depth."""
 
-    terminal = True
-
-    def __init__(self, value: Callable[[float, Floats], float], direction: float) -> None:
-        self.value, self.direction = value, direction
+    of: _SmoothSide
+    period: float
+    side: int
+    """1 or −1."""
+    direction: float
+    """In which its value changes its sign."""
+    turn: bool
+    terminal: bool = True
 
     def __call__(self, t: float, y: Floats) -> float:
-        """The value at a time [s] and a state (2,)."""
-        return self.value(t, y)
-
-
-def _border(side: _SmoothSide, period: float, leaving: bool) -> Event:
-    """A side is left, or touched."""
-    return Event(lambda t, y: side.depth(t / period, float(y[0])), -1.0 if leaving else 1.0)
-
-
-def _turn(side: _SmoothSide, period: float, leaving: bool) -> Event:
-    """The depth is least, or greatest: a border that is crossed for less than a step is seen there."""
-
-    def rate(t: float, y: Floats) -> float:
-        return side.sign * float(y[1]) - side.error_slope(t / period) / period
-
-    return Event(rate, 1.0 if leaving else -1.0)
+        """The depth [mm] at a time [s] and a state (2,), or its change [mm/s]."""
+        if self.turn:
+            return self.of.sign * float(y[1]) - self.of.error_slope(t / self.period) / self.period
+        return self.of.depth(t / self.period, float(y[0]))
 
 
 def _cubic(c: list[float], t: float) -> float:

@@ -130,10 +130,13 @@ def _motions(swept: SpeedSweep) -> Iterator[tuple[float, Floats, int]]:
 
 
 def _fold_error(model: TorsionalModel, branch: Branch) -> float:
-    """Largest relative difference of the mesh periods of the folds of a branch without gaps, and of the one that is
-    followed from its other end; infinite where they are not as many."""
+    """Of a branch in one piece, and of the same followed from its other end: the largest distance of a fold of one to
+    the nearest fold of the other, in ln T; infinite where only one has folds."""
     if branch.gaps or branch.lost or branch.points[-1].period == branch.points[0].period:
         return 0.0
     again = follow(model, branch.points[-1], branch.points[0].period)
-    one, other = branch.periods[list(branch.folds)], again.periods[list(again.folds)][::-1]
-    return float(np.max(np.abs(one / other - 1.0), initial=0.0)) if len(one) == len(other) else np.inf
+    one, other = (np.log(each.periods[list(each.folds)]) for each in (branch, again))
+    if not len(one) or not len(other):
+        return 0.0 if len(one) == len(other) else np.inf
+    apart = np.abs(one[:, None] - other)
+    return float(max(apart.min(axis=0).max(), apart.min(axis=1).max()))

@@ -52,7 +52,7 @@ def _what(outcomes: Sequence[DriveOutcome]) -> str:
         f"period, within {RETURNS:g} of the static deflection (of the motion where that is larger) times the norm of "
         f"the period map's derivative where that is above 1; a period whose dampers take out what the excitation has "
         f"not put in, within {ENERGY:g}; a branch of steady states whose folds are elsewhere when it is followed from "
-        f"its other end, by {FOLDS:g}."
+        f"its other end, by more than {FOLDS:g} of the speed."
     )
 
 

@@ -29,14 +29,18 @@ SPEED_SCALE = 0.1
 """Change of ln(speed) that counts as much as one static deflection."""
 LONGEST, SHORTEST = 0.1, 1e-9
 """Steps along a branch, in static deflections; of the state over its size where that is above 1."""
+STEEP, SHORT = 0.1, 0.02
+"""Share of ln(speed) in the tangent below which a fold may be near, and the longest step then: the branch may turn back
+and forth again within a step of the usual length, with almost the same tangent at both ends."""
 SHARPEST = 1e-3
 """Damping ratio of the narrowest resonance that is not stepped over: each point is as near in ln(speed)."""
 TURN = 0.97
 """Least cosine of the angle between the tangents of two points."""
 NEWTON_STEPS = 6
 ACCURACY = 1e-11
-FARTHEST = 3.0
-"""Distance from the last point, in steps, at which Newton's method is given up."""
+FARTHEST = 0.25
+"""Distance from where the tangent leads, in steps, at which Newton's method is given up: it may come to another part of
+the branch."""
 MOST_POINTS = 20000
 FOLD_ACCURACY = 1e-10
 """Of the length along a branch at which it folds."""
@@ -120,7 +124,8 @@ class _Track:
     def longest(self, here: _Point) -> float:
         """Longest step from a point."""
         size, along = max(1.0, float(np.linalg.norm(here.z[:2]))), np.abs(here.tangent)
-        return float(1.0 / max(np.linalg.norm(along[:2]) / (LONGEST * size), along[2] / self.narrow))
+        far = size * (SHORT if along[2] < STEEP else LONGEST)
+        return float(1.0 / max(np.linalg.norm(along[:2]) / far, along[2] / self.narrow))
 
     def steady(self, z: Floats) -> tuple[Floats, Floats, SteadyState]:
         """Residual (2,), derivatives (2, 3) by z, and the state at z (3,)."""
@@ -137,7 +142,8 @@ class _Track:
     def onto(self, start: _Point, length: float) -> tuple[_Point, int] | None:
         """The point a length ahead of another one, and the steps of Newton's method; None where it does not come
         there."""
-        z = start.z + length * start.tangent
+        ahead = start.z + length * start.tangent
+        z = ahead
         for count in range(NEWTON_STEPS):
             found, change, state = self.steady(z)
             if np.abs(found).max() <= ACCURACY * max(1.0, float(np.abs(z[:2]).max())):
@@ -146,7 +152,7 @@ class _Track:
                 break
             plane = np.append(found, start.tangent @ (z - start.z) - length)
             z = z - np.linalg.lstsq(np.vstack([change, start.tangent]), plane, rcond=None)[0]
-            if not np.linalg.norm(z - start.z) < FARTHEST * length:
+            if not np.linalg.norm(z - ahead) < FARTHEST * length:
                 break
         return None
 
@@ -203,7 +209,7 @@ def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
     length = min(length, track.longest(here))
     while length > SHORTEST:
         found = track.onto(here, length)
-        if found is not None and found[0].tangent @ here.tangent > TURN:
+        if found is not None and found[0].tangent @ here.tangent > TURN and length <= 2.0 * track.longest(found[0]):
             return found[0], length * (2.0 if found[1] <= 3 else 1.0)
         length *= 0.5
     raise NoSteadyState(

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from evolvent.cli import main
-from evolvent.dynamics.pair_model import geometric_backlash
-from evolvent.run.dynamics.vibration import drive_settings, run_dynamics
+from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, stepped_side
+from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.pair_model import Drive, geometric_backlash
+from evolvent.run.dynamics.vibration import _not_followed, drive_settings, run_dynamics
 from evolvent.run.load_list import load_scenes
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
@@ -99,6 +103,28 @@ def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
+
+
+def test_motions_that_grow_without_end_are_said() -> None:
+    """A stiffness of two levels on both sides without backlash, a linear equation, of which Floquet's multipliers are
+    above 1 from 0.81 to 0.84 of the natural speed: two sentences with these speeds, 2 %."""
+    mass, stiffness, teeth = 0.77e-3, 258.6e3, 50
+    side = stepped_side(np.array([0.0, 0.3, 1.0]), stiffness * np.array([1.6, 0.4]))
+    natural = np.sqrt(stiffness / mass)
+    model = TorsionalModel(mass, 2412.0, MeshLaw(side, behind(side, 0.0)), 0.02 * mass * natural)
+    vibrating = Drive(model, stiffness, teeth)
+    speeds = np.linspace(0.7, 0.95, 51) * vibrating.natural_speed
+    pieces, gone = _not_followed(vibrating, sweep_speeds(model, speeds_to_periods(speeds, teeth)))
+    found = re.match(r"steady states: found 2 pieces .* with ends at (\d+), (\d+) r/min\. branch", pieces)
+    assert found is not None
+    assert [float(each) for each in found.groups()] == pytest.approx(
+        [0.81 * vibrating.natural_speed, 0.84 * vibrating.natural_speed], rel=0.02
+    )
+    growing = re.match(r"response\.csv: at \d of 51 speeds, from (\d+) to (\d+) r/min, the motion grows", gone)
+    assert growing is not None
+    assert [float(each) for each in growing.groups()] == pytest.approx(
+        [0.81 * vibrating.natural_speed, 0.84 * vibrating.natural_speed], rel=0.02
+    )
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,8 @@ from evolvent.dynamics.results.response import BranchRow, speed_of
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
+FAR_ABOVE = 2.5
+"""Over the largest amplitude of a run, where the picture ends."""
 SUPERHARMONICS = (1, 2, 3, 4)
 """Parts of the natural speed that are marked."""
 
@@ -55,6 +57,7 @@ def response_figure(
         for part in SUPERHARMONICS:
             axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
+    beyond = _keep_to_runs(amplitude, swept, found, branch)
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force over\nthe static one (not K_v)")
@@ -64,9 +67,25 @@ def response_figure(
     foot(
         figure,
         "Dotted: the natural speed and its half, third and quarter. Hollow: a motion that does not repeat with every "
-        "mesh.",
+        f"mesh.{beyond}",
     )
     return figure
+
+
+def _keep_to_runs(
+    axes: Axes, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow]
+) -> str:  # fmt: skip
+    """Leaves out steady states far beyond all motions that runs come to. Returns a sentence on them."""
+    largest = max(
+        (each.equivalent_amplitude for way, runs in (("up", swept.up), ("down", swept.down))
+         for run, each in zip(runs, found[way]) if not run.escaped),
+        default=0.0,
+    )  # fmt: skip
+    highest = max(row.equivalent_amplitude_um for row in branch)
+    if highest < FAR_ABOVE * 1e3 * largest or not largest:
+        return ""
+    axes.set_ylim(top=FAR_ABOVE * 1e3 * largest)
+    return f" Steady states go on to {highest:.3g} µm."
 
 
 def _folds(drive: Drive, swept: SpeedSweep) -> str:

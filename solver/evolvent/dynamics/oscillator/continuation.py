@@ -7,7 +7,7 @@ extremum along the branch and a motion that follows the speed has to jump, are p
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -36,11 +36,13 @@ SHARPEST = 1e-3
 """Damping ratio of the narrowest resonance that is not stepped over: each point is as near in ln(speed)."""
 TURN = 0.97
 """Least cosine of the angle between the tangents of two points."""
+CORNER = 1e-6
+"""Steps below which the branch may have a corner: where flanks touch or part at phase 0 the damper sets in or ends."""
 NEWTON_STEPS = 6
 ACCURACY = 1e-11
-FARTHEST = 0.25
-"""Distance from where the tangent leads, in steps, at which Newton's method is given up: it may come to another part of
-the branch."""
+FARTHEST, ROUND_A_CORNER = 0.25, 2.0
+"""Distances from where the tangent leads, in steps, at which Newton's method is given up: it may come to another part
+of the branch."""
 MOST_POINTS = 20000
 FOLD_ACCURACY = 1e-10
 """Of the length along a branch at which it folds."""
@@ -139,6 +141,10 @@ class _Track:
         """z (3,) of a steady state."""
         return np.append(state.state / self.scales.array, -np.log(state.period) / SPEED_SCALE)
 
+    def is_near(self, here: _Point, there: _Point, length: float) -> bool:
+        """Whether a point is so near to another one that the branch is simple between them."""
+        return bool(there.tangent @ here.tangent > TURN) and length <= 2.0 * self.longest(there)
+
     def onto(self, start: _Point, length: float) -> tuple[_Point, int] | None:
         """The point a length ahead of another one, and the steps of Newton's method; None where it does not come
         there."""
@@ -152,7 +158,7 @@ class _Track:
                 break
             plane = np.append(found, start.tangent @ (z - start.z) - length)
             z = z - np.linalg.lstsq(np.vstack([change, start.tangent]), plane, rcond=None)[0]
-            if not np.linalg.norm(z - ahead) < FARTHEST * length:
+            if not np.linalg.norm(z - ahead) < (FARTHEST if length > CORNER else ROUND_A_CORNER) * length:
                 break
         return None
 
@@ -183,12 +189,13 @@ def _points(track: _Track, start: SteadyState, last_period: float) -> Iterator[t
     for _ in range(MOST_POINTS):
         following, length = _next(track, here, length)
         if here.tangent[2] * following.tangent[2] < 0.0:
-            fold = _fold(track, here, following)
+            fold = _between(track, here, following, lambda point: point.tangent[2])
             if ends[0] <= fold.z[2] <= ends[1]:
                 yield fold.state, True
         if not ends[0] <= following.z[2] <= ends[1]:
+            last = _at_speed(track, here, following, ends[int(following.z[2] > ends[1])])
             end = last_period if (following.z[2] > ends[1]) == rising else start.period
-            yield steady_state(track.model, end, between(here.state, following.state, end)), False
+            yield steady_state(track.model, end, last.state.state), False
             return
         yield following.state, False
         if track.model.escaped(following.state.state):
@@ -209,7 +216,7 @@ def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
     length = min(length, track.longest(here))
     while length > SHORTEST:
         found = track.onto(here, length)
-        if found is not None and found[0].tangent @ here.tangent > TURN and length <= 2.0 * track.longest(found[0]):
+        if found is not None and (length <= CORNER or track.is_near(here, found[0], length)):
             return found[0], length * (2.0 if found[1] <= 3 else 1.0)
         length *= 0.5
     raise NoSteadyState(
@@ -218,17 +225,25 @@ def _next(track: _Track, here: _Point, length: float) -> tuple[_Point, float]:
     )
 
 
-def _fold(track: _Track, before: _Point, after: _Point) -> _Point:
-    """Between two points on both sides of it."""
+def _at_speed(track: _Track, before: _Point, after: _Point, z: float) -> _Point:
+    """Between two points, where ln(speed) in scaled units is z."""
+    return _between(track, before, after, lambda point: point.z[2] - z)
+
+
+def _between(track: _Track, before: _Point, after: _Point, value: Callable[[_Point], float]) -> _Point:
+    """Where a value is 0 that has another sign at both points."""
 
     def at(length: float) -> _Point:
         found = track.onto(before, length)
         if found is None:
-            raise NoSteadyState("fold of a branch: wanted the points around it, found none")
+            raise NoSteadyState(
+                f"branch of steady states at a mesh period of {before.state.period:.6g} s: wanted the points around a "
+                "fold or the last speed, found none; ask for other speeds, or give more damping"
+            )
         return found[0]
 
     whole = float(before.tangent @ (after.z - before.z))
-    return at(brentq(lambda length: at(length).tangent[2], 0.0, whole, xtol=FOLD_ACCURACY * whole))
+    return at(brentq(lambda length: value(at(length)), 0.0, whole, xtol=FOLD_ACCURACY * whole))
 
 
 def _tangent(change: Floats, along: Floats) -> Floats:

@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.integrate import DOP853
 
+from evolvent.dynamics.oscillator.compiled import compiled
 from evolvent.dynamics.oscillator.mesh_law import MeshSide
 from evolvent_meshes.arrays import Floats
 
@@ -46,20 +46,20 @@ class Oscillator(NamedTuple):
     """The others."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def offset_at(side: MeshSide, cell: int, τ: float) -> tuple[float, float]:
     """e(τ) [mm] and de/dτ in a phase interval."""
     t, c = τ - side.phases[cell], side.offset[cell]
     return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def interval_at(side: MeshSide, x: float) -> int:
     """The interval of a depth x > 0."""
     return max(int(np.searchsorted(side.depths, x)) - 1, 0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def force_at(side: MeshSide, cell: int, b: int, τ: float, x: float) -> tuple[float, float]:
     """F(x, τ) [N] and ∂F/∂x [N/mm] in a phase interval and an interval b of x, continued beyond both."""
     last = len(side.depths) - 2
@@ -74,14 +74,14 @@ def force_at(side: MeshSide, cell: int, b: int, τ: float, x: float) -> tuple[fl
     return force, slope
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def depth_at(side: MeshSide, cell: int, τ: float, T: float, s: float, v: float) -> tuple[float, float]:
     """x = ±s − e [mm] of a side, and dx/dτ."""
     e, slope = offset_at(side, cell, τ)
     return side.sign * s - e, side.sign * T * v - slope
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def acceleration(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, s: float, v: float
 ) -> tuple[float, float, float, float]:
@@ -105,7 +105,7 @@ def acceleration(
     return force / o.mass, by_s / o.mass, by_v / o.mass, by_T / o.mass
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def step(
     o: Oscillator, region: int, front: int, back: int, τ: float, h: float, T: float, y: Floats, stages: Floats,
     out: Floats,

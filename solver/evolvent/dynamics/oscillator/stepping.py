@@ -12,8 +12,8 @@ one.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from evolvent.dynamics.oscillator.compiled import compiled
 from evolvent.dynamics.oscillator.equation import (
     FREE,
     SIZE,
@@ -43,7 +43,7 @@ NOWHERE = -1
 """No border."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def reserves(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats, left: Floats
 ) -> None:
@@ -67,7 +67,7 @@ def reserves(
         left[1, 0], left[1, 1] = side.depths[b + 1] - x, -rate
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def beyond(region: int, border: int) -> int:
     """The region behind a border, 0 or 1 as in `reserves`."""
     if region == FREE:
@@ -76,7 +76,7 @@ def beyond(region: int, border: int) -> int:
     return region + outwards if region > FREE else region - outwards
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def region_at(o: Oscillator, front: int, back: int, τ: float, T: float, y: Floats) -> int:
     """The region of a state."""
     x = depth_at(o.front, front, τ, T, y[0], y[1])[0]
@@ -86,7 +86,7 @@ def region_at(o: Oscillator, front: int, back: int, τ: float, T: float, y: Floa
     return -1 - interval_at(o.back, x) if x > 0.0 else FREE
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def length_to_border(
     o: Oscillator, region: int, border: int, front: int, back: int, τ: float, h: float, T: float, y: Floats,
     stages: Floats, out: Floats, left: Floats,
@@ -108,7 +108,7 @@ def length_to_border(
     return length
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def may_dip(h: float, begin: Floats, end: Floats) -> bool:
     """Whether a distance above 0 at both ends of a step, with these values and slopes (2,), may fall below 0 between
     them: a convex one stays above both tangents, so above the point where they meet."""
@@ -117,7 +117,7 @@ def may_dip(h: float, begin: Floats, end: Floats) -> bool:
     return begin[0] + begin[1] * (begin[0] - end[0] + end[1] * h) / (end[1] - begin[1]) < 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def length_to_turn(
     o: Oscillator, region: int, border: int, front: int, back: int, τ: float, h: float, T: float, y: Floats,
     stages: Floats, begin: Floats, out: Floats, left: Floats,
@@ -146,7 +146,7 @@ def length_to_turn(
     return high
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def step_in_region(
     o: Oscillator, region: int, front: int, back: int, τ: float, h: float, T: float, y: Floats, stages: Floats,
     begin: Floats, out: Floats, left: Floats,
@@ -172,7 +172,7 @@ def step_in_region(
     return h, border
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def cross(o: Oscillator, leaving: bool, y: Floats) -> None:
     """The jump of the derivatives in y (8,) where flanks part, or touch: only the damping force c ẋ jumps there, and of
     a start that comes later by dt the velocity has another c ẋ dt/m, with ẋ dt = ds."""
@@ -182,13 +182,13 @@ def cross(o: Oscillator, leaving: bool, y: Floats) -> None:
         y[n + 3] += o.damping / o.mass * (y[n] if leaving else -y[n])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def mesh_force(o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats) -> float:
     """Of the mesh with its damping [N], in a region."""
     return o.load - o.ground * y[1] - o.mass * acceleration(o, region, front, back, τ, T, y[0], y[1])[0]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def record(
     o: Oscillator, region: int, front: int, back: int, τ: float, T: float, y: Floats, row: Floats
 ) -> None:  # fmt: skip
@@ -198,7 +198,7 @@ def record(
     row[4] = offset_at(o.front, front, τ)[0]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def advance(
     o: Oscillator, stops: Floats, cells: Ints, T: float, longest: float, y: Floats, path: Floats
 ) -> tuple[float, float, float, float]:

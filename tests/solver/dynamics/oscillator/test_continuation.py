@@ -9,7 +9,7 @@ from evolvent.dynamics.oscillator.continuation import follow
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, behind, linear_side, no_side, stepped_side
 from evolvent.dynamics.oscillator.speed_sweep import OnBranch, sweep_speeds
 from evolvent.dynamics.oscillator.steady_state import SteadyState, damped_less, steady_state
-from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history
 from evolvent_meshes.arrays import Floats
 
 MASS, STIFFNESS, LOAD, KNOTS = 0.77e-3, 258.6e3, 2412.0, 64
@@ -76,6 +76,27 @@ def test_folds_close_to_each_other_are_found_from_both_ends() -> None:
     one, other = up.periods[list(up.folds)], down.periods[list(down.folds)][::-1]
     assert len(one) == 8
     assert one == pytest.approx(other, rel=1e-9)
+
+
+@pytest.mark.parametrize("swing", [0.6, 1.2])
+def test_branch_with_corners(swing: float) -> None:
+    """The harmonic of an unloaded error, begun at four phases: where flanks touch or part just at phase 0 the damper
+    sets in or ends, and the state there has a corner over the speed. Each branch comes to its end, where the motions
+    are one that is begun at other phases: s at 64 phases, 1e-8 of the deflection."""
+    ends = []
+    for phase in (0.0, 0.125, 0.25, 0.375):
+        error = swing * STATIC * np.cos(2.0 * np.pi * (np.arange(KNOTS) / KNOTS - phase))
+        law = MeshLaw(linear_side(np.full(KNOTS, STIFFNESS), error), no_side())
+        model = TorsionalModel(MASS, LOAD, law, 0.4 * MASS * NATURAL)
+        begin, end = (float(period) for period in periods(0.3, 1.6))
+        branch = follow(model, steady_state(model, begin, np.array([STATIC, 0.0])), end)
+        assert not branch.lost
+        path = history(model, end, branch.points[-1].state, np.arange(KNOTS) / KNOTS)
+        at = np.searchsorted(path.phases, (np.arange(KNOTS) / KNOTS + phase) % 1.0 - 1e-12)
+        ends.append(path.displacement[at] / STATIC)
+    assert ends[0] == pytest.approx(ends[1], abs=1e-8)
+    assert ends[0] == pytest.approx(ends[2], abs=1e-8)
+    assert ends[0] == pytest.approx(ends[3], abs=1e-8)
 
 
 def test_steady_state_without_a_start_nearby() -> None:

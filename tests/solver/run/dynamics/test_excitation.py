@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evolvent.cli import main
 from evolvent.gears.load_list import LoadList
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.results.archive.run_folder import FolderError
@@ -123,15 +122,6 @@ def test_foreign_files_stay(tmp_path: Path) -> None:
     with pytest.raises(FolderError, match=r"harmonics\.csv"):
         run_excitation(scenes, tmp_path, overwrite=True, quiet=True)
     assert (tmp_path / "harmonics.csv").read_text() == "mine"
-
-
-def test_gears_that_wear_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Status 2, and what to do; nothing is written."""
-    scene = Path(__file__).resolve().parents[4] / "demos/he2022.toml"
-    wear = ["--set", "wear.cycles=1e5", "--set", "wear.pinion_mm2_per_N=1e-10"]
-    assert main(["excitation", str(scene), "--out", str(tmp_path / "out"), *wear]) == 2
-    assert "wear: found" in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.mpi

@@ -122,18 +122,6 @@ def test_spectrum_has_the_harmonics(out: Path) -> None:
             assert float(line["frequency_Hz"]) == pytest.approx(frequency, rel=1e-7)
 
 
-def test_motions_on_no_branch_are_said(tmp_path: Path) -> None:
-    """Hardly damped, with a stiffness, the branch of the lowest speed turns back to it without coming to the others:
-    that their jumps are not named is said."""
-    given = ('dynamics.mesh="tangent"', "dynamics.damping_ratio=0.01", "dynamics.speed_rpm=[1500,10500]")
-    one = scene(*given, "dynamics.speeds=20", "sweep.positions=20", "dynamics.torque_percents=[100]")
-    assert one.dynamics is not None
-    (said,) = run_dynamics(list(load_scenes(one, (100.0,)).values()), one.dynamics, tmp_path, quiet=True)
-    assert said.startswith("dynamics.json, branch.csv: ") and "on no branch" in said
-    branch = [float(line["speed_rpm"]) for line in rows(tmp_path / "branch.csv")]
-    assert max(branch) < 10500.0
-
-
 def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     """Speeds of histories join the sweep, one of its own counts once; each motion closes after its repeats, its largest
     force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against

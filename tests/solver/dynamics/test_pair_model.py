@@ -28,7 +28,7 @@ def driven(error: Floats, backlash: float) -> Drive:
         2.0 * np.pi / 50.0 * np.arange(POSITIONS) / POSITIONS, forces, error[:, None] + forces / STIFFNESS,
         np.full((POSITIONS, 3), STIFFNESS),
     )  # fmt: skip
-    return drive(PAIR, MeshExcitation(error, loaded), 1, DriveSettings((7.4, 7.4), 0.05, backlash))
+    return drive(PAIR, MeshExcitation(error, loaded), LOAD, DriveSettings((7.4, 7.4), 0.05, backlash))
 
 
 def test_relief_leaves_room_without_backlash() -> None:

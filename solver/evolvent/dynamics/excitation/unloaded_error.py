@@ -4,19 +4,20 @@ One gear stands at its nominal rotation, the other is turned until the flanks ju
 that lies at a distance h along the normal outside of the other one's helicoid (`Flank.project`) touches it after a
 rotation by (h − h*)/(r_b cos β_b), because a rotated involute helicoid is a parallel surface: h* = −c(foot) is where
 the modified flank lies below the foot. The least rotation of all points is sought on grids over roll length and height,
-each around the best point of the one before. Tip edges count, so that contact beyond the path of contact is found.
+each around the best point of the one before, for all stands at a time. Tip edges count, so that contact beyond the path
+of contact is found.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.problem.flank_deviations import FlankChart
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -29,6 +30,8 @@ the relief the error is its slope times the last spacing, 1e-3 times 1e-6 mm."""
 FEET, FOUND = 12, 1e-12
 """Steps in which the foot on the modified flank is found, at most, and the change [mm] after which it is: each error is
 that before times the flank's slope, below 0.02."""
+TEETH, AT_ONCE = 5, 1_000_000
+"""Tooth pairs of a stand, about, and points that are searched at a time."""
 STEEPEST = 0.1
 """Slope that no gap has near its least value. Tooth pairs whose gap on the first grid exceeds the least one by more
 than this times the grid's spacing touch nowhere between its points."""
@@ -65,13 +68,12 @@ class RigidFlanks:
         normal = flank.helicoid_normal(roll_length, z)
         return flank.helicoid_point(roll_length, z) - self.depth(member, roll_length, z)[..., None] * normal
 
-    def gap(self, stand: Stand, tooth: int, free: Member, roll_length: Floats, z: Floats) -> Floats:
-        """Gap (…) [mm] along the line of action, in the transverse section, that turning the `free` gear closes, at
-        points (…) of the other gear's flank; infinite where these do not face the free gear's flank."""
-        standing, flank = free.mate, Flank(self.pair.gears[free])
-        R, other = stand.rotation(standing, 3, tooth), stand.rotation(free, 3, tooth)
-        space = self.points(standing, roll_length, z) @ R.T + stand.centre(standing, 3)
-        foot, foot_z, distance = flank.project((space - stand.centre(free, 3)) @ other)
+    def gap(self, facing: _Facing, free: Member, roll_length: Floats, z: Floats) -> Floats:
+        """Gap (s, p) [mm] along the line of action, in the transverse section, that turning the `free` gear closes, at
+        points (s, p) of the other gear's flank; infinite where these do not face the free gear's flank."""
+        flank = Flank(self.pair.gears[free])
+        points = self.points(free.mate, roll_length, z) @ facing.turn + facing.shift[:, None]
+        foot, foot_z, distance = flank.project(points)
         height = distance - flank.modification(foot, foot_z)
         cosine, sine = np.cos(flank.gear.base_helix_angle), flank.gear.hand * np.sin(flank.gear.base_helix_angle)
         radial, axial = foot + height * cosine, foot_z - height * sine  # of the point itself: it stays
@@ -83,60 +85,92 @@ class RigidFlanks:
                 at, at_z = radial - below * cosine, axial + below * sine
                 if np.nanmax(np.abs(below - last), initial=0.0) < FOUND:
                     break
-            facing = (at >= low) & (at <= high) & (np.abs(at_z) <= half)
-        return np.where(facing, (height - below) / cosine, np.inf)
+            faces = (at >= low) & (at <= high) & (np.abs(at_z) <= half)
+        return np.where(faces, (height - below) / cosine, np.inf)
 
 
 def unloaded_error(flanks: RigidFlanks, angles: Floats, free: Member = Member.PINION) -> Floats:
     """e (n,) [mm] at pinion rotations (n,) [rad]: r_b φ that the free gear turns beyond its nominal rotation until the
     flanks just touch; positive where material is missing. NaN where no flanks face each other."""
-    return np.array([_least_gap(flanks, Stand(flanks.pair, float(angle)), free) for angle in angles])
+    count = POINTS * (LAYERS if flanks.varies_over_the_face else 1)
+    stands = [Stand(flanks.pair, float(angle)) for angle in angles]
+    size = max(AT_ONCE // (TEETH * count), 1)
+    batches = [stands[i : i + size] for i in range(0, len(stands), size)]
+    return np.concatenate([_least_gaps(flanks, batch, free) for batch in batches] or [np.zeros(0)])
 
 
-def _least_gap(flanks: RigidFlanks, stand: Stand, free: Member) -> float:
-    """At one stand, of all tooth pairs."""
-    pair = flanks.pair
-    touching = pair.teeth_in_contact(stand.angle)
-    searches = [_Search(flanks, stand, tooth, free) for tooth in range(min(touching) - 1, max(touching) + 2)]
-    first = [search.coarse() for search in searches]
-    near = min(first) + STEEPEST * searches[0].spacing
-    least = min(search.refined() for search, gap in zip(searches, first) if gap <= near)
-    return least if np.isfinite(least) else np.nan
+def _least_gaps(flanks: RigidFlanks, stands: Sequence[Stand], free: Member) -> Floats:
+    """(n,) at each stand, of all tooth pairs."""
+    number, facing = _Facing.of(flanks.pair, stands, free)
+    search = _Search(flanks, facing, free)
+    least = np.full(len(stands), np.inf)
+    np.minimum.at(least, number, search.best)
+    search.refine(np.flatnonzero(search.best <= least[number] + STEEPEST * search.spacing))
+    np.minimum.at(least, number, search.best)
+    return np.where(np.isfinite(least), least, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class _Facing:
+    """Tooth pairs (s,) of some stands: from the standing gear's frame to that of the free gear."""
+
+    turn: Floats
+    """(s, 3, 3), by which rows of points are multiplied."""
+    shift: Floats
+    """(s, 3) [mm]."""
+
+    @staticmethod
+    def of(pair: GearPair, stands: Sequence[Stand], free: Member) -> tuple[Ints, _Facing]:
+        """Those that may touch, and the numbers (s,) of their stands."""
+        numbers, turns, shifts = [], [], []
+        for number, stand in enumerate(stands):
+            touching, offset = pair.teeth_in_contact(stand.angle), stand.centre(free.mate, 3) - stand.centre(free, 3)
+            for tooth in range(min(touching) - 1, max(touching) + 2):
+                other = stand.rotation(free, 3, tooth)
+                numbers.append(number)
+                turns.append(stand.rotation(free.mate, 3, tooth).T @ other)
+                shifts.append(offset @ other)
+        return np.array(numbers), _Facing(np.array(turns), np.array(shifts))
+
+    def __getitem__(self, some: Ints) -> _Facing:
+        return _Facing(self.turn[some], self.shift[some])
 
 
 class _Search:
-    """The least gap of one tooth pair, on grids each finer than the one before."""
+    """The least gaps of tooth pairs (s,), on grids each finer than the one before; the first is searched at once."""
 
-    def __init__(self, flanks: RigidFlanks, stand: Stand, tooth: int, free: Member) -> None:
+    def __init__(self, flanks: RigidFlanks, facing: _Facing, free: Member) -> None:
         low, high = Flank(flanks.pair.gears[free.mate]).roll_lengths
         half = 0.5 * flanks.pair.face_width if flanks.varies_over_the_face else 0.0
-        self.limits, self.zoom = np.array([[low, high], [-half, half]]), [ZOOM_POINTS, ZOOM_POINTS if half else 1]
+        self.limits, self.zoom = np.array([[low, high], [-half, half]]), (ZOOM_POINTS, ZOOM_POINTS if half else 1)
         self.spacing = (high - low) / (POINTS - 1)
-        self.ranges, self.counts, self.best = self.limits.copy(), [POINTS, LAYERS if half else 1], np.inf
-        self._gap = partial(flanks.gap, stand, tooth, free)
+        self._flanks, self._facing, self._free = flanks, facing, free
+        every = np.arange(len(facing.shift))
+        self._ranges, self.best = np.tile(self.limits, (len(every), 1, 1)), np.full(len(every), np.inf)
+        self._step(every, (POINTS, LAYERS if half else 1))
 
-    def coarse(self) -> float:
-        """On the first grid [mm]; infinite where the flanks do not face each other."""
-        self._step()
-        return self.best
-
-    def refined(self) -> float:
-        """On all others [mm], until two of them have not made it less."""
-        alike = 0
-        for _ in range(ZOOMS if np.isfinite(self.best) else 0):
-            last = self.best
-            self._step()
-            alike = alike + 1 if last - self.best < FOUND else 0
-            if alike == 2:
+    def refine(self, some: Ints) -> None:
+        """The others (t,), each until two grids have not made its gap less."""
+        alike, some = np.zeros(len(self.best), dtype=int), some[np.isfinite(self.best[some])]
+        for _ in range(ZOOMS):
+            last = self.best[some]
+            self._step(some, self.zoom)
+            alike[some] = np.where(last - self.best[some] < FOUND, alike[some] + 1, 0)
+            some = some[alike[some] < 2]
+            if not len(some):
                 break
-        return self.best
 
-    def _step(self) -> None:
-        """One grid; the next one lies around its best point."""
-        axes = [np.linspace(ends[0], ends[1], count) for ends, count in zip(self.ranges, self.counts)]
-        gap = self._gap(*np.meshgrid(*axes, indexing="ij"))
-        self.best = min(self.best, float(gap.min()))
-        i, j = np.unravel_index(int(np.argmin(gap)), gap.shape)
-        spacing = np.array([np.ptp(axis) / max(len(axis) - 1, 1) for axis in axes])
-        around = np.array([axes[0][i], axes[1][j]])[:, None] + 1.5 * spacing[:, None] * np.array([-1.0, 1.0])
-        self.ranges, self.counts = np.clip(around, self.limits[:, :1], self.limits[:, 1:]), self.zoom
+    def _step(self, some: Ints, counts: tuple[int, int]) -> None:
+        """One grid of tooth pairs (t,); the next one lies around its best point."""
+        low, high = np.moveaxis(self._ranges[some], 2, 0)
+        axes = [np.linspace(low[:, i], high[:, i], count, axis=1) for i, count in enumerate(counts)]
+        shape = (len(some), *counts)
+        grid = [np.broadcast_to(axes[0][:, :, None], shape), np.broadcast_to(axes[1][:, None, :], shape)]
+        rho, z = (each.reshape(len(some), -1) for each in grid)
+        gap = self._flanks.gap(self._facing[some], self._free, rho, z)
+        rows, best = np.arange(len(some)), np.argmin(gap, axis=1)
+        self.best[some] = np.minimum(self.best[some], gap[rows, best])
+        spacing = np.array([np.ptp(axis, axis=1) / max(count - 1, 1) for axis, count in zip(axes, counts)]).T
+        at = np.stack([rho[rows, best], z[rows, best]], axis=-1)
+        around = at[:, :, None] + 1.5 * spacing[:, :, None] * np.array([-1.0, 1.0])
+        self._ranges[some] = np.clip(around, self.limits[:, :1], self.limits[:, 1:])

@@ -54,8 +54,9 @@ Examples:
 
 {STATUSES}"""
 DYNAMICS_EPILOG = f"""\b
-Example:
+Examples:
   evolvent dynamics demos/he2022_dynamics.toml --out out/dynamics
+  evolvent dynamics demos/he2022_dynamics.toml --out out/dynamics --resume --set dynamics.damping_ratio=0.05
 
 {STATUSES}"""
 EXCITATION_EPILOG = f"""\b
@@ -138,6 +139,7 @@ def excitation(
     settings: Overrides = None,
     no_skip: NoSkip = None,
     force: Force = False,
+    resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
@@ -146,12 +148,13 @@ def excitation(
     Without friction, over one angular pitch: the unloaded transmission error, and under each of a list of torques the
     loaded one and the mesh stiffness, tangent and secant, with their mesh harmonics. The gears are condensed once.
     """
-    with reported(parallel=True):
+    with reported(parallel=True, advice=RESUME.format("excitation")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.excitation import run_excitation
 
         scenes = list(_scenes(_unworn(loaded), percent, force).values())
-        _warn(run_excitation(scenes, out, overwrite, quiet))
+        _warn(run_excitation(scenes, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
 
@@ -165,6 +168,7 @@ def dynamics(
     settings: Overrides = None,
     no_skip: NoSkip = None,
     force: Force = False,
+    resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
@@ -173,14 +177,15 @@ def dynamics(
     The excitation by its mesh, then steady states, jumps, spectra and the motions of a pair that runs up and down, with
     the dynamic factor of ISO 6336-1 beside, as the section [dynamics] of the scene says.
     """
-    with reported(parallel=True):
+    with reported(parallel=True, advice=RESUME.format("dynamics")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.vibration import run_dynamics
         from evolvent.scene.schema.dynamics import DynamicsSection
 
         section = loaded.dynamics or DynamicsSection()
         scenes = list(_scenes(_unworn(loaded), section.torque_percents, force).values())
-        _warn(run_dynamics(scenes, section, out, overwrite, quiet))
+        _warn(run_dynamics(scenes, section, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
             typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")

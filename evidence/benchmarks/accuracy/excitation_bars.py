@@ -16,7 +16,6 @@ from evidence.benchmarks.accuracy.error_bars import BarProblem, BarRow, referenc
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import CoarseExcitation, PitchCurve, pitch_curves
 from evolvent.gears.gear_model import Mesher
-from evolvent.gears.load_list import LoadList
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
@@ -79,5 +78,5 @@ def _excitation(scene: Scene, percents: Sequence[float], mesh: Mesher) -> MeshEx
     problems = sorted((gear_problem(each) for each in loads), key=lambda each: each.torque)
     angles = np.array(uniform_pitch(problems[0].pair.pinion.z, scene.sweep.positions).angles)
     with Progress(hidden=True) as progress:
-        loaded = loaded_pitch(LoadList(problems), problems, angles, mesh, MPI.COMM_SELF, progress)
+        loaded = loaded_pitch(problems, angles, mesh, MPI.COMM_SELF, progress)
     return MeshExcitation(np.zeros(len(angles)), loaded)

@@ -9,10 +9,19 @@ from evolvent.dynamics.operating_point import OperatingPoint
 from evolvent.dynamics.pair_model import DriveSettings, geometric_backlash
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent_meshes.gears.pair import GearPair
 
+FEWEST_POSITIONS = 3
 KG_M2 = 1e3
 """t·mm² per kg·m²."""
+
+
+def check_positions(scene: Scene) -> None:
+    """Raises SceneError where a pitch has too few positions for an excitation that varies over it."""
+    if (found := scene.sweep.positions) < FEWEST_POSITIONS:
+        allowed = f"{FEWEST_POSITIONS} or more for an excitation, whose first harmonic two positions do not show"
+        raise SceneError([InputProblem("sweep.positions", str(found), allowed, "20 are usual, 40 show each step")])
 
 
 def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
@@ -31,10 +40,12 @@ def drive_settings(pair: GearPair, section: DynamicsSection) -> DriveSettings:
 
 
 def operating_point(scene: Scene) -> OperatingPoint | None:
-    """Under whose mesh force the contact is computed; None where it is computed under the constant torque."""
+    """Under whose mesh force the contact is computed; None where it is computed under the constant torque.
+    Raises SceneError as `check_positions`."""
     section = scene.dynamics
     if section is None or section.operating_rpm is None:
         return None
+    check_positions(scene)
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
     settings = drive_settings(scene.gear_pair(), section)
     return OperatingPoint(settings, section.operating_rpm, section.coming, shares, scene.sweep.positions)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from mpi4py import MPI
@@ -19,9 +20,12 @@ from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.gear import GearParameters
 
 Positions = tuple[Mapping[float, SharedPosition], ...]
 """A rank's positions, each by its torque [N·mm]."""
+Figures = Mapping[int, Floats]
+"""Number of a position -> (m, 2) transmission error [mm] and tangent stiffness [N/mm] under each torque."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,26 +44,39 @@ class LoadedMesh:
 
 def loaded_mesh(
     gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
-    solved: Callable[[], None] = lambda: None,
+    known: Figures = MappingProxyType({}),
+    keep: Callable[[Figures], None] = lambda _: None,
 ) -> LoadedMesh:  # fmt: skip
-    """Solves all positions under all torques; the ranks divide the positions.
+    """Solves all positions under all torques; the ranks divide the positions, and each solves one at a time.
 
     gears: as condensed for each torque.
     torques: (m,) ascending, on the gear that holds the load [N·mm].
-    solved: called after each position under a torque that this rank has solved.
+    known: positions that were solved before.
+    keep: called with all positions that are solved, on all ranks, each time that they have solved another one.
 
     Raises NotConverged, SearchError.
     """
-    models = under_torques(gears, torques)
-    own = angles[division(len(angles), comm.size)[comm.rank]]
+    models, found = under_torques(gears, torques), dict(known)
+    missing = [i for i in range(len(angles)) if i not in known]
+    shares = [missing[part] for part in division(len(missing), comm.size)]
+    own = shares[comm.rank]
+    rows = _searched(models, angles[own])
 
-    def figures() -> Floats:
-        found = np.empty((len(own), len(models), 2))
-        for i, row in enumerate(_searched(models, own, solved)):
-            found[i] = [_figures(*each) for each in zip(models, row)]
-        return found
+    def next_one(number: int) -> Figures:
+        return {number: np.array([_figures(*each) for each in zip(models, next(rows))])}
 
-    return _gathered(models, torques, angles, comm, together(comm, figures))
+    for k in range(max(map(len, shares))):
+        solved_now = together(comm, lambda: next_one(own[k]) if k < len(own) else {})  # noqa: B023  called at once
+        for each in comm.allgather(solved_now):
+            found |= each
+        keep(found)
+    return mesh_of(found, models[0].pair.gears[models[0].load.on], torques, angles)
+
+
+def mesh_of(found: Figures, gear: GearParameters, torques: Sequence[float], angles: Floats) -> LoadedMesh:
+    """Of all positions. gear: the one that holds the torques (m,) [N·mm]."""
+    figures = np.array([found[i] for i in range(len(angles))])
+    return LoadedMesh(angles, np.asarray(torques) / gear.base_radius, figures[..., 0], figures[..., 1])
 
 
 def loaded_mesh_again(
@@ -75,10 +92,11 @@ def loaded_mesh_again(
     models = under_torques(gears, torques)
     own = angles[division(len(angles), comm.size)[comm.rank]]
     before = [[row.get(torque) for torque in torques] for row in kept] if kept is not None else None
-    rows = together(comm, lambda: tuple(_searched(models, own, lambda: None, before)))
-    parts = [[_figures(*each) for each in zip(models, row)] for row in rows]
-    found = _gathered(models, torques, angles, comm, np.reshape(parts, (len(own), len(models), 2)))
-    return found, tuple(dict(zip(torques, row)) for row in rows)
+    rows = together(comm, lambda: tuple(_searched(models, own, before)))
+    figures = [np.array([_figures(*each) for each in zip(models, row)]) for row in rows]
+    found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
+    mesh = mesh_of(found, models[0].pair.gears[models[0].load.on], torques, angles)
+    return mesh, tuple(dict(zip(torques, row)) for row in rows)
 
 
 def under_torques(gears: Sequence[GearModel], torques: Sequence[float]) -> list[GearModel]:
@@ -89,15 +107,6 @@ def under_torques(gears: Sequence[GearModel], torques: Sequence[float]) -> list[
     ]
 
 
-def _gathered(
-    models: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm, own: Floats
-) -> LoadedMesh:
-    """own: (k, m, 2) transmission error [mm] and stiffness [N/mm] of this rank's positions."""
-    both = np.concatenate(comm.allgather(own))
-    radius = models[0].pair.gears[models[0].load.on].base_radius
-    return LoadedMesh(angles, np.asarray(torques) / radius, both[..., 0], both[..., 1])
-
-
 def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
     """Transmission error [mm] and stiffness [N/mm]."""
     stand = position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
@@ -105,7 +114,7 @@ def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
 
 
 def _searched(
-    models: Sequence[GearModel], angles: Floats, solved: Callable[[], None],
+    models: Sequence[GearModel], angles: Floats,
     kept: Sequence[Sequence[SharedPosition | None]] | None = None,
 ) -> Iterator[tuple[SharedPosition, ...]]:  # fmt: skip
     """Positions one after the other, each under all torques (m,). kept: those that may do with the present wear."""
@@ -121,6 +130,5 @@ def _searched(
                 patch: ContactPatch | None = near.patch if near else None
                 position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
             row.append(position)
-            solved()
         ahead = row
         yield tuple(row)

@@ -120,6 +120,14 @@ class RunFolder:
             with contextlib.suppress(OSError):  # not empty, or missing
                 (self.out / folder).rmdir()
 
+    def remove(self, names: Iterable[str]) -> None:
+        """Removes those of the files OUT/name that runs have written. Raises OSError."""
+        gone = [path for name in names if self.is_written(path := self.out / name)]
+        for path in gone:
+            path.unlink()
+        if gone:
+            self._reduce_manifest([self.out / LOG, *self.written_files()])
+
     def remove_parts(self) -> None:
         """Removes temporary files that a killed run left."""
         for folder in FOLDERS:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, loaded_mesh
+from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows, write_tables
@@ -24,8 +25,10 @@ from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
@@ -35,79 +38,117 @@ PICTURE = "excitation.png"
 WRITTEN = EXCITATION, HARMONICS, f"pictures/{PICTURE}"
 
 
-def run_excitation(scenes: Sequence[Scene], out: Path, overwrite: bool = False, quiet: bool = False) -> list[str]:
+def run_excitation(
+    scenes: Sequence[Scene], out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
+) -> list[str]:
     """Computes the excitation under some torques and writes its tables and picture to `out`. Returns a sentence where
     a picture could not be drawn or error bars not be estimated. Collective.
 
     scenes: the scene under each torque, see `load_scenes`.
-    overwrite: replace what an earlier call has written.
+    resume: go on from the positions that an earlier call has solved.
+    overwrite: begin anew, and replace what an earlier call has written.
 
-    Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface, WriteError.
+    Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
+    WriteError.
     """
     comm = MPI.COMM_WORLD
-    on_first(comm, lambda: check_results(out, WRITTEN, overwrite))
-    dolfinx_compat.silence_logs()
+    check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
-    with Progress(hidden=quiet or comm.rank > 0) as progress:
-        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
-        companion = companion_of(excitation, problems, scenes[0], comm, progress)
+    fine, coarse = kept_positions(scenes, out, resume)
+    with writing_to(out, WRITTEN, comm, resume, overwrite) as said, Progress(hidden=quiet or comm.rank > 0) as progress:
+        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
+        companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
         progress.stage(OUTPUT)
-        return on_first(comm, lambda: _written(excitation, companion, problems, out))
+        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems))
 
 
-def check_results(out: Path, written: Sequence[str], overwrite: bool) -> None:
-    """Raises FolderError where files of others would be lost, or results unasked. written: names of what is written."""
-    RunFolder(out).require_free(written)
-    if (out / EXCITATION).exists() and not overwrite:
+@contextmanager
+def writing_to(out: Path, written: Sequence[str], comm: MPI.Comm, resume: bool, overwrite: bool) -> Iterator[list[str]]:
+    """Context in which no other run writes to the folder. Gives a sentence where there is nothing to go on from.
+    Collective. written: names of what is written in the end.
+
+    Raises FolderError where files of others would be lost, or results unasked.
+    """
+    with ExitStack() as lock:
+        on_first(comm, lambda: lock.enter_context(locked(out)))
+        said = on_first(comm, lambda: _checked(out, written, resume, overwrite))
+        dolfinx_compat.silence_logs()
+        yield said
+
+
+def _checked(out: Path, written: Sequence[str], resume: bool, overwrite: bool) -> list[str]:
+    RunFolder(out).require_free((*written, KEPT, KEPT_COARSE))
+    there = [name for name in (KEPT, EXCITATION) if (out / name).exists()]
+    if there and not (resume or overwrite):
         raise FolderError(
-            f"{out}: found {EXCITATION} of an earlier call; allowed: a folder without; remedy: --overwrite replaces "
-            "it, --out names another folder"
+            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
+            "its positions, --overwrite computes them anew, --out names another folder"
         )
+    if resume and not there:
+        return [f"--resume found nothing to continue in {out} (no {KEPT}); the call begins from the start."]
+    return []
 
 
 def computed_excitation(
-    problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress
-) -> MeshExcitation:
+    problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress,
+    kept: KeptPositions | None = None,
+) -> MeshExcitation:  # fmt: skip
     """Of the same gears under each torque, the lightest first. Collective."""
-    progress.stage(MESHING)
-    gears, first = LoadList(problems), problems[0]
-    gears.prepare(first, comm, meshed=lambda: progress.stage(CONDENSING))
-    progress.stage(POSITIONS, positions * len(problems))
+    first = problems[0]
     angles = np.array(uniform_pitch(first.pair.pinion.z, positions).angles)
-    loaded = loaded_pitch(gears, problems, angles, run_mesh, comm, progress)
+    loaded = loaded_pitch(problems, angles, run_mesh, comm, progress, POSITIONS, kept)
     return MeshExcitation(unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on), loaded)
 
 
 def companion_of(
-    excitation: MeshExcitation, problems: Sequence[GearProblem], scene: Scene, comm: MPI.Comm, progress: Progress
-) -> CoarseExcitation:
+    excitation: MeshExcitation, problems: Sequence[GearProblem], scene: Scene, comm: MPI.Comm, progress: Progress,
+    kept: KeptPositions | None = None,
+) -> CoarseExcitation:  # fmt: skip
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
     meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
     if not wanted_output(scene).error_bars:
         return NO_COMPANION
     angles = excitation.loaded.angles
-    progress.stage(ERROR_BARS, len(angles) * len(problems))
     try:
-        loaded = loaded_pitch(LoadList(problems), problems, angles, companion_mesh, comm, progress)
+        loaded = loaded_pitch(problems, angles, companion_mesh, comm, progress, ERROR_BARS, kept)
         return CoarseExcitation(MeshExcitation(excitation.unloaded_error, loaded), scene.mesh.order)
     except EvolventError as error:  # the same on all ranks
         return CoarseExcitation(None, failure=f"Error bars: their coarse companion could not be solved: {error}")
 
 
 def loaded_pitch(
-    gears: LoadList, problems: Sequence[GearProblem], angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress
-) -> LoadedMesh:
-    """The pitch under each problem's torque, on the sectors that `mesh` makes. Collective."""
-    models = [gears.prepare(each, comm, mesh).model for each in problems]
-    return loaded_mesh(models, [each.torque for each in problems], angles, comm, progress.advance)
+    problems: Sequence[GearProblem], angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress,
+    stage: str = POSITIONS, kept: KeptPositions | None = None,
+) -> LoadedMesh:  # fmt: skip
+    """The pitch under each problem's torque, on the sectors that `mesh` makes. Collective.
+
+    stage: name of the solution in the progress.
+    kept: positions on disk; where all of them are there, no gears are meshed.
+    """
+    first, torques = problems[0], [each.torque for each in problems]
+    known = on_first(comm, kept.read) if kept is not None else {}
+
+    def keep(found: Figures) -> None:
+        progress.reach(len(found))
+        if kept is not None:
+            on_first(comm, lambda: kept.write(found))
+
+    if len(known) == len(angles):
+        progress.stage(stage, len(angles), len(known))
+        return mesh_of(known, first.pair.gears[first.torque_on], torques, angles)
+    progress.stage(MESHING)
+    gears = LoadList(problems)
+    gears.prepare(first, comm, mesh, meshed=lambda: progress.stage(CONDENSING))
+    progress.stage(stage, len(angles), len(known))
+    return loaded_mesh([gears.prepare(each, comm, mesh).model for each in problems], torques, angles, comm, known, keep)
 
 
 def _written(
-    excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], out: Path
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem]
 ) -> list[str]:
-    """Writes everything. On rank 0 alone."""
-    with locked(out):
-        return write_excitation(RunFolder(out), excitation, companion, problems)
+    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    folder.remove(WRITTEN)
+    return write_excitation(folder, excitation, companion, problems)
 
 
 def write_excitation(

@@ -32,54 +32,55 @@ from evolvent.dynamics.results.response import (
 )
 from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows, write_spectrum
 from evolvent.dynamics.results.torque_map import TORQUE_MAP, write_torque_map
-from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.excitation import (
     WRITTEN,
-    check_results,
     companion_of,
     computed_excitation,
     write_excitation,
+    writing_to,
 )
+from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import PICTURE as MAP_PICTURE
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 
 PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
 TABLES = RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP
+OF_DYNAMICS = *WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS, MAP_PICTURE))
 SPEEDS, MAP = "speeds", "torque map"
 
 
 def run_dynamics(
-    scenes: Sequence[Scene], section: DynamicsSection, out: Path, overwrite: bool = False, quiet: bool = False
-) -> list[str]:
+    scenes: Sequence[Scene], section: DynamicsSection, out: Path, resume: bool = False, overwrite: bool = False,
+    quiet: bool = False,
+) -> list[str]:  # fmt: skip
     """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
     reader has to know, pictures that could not be drawn among them. Collective.
 
     scenes: the scene under each torque of the force surface, see `load_scenes`; that of the section's 100 % among them.
     section: [dynamics].
-    overwrite: replace what an earlier call has written.
+    resume: go on from the positions of the excitation that an earlier call has solved; the rest is computed anew.
+    overwrite: begin anew, and replace what an earlier call has written.
 
     Raises as `run_excitation`, and NoSteadyState.
     """
-    comm = MPI.COMM_WORLD
-    written = (*WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS, MAP_PICTURE)))
-    on_first(comm, lambda: check_results(out, written, overwrite))
-    dolfinx_compat.silence_logs()
+    comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
+    check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
-    with Progress(hidden=quiet or comm.rank > 0) as progress:
-        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress)
-        companion = companion_of(excitation, problems, scenes[0], comm, progress)
-        return on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress))
+    fine, coarse = kept_positions(scenes, out, resume)
+    with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
+        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
+        companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
+        return said + on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress))
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -94,7 +95,7 @@ def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
     out: Path, progress: Progress,
 ) -> list[str]:  # fmt: skip
-    """Sweeps the speeds and writes everything. On rank 0 alone."""
+    """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), problems[0]
     settings = drive_settings(first.pair, section)
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
@@ -107,17 +108,17 @@ def _written(
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
-    with locked(out):
-        folder = RunFolder(out)
-        failures = write_excitation(folder, excitation, companion, problems)
-        write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
-        write_spectrum(folder, spectrum_rows(vibrating, swept, found))
-        if moving:
-            write_histories(folder, history_rows(moving))
-        if over_torque.rows:
-            write_torque_map(folder, over_torque.rows)
-        pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
-        failures += draw(pictures, folder).failures
+    folder = RunFolder(out)
+    folder.remove(OF_DYNAMICS)
+    failures = write_excitation(folder, excitation, companion, problems)
+    write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
+    write_spectrum(folder, spectrum_rows(vibrating, swept, found))
+    if moving:
+        write_histories(folder, history_rows(moving))
+    if over_torque.rows:
+        write_torque_map(folder, over_torque.rows)
+    pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
+    failures += draw(pictures, folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
     return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
 

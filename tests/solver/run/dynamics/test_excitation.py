@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,15 @@ from mpi4py import MPI
 
 from evolvent.gears.load_list import LoadList
 from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.excitation import loaded_pitch, run_excitation
+from evolvent.run.dynamics.kept_positions import KeptPositions
 from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
@@ -84,7 +88,7 @@ def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> N
     problems = sorted((gear_problem(each) for each in scenes), key=lambda each: each.torque)
     angles = np.radians(column(lines[:6], "pinion_angle_deg"))
     with Progress(hidden=True) as progress:
-        coarse = loaded_pitch(LoadList(problems), problems, angles, companion_mesh, MPI.COMM_SELF, progress)
+        coarse = loaded_pitch(problems, angles, companion_mesh, MPI.COMM_SELF, progress)
     for name, factor, values in (("transmission_error_um", 1e3, coarse.errors),
                                  ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):  # fmt: skip
         found, bars = column(lines, name), column(lines, f"{name}_error")
@@ -111,8 +115,55 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
 def test_results_are_not_replaced_unasked(out: Path) -> None:
     """A second call is refused before anything is computed, and says what to do."""
     scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
-    with pytest.raises(FolderError, match="remedy: --overwrite replaces it"):
+    with pytest.raises(FolderError, match="remedy: --resume goes on from its positions, --overwrite"):
         run_excitation(scenes, out, quiet=True)
+
+
+class Killed(Exception):
+    """A call ends here."""
+
+
+def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Killed after the second of six positions and resumed: four are solved, and the table is that of a call that was
+    not stopped, 1e-8. Resumed once more nothing is meshed. With other torques it is refused."""
+    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    write, counts = KeptPositions.write, []
+
+    def killed(kept: KeptPositions, found: Mapping[int, Floats]) -> None:
+        write(kept, found)
+        counts.append(len(found))
+        if len(found) == 2:
+            raise Killed
+
+    monkeypatch.setattr(KeptPositions, "write", killed)
+    with pytest.raises(Killed):
+        run_excitation(scenes, tmp_path, quiet=True)
+    with pytest.raises(FolderError, match=r"found results/excitation\.npz of an earlier call"):
+        run_excitation(scenes, tmp_path, quiet=True)
+    assert run_excitation(scenes, tmp_path, resume=True, quiet=True) == []
+    assert counts == [1, 2, 3, 4, 5, 6]
+    for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
+        whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
+        assert resumed == pytest.approx(whole, rel=1e-8)
+    monkeypatch.setattr(LoadList, "prepare", None)
+    assert run_excitation(scenes, tmp_path, resume=True, quiet=True) == []
+    with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
+        run_excitation(scenes[:1], tmp_path, resume=True, quiet=True)
+
+
+def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
+    """The call begins from the start, with a sentence."""
+    scenes = list(load_scenes(spur_scene(*SETTINGS, "sweep.positions=3"), PERCENTS[:1]).values())
+    (said,) = run_excitation(scenes, tmp_path, resume=True, quiet=True)
+    assert said.startswith("--resume found nothing to continue")
+
+
+def test_two_positions_are_too_few(tmp_path: Path) -> None:
+    """Refused before anything is computed: they hold no harmonic."""
+    scenes = list(load_scenes(spur_scene(*SETTINGS, "sweep.positions=2"), PERCENTS).values())
+    with pytest.raises(SceneError, match=r"sweep\.positions: found 2; allowed: 3 or more"):
+        run_excitation(scenes, tmp_path, quiet=True)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_foreign_files_stay(tmp_path: Path) -> None:

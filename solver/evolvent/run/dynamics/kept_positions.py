@@ -1,0 +1,75 @@
+"""Positions of an excitation on disk: a call that was stopped goes on from them, and other speeds, dampers or inertias
+need no contact to be solved.
+
+    OUT/results/excitation.npz          on the meshes of the scene
+    OUT/results/excitation_coarse.npz   on those of the companion that gives the error bars
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.scene.scene import Scene
+from evolvent_meshes.arrays import Floats
+
+KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
+
+
+@dataclass(frozen=True)
+class KeptPositions:
+    """The solved positions of one kind of meshes. Only rank 0 reads and writes them."""
+
+    folder: RunFolder
+    """Where the call writes."""
+    name: str
+    """Of the file below that."""
+    identity: str
+    """Of the gears, their torques and positions, see `identity`."""
+    resume: bool
+    """Whether the call goes on from those of an earlier one."""
+
+    def read(self) -> dict[int, Floats]:
+        """Number of a position -> (m, 2) transmission error [mm] and tangent stiffness [N/mm] under each torque; none
+        where the call begins anew, or there is no file. Raises ArchiveError where it is that of other gears, torques or
+        positions."""
+        path = self.folder.out / self.name
+        if not self.resume or not path.exists():
+            return {}
+        arrays = read_arrays(path)
+        if str(arrays.get("identity")) != self.identity:
+            raise ArchiveError(
+                f"{path}: wanted positions of this scene, found those of other gears, meshes, torques or positions "
+                "(what follows on the excitation may differ); --resume goes on with the scene and the torques that it "
+                "was called with, --out names another folder, --overwrite computes anew"
+            )
+        return {int(number): figures for number, figures in zip(arrays["numbers"], arrays["figures"])}
+
+    def write(self, found: Mapping[int, Floats]) -> None:
+        """Keeps positions, see `read`. Raises WriteError, FolderError."""
+        numbers = sorted(found)
+        arrays = {"identity": self.identity, "numbers": numbers, "figures": np.array([found[i] for i in numbers])}
+        self.folder.write(self.name, arrays_bytes(arrays))
+
+
+def kept_positions(scenes: Sequence[Scene], out: Path, resume: bool) -> tuple[KeptPositions, KeptPositions]:
+    """Of the meshes of the scene and of the companion's. scenes: the scene under each torque."""
+    fine, coarse = (KeptPositions(RunFolder(out), name, identity(scenes), resume) for name in (KEPT, KEPT_COARSE))
+    return fine, coarse
+
+
+def identity(scenes: Sequence[Scene]) -> str:
+    """SHA-256 of all that the excitation of gears under some torques depends on: neither friction nor what is done with
+    the excitation."""
+    smooth = [scene.contact.model_copy(update={"friction": (0.0,)}) for scene in scenes]
+    bare = [
+        scene.model_copy(update={"dynamics": None, "wear": None, "contact": contact})
+        for scene, contact in zip(scenes, smooth)
+    ]
+    return hashlib.sha256("".join(sorted(fingerprint(each) for each in bare)).encode()).hexdigest()

@@ -1,7 +1,9 @@
-"""`python -m evidence.pages.he_figures --out DIR [--few]`: computes and keeps the figures of docs/he2022.md.
+"""`python -m evidence.pages.he_figures --out DIR [--part PART] [--few]`: computes and keeps the figures of
+docs/he2022.md.
 
-The vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact at
-2000 r/min, and the pair worn by 1.6 million meshes with its vibration. `python -m evidence.pages` then writes the page.
+PART points: the vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact
+at 2000 r/min, and the pair worn by 1.6 million meshes with its vibration; sensitivity: the last with what it depends
+on. By default both. `python -m evidence.pages` then writes the page.
 --few: few positions and speeds, to see that it runs; nothing is kept.
 """
 
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +25,7 @@ from evolvent.results.engagement import engagement
 from evolvent.results.run_data import read_run
 from evolvent.scene.scene import Scene, load_scene
 
-KEPT = "he2022/figures.csv"
+KEPT, SENSITIVITY = "he2022/figures.csv", "he2022/sensitivity.csv"
 COMMAND = "python -m evidence.pages.he_figures --out DIR"
 PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
 """Measured resonance; the speed of the paper's Figures 14b to 22."""
@@ -30,6 +33,18 @@ BORES = 40, 70, 100  # mm
 REPORTS = 0, 200000, 400000, 800000, 1600000
 POINT_A = 77.0
 """Radius [mm] of the paper's point A."""
+COEFFICIENT = 1.3832e-10
+"""Of the demo [mm²/N]."""
+VARIED: Mapping[str, tuple[str, ...]] = {
+    "as_demo": (),
+    "half_wear": tuple(f"wear.{gear}_mm2_per_N={0.5 * COEFFICIENT:g}" for gear in ("pinion", "wheel")),
+    "twice_wear": tuple(f"wear.{gear}_mm2_per_N={2.0 * COEFFICIENT:g}" for gear in ("pinion", "wheel")),
+    "half_damping": ("dynamics.damping_ratio=0.015",),
+    "twice_damping": ("dynamics.damping_ratio=0.06",),
+    "tangent": ('dynamics.mesh="tangent"',),
+    "secant": ('dynamics.mesh="secant"',),
+}
+"""What the wear with vibration is computed with."""
 PAPER_MODEL = 'dynamics.mesh="tangent"', "dynamics.damped_apart=true"
 
 
@@ -62,7 +77,14 @@ def figures(runs: HeRuns) -> Named:
     for name, settings in cases.items():
         yield from _over_speed(name, Vibration.read(runs.run("dynamics", name, VIBRATION, *settings)))
     yield from _contact(runs, scene)
-    yield from _worn(runs)
+    yield from _worn(runs, "wear")
+
+
+def sensitivity(runs: HeRuns) -> Named:
+    """(name, value) of each figure of the worn pair, under what it is computed with. Raises RunFailed."""
+    for name, settings in VARIED.items():
+        for figure, value in _worn(runs, name, *settings):
+            yield f"{name}_{figure}", value
 
 
 def _natural(stiffness: float, mass: float, teeth: int) -> float:
@@ -123,35 +145,44 @@ def _contact(runs: HeRuns, scene: Scene) -> Named:
         yield f"dynamic_{figure}", float(value)
 
 
-def _worn(runs: HeRuns) -> Named:
+def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
     """The pair at the paper's cycles, and its vibration over the speed there."""
-    folder = runs.run("run", "wear", WEAR)
+    folder = runs.run("run", name, WEAR, *settings)
     rows = {float(row["cycles"]): row for row in read_csv(folder / "vibration.csv")}
     depths = {report["cycles"]: report["pinion"] for report in read_json(folder / "wear.json")["reports"]}
+    forces = {cycles: float(row["largest_force_N"]) for cycles, row in rows.items()}
+    yield "worn_least_force_at_cycles", min(forces, key=lambda cycles: forces[cycles])
     for cycles in REPORTS:
-        name = f"worn_{cycles}"
+        worn = f"worn_{cycles}"
         for figure, text in rows[min(rows, key=lambda known: abs(known - cycles))].items():
-            yield f"{name}_{figure}", float(text)
+            yield f"{worn}_{figure}", float(text)
         report = depths[min(depths, key=lambda known: abs(known - cycles))]
-        yield f"{name}_deepest_um", report["deepest_um"]
-        yield f"{name}_at_diameter_mm", report["at_diameter_mm"]
-        scene = folder / f"worn_{cycles}" / "scene.toml" if cycles else WEAR
-        swept = Vibration.read(runs.run("dynamics", f"dynamics_{name}", scene))
-        yield f"{name}_separated_percent", 100.0 * swept.largest("separated_share")
-        yield f"{name}_amplitude_um", swept.largest("equivalent_amplitude_um")
+        yield f"{worn}_deepest_um", report["deepest_um"]
+        yield f"{worn}_at_diameter_mm", report["at_diameter_mm"]
+        scene, of_scene = (folder / worn / "scene.toml", ()) if cycles else (WEAR, settings)
+        swept = Vibration.read(runs.run("dynamics", f"{name}_{worn}", scene, *of_scene))
+        yield f"{worn}_separated_percent", 100.0 * swept.largest("separated_share")
+        yield f"{worn}_amplitude_um", swept.largest("equivalent_amplitude_um")
+
+
+PARTS: Mapping[str, tuple[Callable[[HeRuns], Named], str]] = {
+    "points": (figures, KEPT),
+    "sensitivity": (sensitivity, SENSITIVITY),
+}
+"""What computes a part's figures, and where they are kept."""
 
 
 def main() -> None:
     """Computes, and keeps unless there are few positions."""
     parser = argparse.ArgumentParser(description=COMMAND)
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    parser.add_argument("--part", choices=list(PARTS), action="append", help="by default all")
     parser.add_argument("--few", action="store_true", help="few positions and speeds; nothing is kept")
     given = parser.parse_args()
-    found = figures(HeRuns(given.out, FEW if given.few else ()))
-    if given.few:
-        print(dict(found))
-    else:
-        print(kept.keep(DOCS / KEPT, found))
+    runs = HeRuns(given.out, FEW if given.few else ())
+    for part in given.part or PARTS:
+        figures_of, path = PARTS[part]
+        print(dict(figures_of(runs)) if given.few else kept.keep(DOCS / path, figures_of(runs)))
 
 
 if __name__ == "__main__":

@@ -12,14 +12,17 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages import kept
 from evidence.pages.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
 from evidence.pages.kept import Named
+from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.engagement import engagement
 from evolvent.results.run_data import read_run
@@ -29,8 +32,11 @@ KEPT, SENSITIVITY = "he2022/figures.csv", "he2022/sensitivity.csv"
 COMMAND = "python -m evidence.pages.he_figures --out DIR"
 PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
 """Measured resonance; the speed of the paper's Figures 14b to 22."""
-BORES = 40, 70, 100  # mm
+BORES = 36, 40, 70, 100  # mm
+FINE = "sweep.positions=80"
+"""For the stiffness of worn flanks: with 20 positions its mean goes in steps of 1 %."""
 REPORTS = 0, 200000, 400000, 800000, 1600000
+TORQUE = 170.0  # N·m
 POINT_A = 77.0
 """Radius [mm] of the paper's point A."""
 COEFFICIENT = 1.3832e-10
@@ -45,38 +51,47 @@ VARIED: Mapping[str, tuple[str, ...]] = {
     "secant": ('dynamics.mesh="secant"',),
 }
 """What the wear with vibration is computed with."""
-PAPER_MODEL = 'dynamics.mesh="tangent"', "dynamics.damped_apart=true"
+PAPER_MODEL = 'dynamics.mesh="secant"', "dynamics.damped_apart=true"
 
 
 def figures(runs: HeRuns) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     scene = load_scene(DEMOS / "he2022_dynamics.toml")
-    surface = Vibration.read(runs.run("dynamics", "surface", VIBRATION))
+    folder = runs.run("dynamics", "surface", VIBRATION)
+    surface, secant = Vibration.read(folder), _mean_stiffness(folder, TORQUE, "secant")
     mass, stiffness = surface.facts["equivalent_mass_kg"], surface.facts["mean_stiffness_N_per_um"]
     teeth = scene.pinion.teeth
     wanted = 1e-6 * mass * (2.0 * math.pi * PAPER_RPM * teeth / 60.0) ** 2
-    series = 1.0 / (1.0 / wanted - 1.0 / stiffness)
+    series, series_of_secant = (1.0 / (1.0 / wanted - 1.0 / k) for k in (stiffness, secant))
     yield "equivalent_mass_kg", mass
+    yield "as_printed_rpm", PAPER_RPM * math.sqrt(1000.0)
+    yield "bore_of_inertia_mm", _bore_of(scene)
     yield "contact_ratio", scene.gear_pair().transverse_contact_ratio
     yield "stiffness_at_paper_speed_N_per_um", wanted
     yield "series_N_per_um", series
+    yield "series_of_secant_N_per_um", series_of_secant
     yield from _iso(scene, mass, teeth)
     for bore in BORES:
         name, both = f"bore_{bore}", [f"{gear}.bore_diameter_mm={bore}" for gear in ("pinion", "wheel")]
-        k = _mean_stiffness(runs.run("excitation", name, VIBRATION, *both), scene.load.torque_Nm)
-        yield f"{name}_N_per_um", k
-        yield f"{name}_rpm", _natural(k, mass, teeth)
-    at_paper_speed = f"dynamics.series_stiffness_N_per_um={series:.6g}"
+        folder = runs.run("excitation", name, VIBRATION, *both)
+        for kind in ("tangent", "secant"):
+            k = _mean_stiffness(folder, scene.load.torque_Nm, kind)
+            yield f"{name}_{kind}_N_per_um", k
+            yield f"{name}_{kind}_rpm", _natural(k, mass, teeth)
+    at_paper_speed, paper_at_paper_speed = (
+        f"dynamics.series_stiffness_N_per_um={k:.6g}" for k in (series, series_of_secant)
+    )
     cases = {
         "paper": PAPER_MODEL,
         "matched": (at_paper_speed,),
-        "paper_matched": (at_paper_speed, *PAPER_MODEL),
+        "paper_matched": (paper_at_paper_speed, *PAPER_MODEL),
         "damped": ("dynamics.damping_ratio=0.15",),
+        "apart": ("dynamics.damped_apart=true",),
     }
     yield from _over_speed("surface", surface)
     for name, settings in cases.items():
         yield from _over_speed(name, Vibration.read(runs.run("dynamics", name, VIBRATION, *settings)))
-    yield from _contact(runs, scene)
+    yield from _contact(runs, scene, at_paper_speed)
     yield from _worn(runs, "wear")
 
 
@@ -92,11 +107,23 @@ def _natural(stiffness: float, mass: float, teeth: int) -> float:
     return math.sqrt(1e6 * stiffness / mass) / (2.0 * math.pi) * 60.0 / teeth
 
 
-def _mean_stiffness(folder: Path, torque: float) -> float:
-    """Tangent stiffness under a torque [N·m], mean over the pitch [N/µm]."""
+def _mean_stiffness(folder: Path, torque: float, kind: str) -> float:
+    """Tangent or secant stiffness under a torque [N·m], mean over the pitch [N/µm]."""
     rows = read_csv(folder / "excitation.csv")
-    found = [float(r["tangent_stiffness_N_per_um"]) for r in rows if math.isclose(float(r["torque_Nm"]), torque)]
+    found = [float(r[f"{kind}_stiffness_N_per_um"]) for r in rows if math.isclose(float(r["torque_Nm"]), torque)]
     return float(np.mean(found))
+
+
+def _bore_of(scene: Scene) -> float:
+    """Bore [mm] of a solid pinion that has the given inertia."""
+    assert scene.dynamics is not None and scene.dynamics.pinion_inertia_kg_m2 is not None
+    gear, given = scene.gear_pair().pinion, 1e3 * scene.dynamics.pinion_inertia_kg_m2
+    density = scene.dynamics.density_kg_m3
+
+    def excess(bore: float) -> float:
+        return polar_moment(replace(gear, bore_diameter=bore), density) - given
+
+    return float(brentq(excess, 1.0, 0.9 * gear.root_diameter))
 
 
 def _iso(scene: Scene, mass: float, teeth: int) -> Named:
@@ -122,18 +149,21 @@ def _over_speed(name: str, case: Vibration) -> Named:
     yield f"{name}_amplitude_um", case.largest("equivalent_amplitude_um")
     yield f"{name}_force_ratio", case.largest("dynamic_factor")
     yield f"{name}_separated_percent", 100.0 * case.largest("separated_share")
+    share = case.facts["heaviest_torque_share"]
+    yield f"{name}_heaviest_torque_share", math.nan if share is None else share
     for order in (2, 3, 4):
         at = case.peak(f"harmonic_{order}_um", 0.85 * natural / order, 1.15 * natural / order)
         yield f"{name}_order_{order}_rpm", at
         yield f"{name}_order_{order}_off_percent", 100.0 * (at * order / natural - 1.0)
 
 
-def _contact(runs: HeRuns, scene: Scene) -> Named:
-    """One tooth's engagement under the constant torque and at the operating speed."""
+def _contact(runs: HeRuns, scene: Scene, series: str) -> Named:
+    """One tooth's engagement under the constant torque and at the operating speed, which is the same part of the
+    resonance as in the paper. series: setting of the compliance that makes it so."""
     pair = scene.gear_pair()
     gear, pitch_point = pair.pinion, pair.pitch_point_roll_lengths[0]
     at_A = (math.sqrt(POINT_A**2 - gear.base_radius**2) - pitch_point) / gear.base_radius
-    for name, settings in (("static", ()), ("dynamic", (f"dynamics.operating_rpm={OPERATING_RPM:g}",))):
+    for name, settings in (("static", ()), ("dynamic", (series, f"dynamics.operating_rpm={OPERATING_RPM:g}"))):
         folder = runs.run("run", f"contact_{name}", VIBRATION, "mesh.level=standard", *settings)
         curve = engagement(read_run(folder), 0)
         known = np.isfinite(curve.max_pressure)
@@ -142,7 +172,7 @@ def _contact(runs: HeRuns, scene: Scene) -> Named:
         yield f"{name}_force_at_A_N", float(np.interp(at_A, curve.angle, curve.force))
         yield f"{name}_engagement_deg", float(np.degrees(np.subtract(*curve.ends[::-1])))
     for figure, value in read_json(folder / "operation.json").items():
-        yield f"dynamic_{figure}", float(value)
+        yield f"dynamic_{figure}", math.nan if value is None else float(value)
 
 
 def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
@@ -150,17 +180,22 @@ def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
     folder = runs.run("run", name, WEAR, *settings)
     rows = {float(row["cycles"]): row for row in read_csv(folder / "vibration.csv")}
     depths = {report["cycles"]: report["pinion"] for report in read_json(folder / "wear.json")["reports"]}
-    forces = {cycles: float(row["largest_force_N"]) for cycles, row in rows.items()}
-    yield "worn_least_force_at_cycles", min(forces, key=lambda cycles: forces[cycles])
+    forces = {cycles: float(row["largest_force_N"]) - float(row["smallest_force_N"]) for cycles, row in rows.items()}
+    yield "worn_least_force_at_million", 1e-6 * min(forces, key=lambda cycles: forces[cycles])
     for cycles in REPORTS:
         worn = f"worn_{cycles}"
         for figure, text in rows[min(rows, key=lambda known: abs(known - cycles))].items():
-            yield f"{worn}_{figure}", float(text)
+            yield f"{worn}_{figure}", float(text or "nan")
+        yield f"{worn}_peak_to_peak_N", forces[min(forces, key=lambda known: abs(known - cycles))]
         report = depths[min(depths, key=lambda known: abs(known - cycles))]
         yield f"{worn}_deepest_um", report["deepest_um"]
         yield f"{worn}_at_diameter_mm", report["at_diameter_mm"]
         scene, of_scene = (folder / worn / "scene.toml", ()) if cycles else (WEAR, settings)
-        swept = Vibration.read(runs.run("dynamics", f"{name}_{worn}", scene, *of_scene))
+        fine = runs.run("dynamics", f"{name}_{worn}", scene, *of_scene, FINE)
+        swept = Vibration.read(fine)
+        yield f"{worn}_fine_natural_rpm", float(swept.facts["natural_speed_rpm"])
+        for kind in ("tangent", "secant"):
+            yield f"{worn}_{kind}_N_per_um", _mean_stiffness(fine, TORQUE, kind)
         yield f"{worn}_separated_percent", 100.0 * swept.largest("separated_share")
         yield f"{worn}_amplitude_um", swept.largest("equivalent_amplitude_um")
 

@@ -7,9 +7,8 @@ motion becomes.
 
 from __future__ import annotations
 
-import logging
 from bisect import bisect_left, bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -41,7 +40,6 @@ from evolvent.gears.sweep.position_search import SearchedAt, SharedPosition, sea
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
-LOG = logging.getLogger("evolvent")
 Charts = tuple[FlankChart | None, FlankChart | None]
 """Deviations of pinion and wheel flank; None: as designed."""
 Motion = SteadyState | Settled
@@ -88,7 +86,7 @@ class Operation:
     paths: tuple[History, ...]
     """Each mesh period after which the motion repeats; sixteen where it does not."""
     load: GearLoad
-    """The mesh force of a mesh period, the mean of these, as a torque that repeats with the mesh."""
+    """The mesh force of a mesh period, the mean or the largest of these, as a torque that repeats with the mesh."""
     lifted: float
     """Share of the mesh period in which `load` is `LEAST_FORCE`, because the force is less."""
     positions: Positions | None
@@ -104,6 +102,14 @@ class Operation:
         """Smallest and largest mesh force over the static one."""
         load = self.drive.model.load
         return min(p.smallest_force for p in self.paths) / load, max(p.largest_force for p in self.paths) / load
+
+    @property
+    def heaviest_torque_share(self) -> float | None:
+        """Largest mesh force over that of the heaviest torque of the force surface, beyond which this goes on straight;
+        None where the mesh is a stiffness."""
+        if self.drive.settings.mesh != "force_surface":
+            return None
+        return self.forces[1] * self.drive.model.load / float(self.excitation.loaded.forces[-1])
 
     @property
     def state(self) -> Floats:
@@ -130,6 +136,9 @@ class OperatingPoint:
     """Torques of the force surface over the pair's, ascending; 1 among them."""
     positions: int
     """Of the pitch, for the excitation."""
+    of_several: Literal["mean", "largest"] = "mean"
+    """The force at each phase where the motion repeats after several meshes: the mean wears as they do together, the
+    largest is safe for stresses."""
 
     def on(self, model: GearModel, charts: Charts, comm: MPI.Comm, before: Start | None = None) -> Operation:
         """The operation of condensed gears; their own torque is the static one. Collective.
@@ -179,7 +188,7 @@ class OperatingPoint:
         motion = self._arrived(pair, period) if before is None else _followed(pair, period, before.state)
         motion = _bounded(motion, self.speed)
         paths = _paths(pair, period, motion)
-        course, lifted = _course(model.pair, pair, paths)
+        course, lifted = _course(model.pair, pair, paths, np.mean if self.of_several == "mean" else np.max)
         return Operation(excitation, pair, period, motion, paths, replace(model.load, course=course), lifted, positions)
 
     def searched(
@@ -241,17 +250,15 @@ def _bounded(motion: Motion, speed: float) -> Motion:
 def _paths(pair: Drive, period: float, motion: Motion) -> tuple[History, ...]:
     """The mesh periods of a motion."""
     repeats = motion.repeats or LONGEST_REPEAT if isinstance(motion, Settled) else 1
-    if repeats > 1:
-        LOG.warning(
-            "the vibration does not repeat with every mesh: contact is computed under the mean force of %d meshes",
-            repeats,
-        )
     return tuple(histories(pair.model, period, motion.state, repeats, np.arange(SAMPLES) / SAMPLES))
 
 
-def _course(gears: GearPair, pair: Drive, paths: tuple[History, ...]) -> tuple[TorqueCourse, float]:
-    """The mean force of these mesh periods over the static one, and the share of it that is lifted to LEAST_FORCE."""
+def _course(
+    gears: GearPair, pair: Drive, paths: tuple[History, ...], of_several: Callable[..., Floats]
+) -> tuple[TorqueCourse, float]:
+    """The force of these mesh periods over the static one, and the share of it that is lifted to LEAST_FORCE.
+    of_several: reduces theirs, (periods, phases), along the first axis."""
     phases = np.arange(SAMPLES) / SAMPLES
-    force = np.mean([np.interp(phases, path.phases, path.force) for path in paths], axis=0) / pair.model.load
+    force = of_several([np.interp(phases, path.phases, path.force) for path in paths], axis=0) / pair.model.load
     low = force < LEAST_FORCE
     return TorqueCourse(np.where(low, LEAST_FORCE, force), gears.pinion.z), float(np.mean(low))

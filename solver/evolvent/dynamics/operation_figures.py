@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from evolvent.dynamics.operating_point import Operation
 from evolvent.dynamics.oscillator.response import response
-from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
 
 UM = 1e3  # µm per mm
 
@@ -22,8 +22,10 @@ class OperationFigures:
     natural_speed_rpm: float
     """Of the pinion, at which the mesh frequency is the natural one at the mean stiffness."""
     mean_stiffness_N_per_um: float
-    """Tangent mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in
-    series."""
+    """Mesh stiffness of the whole face under the static torque, mean over the pitch, with what gives way in series: the
+    secant one where dynamics.mesh is secant, else the tangent one."""
+    mean_secant_stiffness_N_per_um: float
+    """Force over the deflection beyond first contact, mean over the pitch, without what gives way in series."""
     unloaded_peak_to_peak_um: float
     """Of the unloaded transmission error."""
     static_peak_to_peak_um: float
@@ -34,6 +36,9 @@ class OperationFigures:
     """Torque over base radius."""
     largest_force_N: float
     """Largest mesh force, damping included."""
+    heaviest_torque_share: float | None
+    """Largest mesh force over that of the heaviest torque of the force surface; above 1 the surface went on straight.
+    Null with another model of the mesh."""
     smallest_force_N: float
     """Smallest one: below 0 where back flanks press, or the damper pulls."""
     separated_share: float
@@ -42,21 +47,41 @@ class OperationFigures:
     """Share of the pitch in which the contact is computed under a thousandth of the static force, because flanks part
     or the mesh force is less."""
     repeats: int
-    """Mesh periods after which the motion repeats; 0 where it does not within sixteen. Where they are several, the
-    contact is computed under their mean force."""
+    """Mesh periods after which the motion repeats; 0 where it does not within sixteen. Where they are several, contact
+    is computed under their largest force at each phase, wear under their mean force."""
 
     @staticmethod
     def of(operation: Operation) -> OperationFigures:
         """Of a pair's operation."""
         pair, excitation = operation.drive, operation.excitation
         number = int(np.argmin(np.abs(excitation.loaded.forces - pair.model.load)))
-        found = response(pair.model, operation.period, operation.state, operation.repeats or LONGEST_REPEAT)
+        found = response(pair.model, operation.period, operation.state, operation.repeats)
         return OperationFigures(
             60.0 / (pair.teeth * operation.period), pair.natural_speed, 1e-3 * pair.mean_stiffness,
+            1e-3 * float(np.mean(excitation.secant[:, number])),
             UM * float(np.ptp(excitation.unloaded_error)), UM * float(np.ptp(excitation.loaded.errors[:, number])),
-            UM * found.equivalent_amplitude, pair.model.load, found.largest_force, found.smallest_force, found.apart,
-            operation.lifted, operation.repeats,
+            UM * found.equivalent_amplitude, pair.model.load, found.largest_force,
+            operation.heaviest_torque_share, found.smallest_force, found.apart, operation.lifted, operation.repeats,
         )  # fmt: skip
+
+
+def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:
+    """What a reader of contact and wear under the mesh forces of these vibrations has to know."""
+    sentences = []
+    shares = [each.heaviest_torque_share for each in found if each.heaviest_torque_share is not None]
+    if (largest := max(shares, default=0.0)) > 1.0:
+        sentences.append(
+            f"dynamics.torque_percents: the largest mesh force at the operating speed is {largest:.3g} times that of "
+            "the heaviest torque; beyond that the force goes on straight. Add heavier ones until this is below 1"
+        )
+    if several := [each.repeats for each in found if each.repeats != 1]:
+        what = f"after {several[-1]} meshes" if several[-1] else "not within sixteen meshes"
+        sentences.append(
+            f"the vibration at the operating speed does not repeat with every mesh, but {what}: stresses are those "
+            "under the largest force of these at each phase; where the flanks wear, they and the wear are those under the "
+            "mean force, and single meshes have larger stresses"
+        )
+    return sentences
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ class DriveSettings:
     inertias: tuple[float, float]
     """Of pinion and wheel [t·mm²]."""
     damping_ratio: float
-    """Of the mesh, over the critical one at the mean tangent stiffness."""
+    """Of the mesh, over the critical one at the mean stiffness, see `Drive`: a series compliance lowers the damping."""
     backlash: float
     """Along the line of action, from flank to flank [mm]; a hundredth of the static deflection may be added to leave
     room for the splines through both sides' errors."""
@@ -47,9 +47,12 @@ class Drive:
     model: TorsionalModel
     """Its oscillator."""
     mean_stiffness: float
-    """Tangent stiffness under the load, with what gives way in series, mean over the pitch [N/mm]."""
+    """Under the load, with what gives way in series, mean over the pitch [N/mm]: the secant one where the mesh has it,
+    else the tangent one."""
     teeth: int
     """Of the pinion."""
+    settings: DriveSettings
+    """What it was made with."""
 
     @property
     def natural_speed(self) -> float:
@@ -62,13 +65,14 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     between two that were solved are those of `MeshExcitation.under`. Raises ValueError beyond the heaviest, Jammed."""
     mass = equivalent_mass(pair, settings.inertias)
     mesh = excitation if math.isinf(settings.series_stiffness) else excitation.in_series(settings.series_stiffness)
-    mean = float(np.mean(mesh.under(load)[1]))
+    depth, tangent = mesh.under(load)
+    mean = float(np.mean(load / depth if settings.mesh == "secant" else tangent))
     critical = 2.0 * math.sqrt(mean * mass)
     model = TorsionalModel(
         mass, load, _law(pair, mesh, load, settings), settings.damping_ratio * critical,
         settings.damped_apart, settings.ground_damping_ratio * critical,
     )  # fmt: skip
-    return Drive(model, mean, pair.pinion.z)
+    return Drive(model, mean, pair.pinion.z, settings)
 
 
 def geometric_backlash(pair: GearPair) -> float:

@@ -11,6 +11,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from evolvent.dynamics.operating_point import Operation
+from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
 from evolvent.dynamics.results.operation import PICTURE, write_operation
 from evolvent.dynamics.under_mesh_force import UnderMeshForce
 from evolvent.fem.backend import dolfinx_compat
@@ -135,5 +136,8 @@ def _write_operation(run: RunContext, scene: Scene, operation: Operation) -> Non
         write_operation(run.folder, operation, scene.dynamics.coming, radius)
         if wanted_output(scene).pictures:
             log_pictures(draw([Picture(PICTURE, drawn)], run.folder), run.log)
+
+        for sentence in operation_warnings([OperationFigures.of(operation)]):
+            run.log.warning(sentence)
 
     run.on_first(written)

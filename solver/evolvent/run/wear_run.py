@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from evolvent.dynamics.operation_figures import operation_warnings
 from evolvent.gears.gear_model import GearModel, Preparation, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import certify, certify_pitch
@@ -71,6 +72,8 @@ def wear_scene(run: RunContext, scene: Scene) -> SweepRecord:
         run.on_first(partial(_write, scene, archive, gears, meshes, stage, study, run.comm.size, cost))
         run.log.info(_log_line(stage))
         run.progress.reach(round(study.cycles))
+    for sentence in operation_warnings(stage.vibrations):
+        run.log.warning(sentence)
     return SweepRecord(meshes, _timings(preparation, time.perf_counter() - begin))
 
 

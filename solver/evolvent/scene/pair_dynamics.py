@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.operating_point import OperatingPoint
@@ -48,4 +49,5 @@ def operating_point(scene: Scene) -> OperatingPoint | None:
     check_positions(scene)
     shares = tuple(sorted(percent / 100.0 for percent in section.torque_percents))
     settings = drive_settings(scene.gear_pair(), section)
-    return OperatingPoint(settings, section.operating_rpm, section.coming, shares, scene.sweep.positions)
+    of_several: Literal["mean", "largest"] = "largest" if scene.wear is None else "mean"
+    return OperatingPoint(settings, section.operating_rpm, section.coming, shares, scene.sweep.positions, of_several)

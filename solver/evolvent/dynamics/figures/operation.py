@@ -35,10 +35,12 @@ def operation_figure(operation: Operation) -> Figure:
         error.plot(phase, 1e3 * path.displacement, color=PINION, label="" if ahead else "vibrating")
     force.axhline(1e-3 * figures.static_force_N, color=WHEEL, ls="--", label="static")
     loaded, e = operation.excitation.loaded, operation.excitation.unloaded_error
-    number = int(np.argmin(np.abs(loaded.forces - operation.drive.model.load)))
+    load = operation.drive.model.load
+    number = int(np.argmin(np.abs(loaded.forces - load)))
+    static = loaded.errors[:, number] + load / operation.drive.settings.series_stiffness
     phase = np.arange(count * len(e) + 1) / len(e)
     for values, colour, style, name in (
-        (loaded.errors[:, number], WHEEL, "--", "static"), (e, FAINT, "-", "unloaded"),
+        (static, WHEEL, "--", "static"), (e, FAINT, "-", "unloaded"),
     ):  # fmt: skip
         error.plot(phase, 1e3 * np.append(np.tile(values, count), values[0]), style, color=colour, label=name)
     force.set_ylabel("mesh force [kN]")
@@ -51,6 +53,6 @@ def operation_figure(operation: Operation) -> Figure:
     lifted = (
         f" For {100 * figures.lifted_share:.2g} % of it contact is computed under a thousandth of the static force."
     )
-    mean = f" Contact is computed under the mean force of {count} mesh periods." if count > 1 else ""
-    foot(figure, FOOT + (lifted if figures.lifted_share else "") + mean)
+    several = " The motion repeats after several meshes: operation.json, repeats." if count > 1 else ""
+    foot(figure, FOOT + (lifted if figures.lifted_share else "") + several)
     return figure

@@ -13,7 +13,7 @@ from evolvent_meshes.arrays import Floats
 
 MOST_PERIODS = 4000
 """Of the mesh that are waited for; a motion of damping ratio 0.01 is then 1e-100 from where it ends."""
-FEWEST_PERIODS = 400
+FEWEST_PERIODS = 1000
 """That are waited for at the least. A pair that comes to a speed with a motion on no branch is not waited for longer
 than `decay_periods`: such motions may go on without repeating over many speeds."""
 LONGEST_REPEAT = 16

@@ -10,7 +10,6 @@ import numpy as np
 
 from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response, response
-from evolvent.dynamics.oscillator.settling import LONGEST_REPEAT
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
 from evolvent.results.archive.run_folder import RunFolder
@@ -30,8 +29,8 @@ class ResponseRow:
     way: str
     """up or down: from which side the pair has come to the speed, slowly."""
     repeats: int
-    """Mesh periods after which the motion repeats; 0 where it does not within sixteen, or grows beyond a hundred
-    static deflections."""
+    """Mesh periods after which the motion repeats; 0 where it does not within sixteen, has not settled after a thousand
+    or more, or grows beyond a hundred static deflections. Forces and times are then those of 500 meshes."""
     jumped: bool
     """Whether it left the branch of steady states, or came to another part of it, since the speed before."""
     equivalent_amplitude_um: float
@@ -103,7 +102,8 @@ class DriveSummary:
     wheel_inertia_kg_m2: float
     """Of the wheel."""
     mean_stiffness_N_per_um: float
-    """Tangent stiffness of the whole face under the torque, mean over the pitch, with what gives way in series."""
+    """Stiffness of the whole face under the torque, mean over the pitch, with what gives way in series: the secant one
+    where dynamics.mesh is secant, else the tangent one."""
     natural_speed_rpm: float
     """Of the pinion, at which the mesh frequency is the natural one at that stiffness."""
     static_force_N: float
@@ -148,11 +148,10 @@ def speed_of(drive: Drive, period: float) -> float:
 
 
 def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
-    """Of all speeds, "up" and "down"; a motion that does not repeat is taken over sixteen mesh periods, one that grows
-    beyond measure over the last within."""
+    """Of all speeds, "up" and "down"; of a motion that grows beyond measure the last mesh period within."""
     return {
         way: [
-            response(drive.model, float(period), run.motion.state, 1 if run.escaped else run.repeats or LONGEST_REPEAT)
+            response(drive.model, float(period), run.motion.state, 1 if run.escaped else run.repeats)
             for period, run in zip(swept.periods, runs)
         ]
         for way, runs in (("up", swept.up), ("down", swept.down))

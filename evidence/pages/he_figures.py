@@ -123,7 +123,7 @@ def _bore_of(scene: Scene) -> float:
     def excess(bore: float) -> float:
         return polar_moment(replace(gear, bore_diameter=bore), density) - given
 
-    return float(brentq(excess, 1.0, 0.9 * gear.root_diameter))
+    return float(brentq(excess, 0.02 * gear.root_diameter, 0.8 * gear.root_diameter))
 
 
 def _iso(scene: Scene, mass: float, teeth: int) -> Named:

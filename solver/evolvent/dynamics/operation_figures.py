@@ -78,8 +78,8 @@ def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:
         what = f"after {several[-1]} meshes" if several[-1] else "not within sixteen meshes"
         sentences.append(
             f"the vibration at the operating speed does not repeat with every mesh, but {what}: stresses are those "
-            "under the largest force of these at each phase; where the flanks wear, they and the wear are those under the "
-            "mean force, and single meshes have larger stresses"
+            "under the largest force of these at each phase; where the flanks wear, they and the wear are those under "
+            "the mean force, and single meshes have larger stresses"
         )
     return sentences
 

@@ -228,11 +228,22 @@ def misalignment_rotation(pair: GearPair) -> Floats:
     return tilt * np.array([-math.cos(angle), math.sin(angle), 0.0])
 
 
+def misalignment_shift(pair: GearPair) -> float:
+    """Axial position [mm] of the misaligned wheel's centre, at which the flanks stay at the pitch point in mid-face.
+
+    A tilt about the centre alone moves a wheel's flank there axially, by tilt·ρ_2: helical flanks would open or close
+    as a whole, and turn against each other, by what an axial adjustment of the wheel makes.
+    """
+    tilt = math.atan(pair.misalignment_um * MICROMETRE / pair.face_width)
+    return -tilt * pair.pitch_point_roll_lengths[1]
+
+
 def separation(pair: GearPair, roll_distance: ArrayLike, z: ArrayLike) -> Floats:
     """Normal gap (…) [mm] between the flanks at nominal angles, from modifications and misalignment.
 
-    Negative where the flanks overlap. The misalignment is of first order: `misalignment_rotation` rotates the plane of
-    action about the foot of the wheel's centre, ξ = ρ_C2, and its axial part opens the gap of helical flanks too.
+    Negative where the flanks overlap. The misalignment is of first order: `misalignment_rotation` and
+    `misalignment_shift` rotate the plane of action about the pitch point, and the axial part of that opens the gap of
+    helical flanks too.
 
     roll_distance: ξ (…) [mm].
     z: (…) [mm].
@@ -240,5 +251,6 @@ def separation(pair: GearPair, roll_distance: ArrayLike, z: ArrayLike) -> Floats
     xi, height = np.asarray(roll_distance, dtype=float), np.asarray(z, dtype=float)
     rho_1, rho_2 = pair.curvature_radii(xi)
     base, slope = pair.pinion.base_helix_angle, pair.misalignment_um * MICROMETRE / pair.face_width
-    tilt = slope * (height * math.cos(base) - pair.pinion.hand * math.sin(base) * rho_2)
+    from_pitch_point = rho_2 - pair.pitch_point_roll_lengths[1]
+    tilt = slope * (height * math.cos(base) - pair.pinion.hand * math.sin(base) * from_pitch_point)
     return np.asarray(Flank(pair.pinion).modification(rho_1, z) + Flank(pair.wheel).modification(rho_2, z) + tilt)

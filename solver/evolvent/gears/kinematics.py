@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.flank import misalignment_rotation
+from evolvent_meshes.gears.flank import misalignment_rotation, misalignment_shift
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
@@ -56,8 +56,10 @@ class Stand:
         return float(pinion.base_radius * self.extra[0] + wheel.base_radius * self.extra[1])
 
     def centre(self, gear: Member, d: int) -> Floats:
-        """Centre (d,) of a gear [mm]."""
-        return np.array([self.pair.centre_distance if gear == Member.WHEEL else 0.0, 0.0, 0.0])[:d]
+        """Centre (d,) of a gear [mm]; that of a misaligned wheel lies beside mid-face, see `misalignment_shift`."""
+        if gear == Member.PINION:
+            return np.zeros(d)
+        return np.array([self.pair.centre_distance, 0.0, misalignment_shift(self.pair)])[:d]
 
     def rotation(self, gear: Member, d: int, tooth: int = 0) -> Floats:
         """Rotation matrix (d, d) from the frame of a gear's tooth i, turned by ±2πi/z, to the common frame."""

@@ -14,6 +14,7 @@ from evolvent_meshes.gears.flank import (
     contact_lines,
     contact_normal,
     misalignment_rotation,
+    misalignment_shift,
     nominal_angles,
     separation,
 )
@@ -226,7 +227,8 @@ def test_mesh_of_both_gears_at_phi_zero() -> None:
 
 @pytest.mark.parametrize("misalignment_um", [30.0, -30.0, 3.0, -3.0, 0.0])
 def test_separation_of_modified_misaligned_flanks(misalignment_um: float) -> None:
-    """Wheel tilted by `misalignment_rotation`, both flanks modified: the gap on the lines is `separation`.
+    """Wheel tilted by `misalignment_rotation` and shifted by `misalignment_shift`, both flanks modified: the gap on the
+    lines is `separation`.
 
     The gap is measured between exact surfaces. `separation` is of first order: it may miss by tilt²·r_w2 and by the
     wheel's shift under the tilt, tilt·ρ_C2, times the modifications' slopes of 0.004: 0.4 µm at 30, 0.02 at 3 µm.
@@ -236,11 +238,12 @@ def test_separation_of_modified_misaligned_flanks(misalignment_um: float) -> Non
     tilt = misalignment_rotation(pair)
     angle = float(np.linalg.norm(tilt))
     centre, phi = np.array([pair.centre_distance, 0.0, 0.0]), 0.05
+    shifted = centre + np.array([0.0, 0.0, misalignment_shift(pair)])
     for line in contact_lines(pair, phi):
         xi, z = line.points(9)
         rho_1, _ = pair.curvature_radii(xi)
         points = pinion_in_space(pair, phi, line.tooth, Flank(pair.pinion).point(rho_1, z))
-        untilted = Rotation.from_rotvec(-tilt).apply(points - centre) + centre
+        untilted = Rotation.from_rotvec(-tilt).apply(points - shifted) + centre
         gap = Flank(pair.wheel).distance(into_wheel(pair, phi, line.tooth, untilted))
         bound = angle**2 * pair.working_pitch_diameters[1] / 2.0 + angle * 0.004 * 25.7 + 1e-8
         np.testing.assert_allclose(gap, separation(pair, xi, z), atol=bound)

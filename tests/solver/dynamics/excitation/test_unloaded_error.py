@@ -102,6 +102,18 @@ def test_helical_flanks_just_touch(misalignment: float) -> None:
         assert nearest == pytest.approx(0.0, abs=NANOMETRE)
 
 
+def test_misalignment_of_either_sign_takes_the_same_room() -> None:
+    """Conjugate helical flanks, the wheel tilted about the pitch point: one end of the face touches first, at every
+    rotation, by about half the misalignment, whichever way it is tilted; where its contact line ends off the pitch
+    point, the axial part of the tilt adds a third of that at most."""
+    for misalignment in (5.0, -5.0):
+        one = pair(18.0, misalignment)
+        found = unloaded_error(RigidFlanks(one), angles(one))
+        half = 0.5e-3 * 5.0
+        assert (found < -0.7 * half).all()
+        assert (found > -1.35 * half).all()
+
+
 def nearest_distance(one: GearPair, stand: Stand, tooth: int) -> float:
     """Least signed distance of the pinion's flank from the wheel's [mm]."""
     flank, mate = Flank(one.pinion), Flank(one.wheel)

@@ -26,7 +26,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         },
         docs / "scene.md": {"levels": yang.levels(docs)},
         docs / "yang2022.md": {"accuracy": yang.accuracy(docs), "points": yang.points(docs)},
-        docs / "he2022.md": {"points": he.points(docs)},
+        docs / "he2022.md": {"points": he.points(docs), "sensitivity": he.sensitivity(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "tutorial.md": {

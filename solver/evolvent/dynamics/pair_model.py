@@ -10,11 +10,14 @@ import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
 from evolvent.dynamics.gear_inertia import equivalent_mass
-from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw
+from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
+CERTAIN = 1e-3
+"""Overlap [mm] that is no spline's."""
 OVERLAP = 0.01
 """Of both sides of the teeth, over the static deflection, that a spline through their errors makes by itself."""
 
@@ -75,6 +78,16 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     return Drive(model, mean, pair.pinion.z, settings)
 
 
+def check_room(pair: GearPair, error: Floats, settings: DriveSettings) -> None:
+    """Raises Jammed where unloaded errors e (n,) [mm] at equidistant positions leave no room between both sides of the
+    teeth: by more than a micrometre, so that it is known before any contact is solved. `drive` sees the rest."""
+    try:
+        _mirrored(linear_side(np.ones(len(error)), error), pair, settings)
+    except Jammed as jammed:
+        if jammed.overlap > CERTAIN:
+            raise
+
+
 def geometric_backlash(pair: GearPair) -> float:
     """j_bt = (2π r_w1/z_1 − s_w1 − s_w2) cos α_wt [mm]: along the line of action in the transverse section, from the
     tooth thicknesses on the working pitch circles (ISO 21771:2007, 5.6); 0 where rounding leaves less."""
@@ -90,9 +103,16 @@ def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSetti
     if settings.mesh == "force_surface":
         side = mesh.force_surface()
         try:
-            return mirrored_law(side, pair, settings.backlash)
+            return _mirrored(side, pair, settings)
         except Jammed as jammed:
             if jammed.overlap > OVERLAP * float(np.mean(mesh.under(load)[0])):
                 raise
             return mirrored_law(side, pair, settings.backlash + jammed.overlap)
     return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
+
+
+def _mirrored(side: MeshSide, pair: GearPair, settings: DriveSettings) -> MeshLaw:
+    """Both sides, each with its own room, where the mesh has them."""
+    if settings.mesh != "force_surface":
+        return paper_law(side, settings.backlash)
+    return mirrored_law(side, pair, settings.backlash)

@@ -123,7 +123,7 @@ class DriveSummary:
     mesh_frequency_Hz: float
     """At the natural speed."""
     folds_rpm: tuple[float, ...]
-    """Speeds at which the branch of steady states turns back, in the order along it."""
+    """Speeds at which the branch of steady states turns back, each once, in the order along it."""
     jumps_up_rpm: tuple[float, ...]
     """Speeds at which a pair that runs up leaves the branch: at a fold, or where the steady state loses its stability
     otherwise; in the order in which it comes there."""
@@ -198,7 +198,7 @@ def summary(
 ) -> DriveSummary:
     """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
     pinion, wheel = settings.inertias
-    folds = tuple(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
+    folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     return DriveSummary(
         1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness, drive.natural_speed,
         drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
@@ -207,6 +207,11 @@ def summary(
         largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
         iso.resonance_speed, iso.relief_term,
     )  # fmt: skip
+
+
+def _different(speeds: Iterable[float]) -> tuple[float, ...]:
+    """Each once, to six digits: pieces of the branch may be followed over the same fold."""
+    return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
 
 
 def write_response(

@@ -42,7 +42,9 @@ def loads_figure(results: Sequence[LoadResult]) -> Figure:
         for friction, colour in zip(frictions, friction_colours(frictions)):
             own = [each.row for each in results if each.row.friction == friction]
             torque, values, bars = ([getattr(row, name) for row in own] for name in ("torque_Nm", key, key + ERROR))
-            axes.errorbar(torque, values, bars, color=colour, capsize=3.0, label=f"μ = {friction:g}")
+            known = np.array([np.nan if bar is None else bar for bar in bars], dtype=float)
+            drawn = known if np.isfinite(known).any() else None  # matplotlib takes no list without a single number
+            axes.errorbar(torque, values, drawn, color=colour, capsize=3.0, label=f"μ = {friction:g}")
             fills = ["white" if row.tip_edge_positions else colour for row in own]
             for row, value, fill in zip(own, values, fills):
                 at_end = key == "max_pressure_MPa" and row.max_pressure_at_zone_end

@@ -13,7 +13,11 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
+from evolvent.dynamics.results.histories import HISTORIES
+from evolvent.dynamics.results.response import BRANCH, DYNAMICS, RESPONSE
+from evolvent.dynamics.results.spectrum import SPECTRUM
 from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows, write_tables
+from evolvent.dynamics.results.torque_map import TORQUE_MAP
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Mesher
@@ -36,6 +40,11 @@ from evolvent_meshes.errors import EvolventError
 
 PICTURE = "excitation.png"
 WRITTEN = EXCITATION, HARMONICS, f"pictures/{PICTURE}"
+OF_DYNAMICS = (
+    *WRITTEN, RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP,
+    *(f"pictures/{name}.png" for name in ("vibration", "waterfall", "histories", "torque_map")),
+)  # fmt: skip
+"""What `evolvent dynamics` writes; an excitation that is computed anew removes it, as it belongs to another one."""
 
 
 def run_excitation(
@@ -51,7 +60,7 @@ def run_excitation(
     Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
     WriteError.
     """
-    comm = MPI.COMM_WORLD
+    comm, pictures = MPI.COMM_WORLD, wanted_output(scenes[0]).pictures
     check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     fine, coarse = kept_positions(scenes, out, resume)
@@ -59,7 +68,7 @@ def run_excitation(
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
         progress.stage(OUTPUT)
-        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems))
+        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems, pictures))
 
 
 @contextmanager
@@ -144,18 +153,20 @@ def loaded_pitch(
 
 
 def _written(
-    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem]
-) -> list[str]:
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
+    pictures: bool,
+) -> list[str]:  # fmt: skip
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
-    folder.remove(WRITTEN)
-    return write_excitation(folder, excitation, companion, problems)
+    folder.remove(OF_DYNAMICS)
+    return write_excitation(folder, excitation, companion, problems, pictures)
 
 
 def write_excitation(
-    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem]
-) -> list[str]:
-    """Writes tables and picture; returns a sentence where a picture could not be drawn or error bars not be estimated.
-    Raises WriteError, FolderError."""
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
+    pictures: bool,
+) -> list[str]:  # fmt: skip
+    """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn or error
+    bars not be estimated. Raises WriteError, FolderError."""
     first = problems[0]
     radius, torques = first.pair.gears[first.torque_on].base_radius, [1e-3 * each.torque for each in problems]
     tables = excitation_rows(excitation, radius, companion), harmonic_rows(excitation, radius, companion)
@@ -166,5 +177,5 @@ def write_excitation(
 
         return excitation_picture(excitation, torques, companion)
 
-    failures = draw([Picture(PICTURE, drawn)], folder).failures
+    failures = draw([Picture(PICTURE, drawn)] if pictures else [], folder).failures
     return [*failures, *([companion.failure] if companion.failure else [])]

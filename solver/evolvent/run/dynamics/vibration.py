@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.dynamics.iso_stiffness import outside_range
-from evolvent.dynamics.oscillator.response import Response
+from evolvent.dynamics.oscillator.response import MESHES, Response
 from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep
 from evolvent.dynamics.oscillator.torsional_model import BEYOND_MEASURE
-from evolvent.dynamics.pair_model import Drive, DriveSettings, drive
+from evolvent.dynamics.pair_model import Drive, DriveSettings, check_room, drive
 from evolvent.dynamics.results.curves import CoarseExcitation
-from evolvent.dynamics.results.histories import HISTORIES, Motion, history_rows, motions, write_histories
+from evolvent.dynamics.results.histories import Motion, history_rows, motions, write_histories
 from evolvent.dynamics.results.response import (
-    BRANCH,
-    DYNAMICS,
-    RESPONSE,
     BranchRow,
     DriveSummary,
     branch_rows,
@@ -30,14 +29,15 @@ from evolvent.dynamics.results.response import (
     summary,
     write_response,
 )
-from evolvent.dynamics.results.spectrum import SPECTRUM, spectrum_rows, write_spectrum
-from evolvent.dynamics.results.torque_map import TORQUE_MAP, write_torque_map
+from evolvent.dynamics.results.spectrum import spectrum_rows, write_spectrum
+from evolvent.dynamics.results.torque_map import write_torque_map
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.excitation import (
-    WRITTEN,
+    OF_DYNAMICS,
     companion_of,
     computed_excitation,
     write_excitation,
@@ -45,17 +45,15 @@ from evolvent.run.dynamics.excitation import (
 )
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
-from evolvent.run.dynamics.torque_map import PICTURE as MAP_PICTURE
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.skips import wanted_output
 
 PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
-TABLES = RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP
-OF_DYNAMICS = *WRITTEN, *TABLES, *(f"pictures/{name}" for name in (PICTURE, WATERFALL, PORTRAITS, MAP_PICTURE))
 SPEEDS, MAP = "speeds", "torque map"
 
 
@@ -77,10 +75,15 @@ def run_dynamics(
     check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     fine, coarse = kept_positions(scenes, out, resume)
+    first = problems[0]
+    angles = np.array(uniform_pitch(first.pair.pinion.z, scenes[0].sweep.positions).angles)
+    error = unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on)
+    check_room(first.pair, error, drive_settings(first.pair, section))
+    wanted = wanted_output(scenes[0]).pictures
     with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
-        return said + on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress))
+        return said + on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress, wanted))
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -93,7 +96,7 @@ def accuracy(section: DynamicsSection) -> Accuracy:
 
 def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
-    out: Path, progress: Progress,
+    out: Path, progress: Progress, wanted: bool,
 ) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), problems[0]
@@ -110,7 +113,7 @@ def _written(
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
-    failures = write_excitation(folder, excitation, companion, problems)
+    failures = write_excitation(folder, excitation, companion, problems, wanted)
     write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
     write_spectrum(folder, spectrum_rows(vibrating, swept, found))
     if moving:
@@ -118,8 +121,9 @@ def _written(
     if over_torque.rows:
         write_torque_map(folder, over_torque.rows)
     pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
-    failures += draw(pictures, folder).failures
+    failures += draw(pictures if wanted else [], folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
+    said = *said, *_not_repeating(vibrating, swept)
     return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
 
 
@@ -213,6 +217,19 @@ def _branch_warnings(swept: SpeedSweep) -> list[str]:
         f"dynamics.json, branch.csv: {apart} of {2 * len(swept.periods)} motions repeat with every mesh, but lie on no "
         "branch that was found from the lowest speed: jumps from and between them are seen in response.csv alone; "
         "begin at another speed (dynamics.speed_rpm)"
+    ]
+
+
+def _not_repeating(vibrating: Drive, swept: SpeedSweep) -> list[str]:
+    """Motions whose largest force a longer look may find larger."""
+    wild = [float(period) for runs in (swept.up, swept.down) for period, run in zip(swept.periods, runs)
+            if run.repeats == 0 and not run.escaped]  # fmt: skip
+    if not wild:
+        return []
+    slowest, fastest = (speed_of(vibrating, period) for period in (max(wild), min(wild)))
+    return [
+        f"response.csv: {len(wild)} of {2 * len(swept.periods)} motions, from {slowest:.0f} to {fastest:.0f} r/min, "
+        f"do not repeat or have not settled: their forces are those of {MESHES} meshes, and single ones may be larger"
     ]
 
 

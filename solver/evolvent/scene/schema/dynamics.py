@@ -60,8 +60,8 @@ class DynamicsSection(SceneSection):
         default=(5.0, 15.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0), max_length=30,
     )  # fmt: skip
     damping_ratio: float = key(
-        "damping of the mesh over the critical one, at the mean tangent stiffness", "a number from 0.001 to 1",
-        "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
+        "damping of the mesh over the critical one, at the mean stiffness with what gives way in series",
+        "a number from 0.001 to 1", "gear pairs have 0.02 to 0.1", default=0.05, ge=1e-3, le=1,
     )  # fmt: skip
     damped_apart: bool = key(
         "whether it acts in free flight, too, as in the model of He et al. 2022", "true or false", default=False
@@ -155,7 +155,8 @@ class DynamicsSection(SceneSection):
             raise validation_error(InputProblem("torque_percents", shown(given), PERCENTS, remedy))
         histories = self.histories_rpm
         if not all(0.0 < each <= FASTEST for each in histories) or len(set(histories)) < len(histories):
-            raise validation_error(InputProblem("histories_rpm", shown(histories), HISTORIES, "give each once"))
+            remedy = "give each once" if len(set(histories)) < len(histories) else "speeds of response.csv fit"
+            raise validation_error(InputProblem("histories_rpm", shown(histories), HISTORIES, remedy))
         return self
 
     @model_validator(mode="after")
@@ -165,7 +166,7 @@ class DynamicsSection(SceneSection):
             return self
         inside = all(MAP_RANGE[0] <= each <= MAP_RANGE[1] for each in given)
         if not inside or len(set(given)) < len(given) or len(given) < MAP[0]:
-            remedy = "give each once, or delete the key for no map"
+            remedy = "give each once, within these limits, or delete the key for no map"
             raise validation_error(InputProblem("map_percents", shown(given), f"a list of {MAP_PERCENTS}", remedy))
         if max(given) > heaviest:
             allowed = f"none above {heaviest:g}, the heaviest of torque_percents: the force surface ends there"

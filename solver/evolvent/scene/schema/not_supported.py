@@ -37,7 +37,8 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
 
 def not_supported(name: str, section: str = "") -> str:
     """The answer to an unknown key of a section, empty where it matches no pattern."""
-    names = name.lower()[:60], f"{section}.{name}".lower()[:60]
+    own, whole = name.lower()[:60], f"{section}.{name}".lower()[:60]
+    names = (own,) if section == "dynamics" else (own, whole)  # its keys are not what is sought in vain
     found = (words for pattern, words in NOT_SUPPORTED if any(_begins(pattern, each) for each in names))
     return next(found, "")
 

@@ -26,7 +26,7 @@ from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.gear_cases import model_of, spur_scene, swept
 from tests.support.running.processes import Run, on_ranks
 
-SETTINGS = "mesh.level=quick", "sweep.positions=6"
+SETTINGS = "mesh.level=quick", "output.pictures=true", "sweep.positions=6"
 PERCENTS = [50.0, 100.0]
 
 

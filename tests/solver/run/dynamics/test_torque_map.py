@@ -31,8 +31,8 @@ STIFFNESS = 2.6e5 * (1.0 + 0.04 * np.cos(2.0 * np.pi * PHASES) + 0.02 * np.sin(4
 LOADS, HEAVIEST = [250.0, 1000.0, 500.0], 2000.0
 SPEEDS = np.linspace(2000.0, 6000.0, 15)
 SETTINGS = (
-    "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]", "dynamics.speeds=30",
-    "dynamics.map_speeds=30", "dynamics.speed_rpm=[1700,7000]", "dynamics.map_percents=[100,40]",
+    "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
+    "dynamics.speeds=30", "dynamics.map_speeds=30", "dynamics.speed_rpm=[1700,7000]", "dynamics.map_percents=[100,40]",
 )  # fmt: skip
 
 

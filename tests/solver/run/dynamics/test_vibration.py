@@ -11,7 +11,9 @@ import pytest
 from scipy.integrate import trapezoid
 
 from evolvent.cli import main
+from evolvent.dynamics.oscillator.mesh_law import Jammed
 from evolvent.dynamics.pair_model import geometric_backlash
+from evolvent.gears.load_list import LoadList
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.load_list import load_scenes
 from evolvent.scene.pair_dynamics import drive_settings
@@ -24,8 +26,8 @@ from tests.support.gear_cases import QUIET
 from tests.support.running.processes import Run, on_ranks
 
 SETTINGS = (
-    "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]", "dynamics.speeds=60",
-    "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
+    "output.pictures=true", "mesh.level=quick", "sweep.positions=10", "dynamics.torque_percents=[25,100,200]",
+    "dynamics.speeds=60", "dynamics.speed_rpm=[1700,7000]", "dynamics.base_pitch_deviation_um=5",
 )  # fmt: skip
 
 
@@ -222,3 +224,16 @@ def test_wear_does_not_keep_a_scene_from_its_vibration(tmp_path: Path) -> None:
     words = [word for setting in (*QUIET, *SETTINGS) for word in ("--set", setting)]
     assert main(["dynamics", str(ROOT / "demos/he2022_wear.toml"), "--out", str(tmp_path), "--quiet", *words]) == 0
     assert rows(tmp_path / "response.csv")
+
+
+def test_too_little_backlash_is_said_before_contact_is_solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Flanks that stand 10 µm proud on both sides, backlash 0: refused by geometry alone, and no file is left."""
+    chart = "diameter_mm,depth_um\n140,-10\n157,-10\n"
+    (tmp_path / "proud.csv").write_text(chart)
+    given = scene(f'pinion.flank_csv="{tmp_path / "proud.csv"}"', "dynamics.backlash_um=0")
+    monkeypatch.setattr(LoadList, "prepare", None)
+    scenes = list(load_scenes(given, [50.0, 100.0]).values())
+    assert given.dynamics is not None
+    with pytest.raises(Jammed, match=r"overlap on both sides, unloaded errors included, by 20"):
+        run_dynamics(scenes, given.dynamics, tmp_path / "out", quiet=True)
+    assert not (tmp_path / "out").exists()

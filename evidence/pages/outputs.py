@@ -15,6 +15,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from evidence.tables import markdown
 from evolvent.dynamics.operation_figures import OperationFigures, VibrationRow
+from evolvent.dynamics.results.design_load import ExcitationFacts
 from evolvent.dynamics.results.histories import HistoryRow
 from evolvent.dynamics.results.response import BranchRow, DriveSummary, ResponseRow
 from evolvent.dynamics.results.spectrum import SpectrumRow
@@ -64,7 +65,8 @@ FILES = (
       "charts and `results/`; pictures once `evolvent plot` draws them, no run.log, no fields"),
     ("load_*", "`evolvent loads`: the run under one torque, a folder with all of the above"),
     ("loads.csv", "`evolvent loads`: one line per load and friction coefficient"),
-    ("excitation.csv", "`evolvent excitation` and `dynamics`, `run` at an operating speed: a line per torque and position"),
+    ("excitation.csv", "excitation under each torque: `evolvent excitation`, `dynamics`, `run` at an operating speed"),
+    ("excitation.json", "`evolvent excitation` and `dynamics`: what it is of, and the load that a relief fits"),
     ("harmonics.csv", "likewise: a line per quantity, torque and mesh harmonic"),
     ("response.csv", "`evolvent dynamics`: a line per speed, running up and down"),
     ("branch.csv", "`evolvent dynamics`: a line per steady state along the branch"),
@@ -114,6 +116,7 @@ SECTIONS = (
     ("`teeth` of a position; `teeth.csv` has pinion_angle_deg and friction before them", ToothRow, ""),
     ("`loads.csv`", LoadRow, "Of `evolvent loads`."),
     ("`excitation.csv`", ExcitationRow, "Without friction; the lightest torque first."),
+    ("`excitation.json`", ExcitationFacts, ""),
     ("`harmonics.csv`", HarmonicRow, "Fewer than half the positions, at most five."),
     ("`response.csv`", ResponseRow, "Of `evolvent dynamics`: running up, then running down, at ascending speeds."),
     ("`branch.csv`", BranchRow, "Of `evolvent dynamics`: all steady states from the lowest speed to the highest."),

@@ -11,6 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.dynamics.operating_point import LEAST_FORCE, OperatingPoint, Operation
+from evolvent.dynamics.operation_figures import OperationFigures, operation_warnings
 from evolvent.dynamics.oscillator.response import response
 from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
 from evolvent.dynamics.pair_model import DriveSettings
@@ -99,3 +100,40 @@ def test_coarser_gears_get_the_same_course() -> None:
     first, second = (prepare(gear_problem(SCENE), MPI.COMM_SELF).model.load for _ in range(2))
     assert prepare.operation is not None and first.course is prepare.operation.load.course
     assert second.course is first.course
+
+
+def test_forces_beyond_the_heaviest_torque_are_told() -> None:
+    """Near resonance, on a force surface up to the torque itself: the largest force over that of the torque, and a
+    sentence; none where heavier torques reach it, or where the mesh is a stiffness."""
+    speed = 0.92 * operation(4000.0).drive.natural_speed
+    light = replace(POINT, shares=(0.5, 1.0), speed=speed).on(model(), (None, None), MPI.COMM_SELF)
+    figures = OperationFigures.of(light)
+    share = figures.heaviest_torque_share
+    assert share is not None and share > 1.0
+    assert share == pytest.approx(figures.largest_force_N / figures.static_force_N, rel=1e-6)
+    (sentence,) = operation_warnings([figures])
+    assert f"{share:.3g} times that of the heaviest torque" in sentence
+    assert operation_warnings([OperationFigures.of(operation(3000.0))]) == []
+    stiff = replace(POINT, settings=replace(POINT.settings, mesh="tangent")).on(model(), (None, None), MPI.COMM_SELF)
+    assert stiff.heaviest_torque_share is None
+
+
+def test_stresses_of_several_meshes_are_those_of_the_largest_force() -> None:
+    """At twice the natural speed, hardly damped, the motion repeats after two meshes. Exact: the course of the larger
+    of both forces at each phase, or for wear of their mean."""
+    twice = replace(
+        POINT, settings=replace(POINT.settings, damping_ratio=0.003), speed=2.0 * operation(4000.0).drive.natural_speed
+    )
+    mean, largest = (
+        replace(twice, of_several=way).on(model(), (None, None), MPI.COMM_SELF) for way in ("mean", "largest")
+    )
+    assert mean.repeats == largest.repeats == 2
+    wear, stress = mean.load.course, largest.load.course
+    assert wear is not None and stress is not None
+    phases = np.arange(240) / 240
+    both = [np.interp(phases, path.phases, path.force) / mean.drive.model.load for path in mean.paths]
+    assert wear.shares == pytest.approx(np.maximum(np.mean(both, axis=0), LEAST_FORCE), rel=1e-9)
+    assert stress.shares == pytest.approx(np.maximum(np.max(both, axis=0), LEAST_FORCE), rel=1e-6)
+    assert stress.shares.max() > 1.2 * wear.shares.max()
+    *_, sentence = operation_warnings([OperationFigures.of(largest)])
+    assert "after 2 meshes" in sentence

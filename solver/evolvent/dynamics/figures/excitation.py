@@ -18,6 +18,7 @@ from evolvent.dynamics.results.curves import (
     pitch_curves,
     unloaded_curve,
 )
+from evolvent.dynamics.results.design_load import ExcitationFacts
 from evolvent.results.drawing.style import INK, foot, png, sheet, styled, torque_colours
 from evolvent_meshes.arrays import Floats
 
@@ -28,23 +29,23 @@ BARS = (
 
 
 def excitation_picture(
-    excitation: MeshExcitation, torques: Sequence[float], companion: CoarseExcitation = NO_COMPANION
+    excitation: MeshExcitation, facts: ExcitationFacts, companion: CoarseExcitation = NO_COMPANION
 ) -> bytes:
     """PNG of `excitation_figure`."""
     with styled():
-        return png(excitation_figure(excitation, torques, companion))
+        return png(excitation_figure(excitation, facts, companion))
 
 
 def excitation_figure(
-    excitation: MeshExcitation, torques: Sequence[float], companion: CoarseExcitation = NO_COMPANION
+    excitation: MeshExcitation, facts: ExcitationFacts, companion: CoarseExcitation = NO_COMPANION
 ) -> Figure:
     """Transmission error and stiffness over the pitch under each torque, the force over the deflection, and the
-    peak-to-peak transmission error over the torque, with error bars from the companion. torques: (m,) [N·m],
-    ascending."""
-    loaded, curves = excitation.loaded, list(pitch_curves(excitation, companion))
+    peak-to-peak transmission error over the torque, with error bars from the companion."""
+    loaded, curves, torques = excitation.loaded, list(pitch_curves(excitation, companion)), facts.torques_Nm
     figure = sheet(
         "Excitation by the mesh: transmission error and mesh stiffness over a pitch, without friction",
-        f"{len(torques)} torques from {torques[0]:.4g} to {torques[-1]:.4g} N·m{_least(excitation, torques)}.",
+        f"{facts.title}. Mesh {facts.mesh_level}, {facts.positions} positions, {len(torques)} torques from "
+        f"{torques[0]:.4g} to {torques[-1]:.4g} N·m.{_design(facts)}",
         (11.0, 7.6),
     )
     grid = figure.subplots(2, 2)
@@ -56,19 +57,24 @@ def excitation_figure(
     _over_pitch(grid[0, 1], phase, [each[TANGENT] for each in curves], colours, "tangent mesh stiffness [N/µm]")
     grid[0, 1].set_ylim(bottom=0.0)
     _draw_force(grid[1, 0], excitation, phase)
+    beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0), "fontsize": 8.0, "title_fontsize": 8.0}
+    grid[0, 1].legend(grid[0, 1].lines, [f"{torque:.4g}" for torque in torques], title="N·m", **beside)
     _draw_harris(grid[1, 1], [unloaded_curve(excitation), *(each[LOADED] for each in curves)], torques, colours)
-    said = "Colours of curves: the torques at lower right. Secant stiffness: excitation.csv; harmonics.csv."
+    said = "Secant stiffness: excitation.csv; harmonics.csv."
     foot(figure, *([said] if companion.excitation is None else [said, BARS]))
     return figure
 
 
-def _least(excitation: MeshExcitation, torques: Sequence[float]) -> str:
+def _design(facts: ExcitationFacts) -> str:
     """Where the peak-to-peak transmission error is least, if at a torque between others."""
-    size = 1e3 * np.ptp(excitation.loaded.errors, axis=0)
-    least = int(np.argmin(size))
-    if least in (0, len(size) - 1):
+    if facts.design_torque_Nm is None:
         return ""
-    return f"; of these the peak-to-peak transmission error is least at {torques[least]:.4g} N·m, {size[least]:.3g} µm"
+    bar = "" if facts.design_peak_to_peak_um_error is None else f" ± {facts.design_peak_to_peak_um_error:.2g}"
+    known = ""
+    if facts.design_from_Nm is not None:
+        known = f" (within its error from {facts.design_from_Nm:.3g} to {facts.design_to_Nm:.3g} N·m)"
+    least = f"{facts.design_peak_to_peak_um:.3g}{bar} µm"
+    return f" Peak-to-peak transmission error least at {facts.design_torque_Nm:.3g} N·m{known}: {least}."
 
 
 def _over_pitch(

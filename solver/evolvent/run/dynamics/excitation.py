@@ -13,6 +13,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
+from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts, write_excitation_facts
 from evolvent.dynamics.results.histories import HISTORIES
 from evolvent.dynamics.results.response import BRANCH, DYNAMICS, RESPONSE
 from evolvent.dynamics.results.spectrum import SPECTRUM
@@ -39,7 +40,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
 
 PICTURE = "excitation.png"
-WRITTEN = EXCITATION, HARMONICS, f"pictures/{PICTURE}"
+WRITTEN = EXCITATION, HARMONICS, EXCITATION_FACTS, f"pictures/{PICTURE}"
 OF_DYNAMICS = (
     *WRITTEN, RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP,
     *(f"pictures/{name}.png" for name in ("vibration", "waterfall", "histories", "torque_map")),
@@ -60,7 +61,7 @@ def run_excitation(
     Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
     WriteError.
     """
-    comm, pictures = MPI.COMM_WORLD, wanted_output(scenes[0]).pictures
+    comm = MPI.COMM_WORLD
     check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     fine, coarse = kept_positions(scenes, out, resume)
@@ -68,7 +69,7 @@ def run_excitation(
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
         progress.stage(OUTPUT)
-        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems, pictures))
+        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems, scenes[0]))
 
 
 @contextmanager
@@ -154,28 +155,30 @@ def loaded_pitch(
 
 def _written(
     folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
-    pictures: bool,
+    scene: Scene,
 ) -> list[str]:  # fmt: skip
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
-    return write_excitation(folder, excitation, companion, problems, pictures)
+    return write_excitation(folder, excitation, companion, problems, scene)
 
 
 def write_excitation(
     folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
-    pictures: bool,
+    scene: Scene,
 ) -> list[str]:  # fmt: skip
     """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn or error
     bars not be estimated. Raises WriteError, FolderError."""
     first = problems[0]
-    radius, torques = first.pair.gears[first.torque_on].base_radius, [1e-3 * each.torque for each in problems]
+    radius = first.pair.gears[first.torque_on].base_radius
+    facts = excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion)
     tables = excitation_rows(excitation, radius, companion), harmonic_rows(excitation, radius, companion)
     write_tables(folder, *tables)
+    write_excitation_facts(folder, facts)
 
     def drawn() -> bytes:
         from evolvent.dynamics.figures.excitation import excitation_picture  # matplotlib takes a second to import
 
-        return excitation_picture(excitation, torques, companion)
+        return excitation_picture(excitation, facts, companion)
 
-    failures = draw([Picture(PICTURE, drawn)] if pictures else [], folder).failures
+    failures = draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
     return [*failures, *([companion.failure] if companion.failure else [])]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -79,11 +80,11 @@ def run_dynamics(
     angles = np.array(uniform_pitch(first.pair.pinion.z, scenes[0].sweep.positions).angles)
     error = unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on)
     check_room(first.pair, error, drive_settings(first.pair, section))
-    wanted = wanted_output(scenes[0]).pictures
     with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
-        return said + on_first(comm, lambda: _written(excitation, companion, problems, section, out, progress, wanted))
+        written = partial(_written, excitation, companion, problems, section, out, progress, scenes[0])
+        return said + on_first(comm, written)
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:
@@ -96,7 +97,7 @@ def accuracy(section: DynamicsSection) -> Accuracy:
 
 def _written(
     excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
-    out: Path, progress: Progress, wanted: bool,
+    out: Path, progress: Progress, scene: Scene,
 ) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
     percents, first = sorted(section.torque_percents), problems[0]
@@ -113,7 +114,7 @@ def _written(
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
-    failures = write_excitation(folder, excitation, companion, problems, wanted)
+    failures = write_excitation(folder, excitation, companion, problems, scene)
     write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
     write_spectrum(folder, spectrum_rows(vibrating, swept, found))
     if moving:
@@ -121,7 +122,7 @@ def _written(
     if over_torque.rows:
         write_torque_map(folder, over_torque.rows)
     pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
-    failures += draw(pictures if wanted else [], folder).failures
+    failures += draw(pictures if wanted_output(scene).pictures else [], folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept)
     return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]

@@ -1,0 +1,84 @@
+"""The load that a relief fits: under which the peak-to-peak transmission error is least (Harris, 1958)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.results.curves import LOADED, CoarseExcitation, pitch_curves
+from evolvent.results.archive.run_folder import RunFolder
+
+EXCITATION_FACTS = "excitation.json"
+LOADS = 400
+"""Loads among which the least peak-to-peak value is sought before it is refined."""
+
+
+@dataclass(frozen=True)
+class ExcitationFacts:
+    """What an excitation is of, and its design load: excitation.json."""
+
+    title: str
+    """Of the scene."""
+    mesh_level: str
+    """Of the scene's meshes."""
+    positions: int
+    """Of a pitch."""
+    torques_Nm: tuple[float, ...]
+    """Under which it was solved, ascending."""
+    design_torque_Nm: float | None
+    """Under which the peak-to-peak transmission error is least, on the mesh force over deflection between the torques
+    that were solved; null where that is the lightest or the heaviest of them, or where there is one torque only."""
+    design_peak_to_peak_um: float | None
+    """The peak-to-peak transmission error there."""
+    design_peak_to_peak_um_error: float | None
+    """Its estimated error, that of the nearest torque; null without error bars."""
+    design_from_Nm: float | None
+    """Lightest torque around it whose peak-to-peak value is not larger by more than that error: which torque between
+    this and the next one is the design load is not known. Null without error bars."""
+    design_to_Nm: float | None
+    """Heaviest one."""
+
+
+def excitation_facts(
+    title: str, level: str, excitation: MeshExcitation, radius: float, companion: CoarseExcitation
+) -> ExcitationFacts:
+    """radius: base radius of the gear that holds the torque [mm]."""
+    forces = excitation.loaded.forces
+    torques = tuple(float(1e-3 * radius * force) for force in forces)
+    count = len(excitation.unloaded_error)
+    return ExcitationFacts(title, level, count, torques, *_design(excitation, radius, companion))
+
+
+def write_excitation_facts(folder: RunFolder, facts: ExcitationFacts) -> None:
+    """Writes excitation.json. Raises WriteError, FolderError."""
+    folder.write_text(EXCITATION_FACTS, json.dumps(asdict(facts), indent=1, ensure_ascii=False) + "\n")
+
+
+def _design(
+    excitation: MeshExcitation, radius: float, companion: CoarseExcitation
+) -> tuple[float | None, float | None, float | None, float | None, float | None]:
+    """Torque [N·m], peak-to-peak value and its error [µm], and the range of torques."""
+    forces = excitation.loaded.forces
+
+    def size(force: float) -> float:
+        return 1e3 * float(np.ptp(excitation.under(force)[0] + excitation.unloaded_error))
+
+    loads = np.linspace(forces[0], forces[-1], LOADS) if len(forces) > 1 else forces
+    sizes = np.array([size(float(force)) for force in loads])
+    i = int(np.argmin(sizes))
+    if i in (0, len(loads) - 1):
+        return None, None, None, None, None
+    best = float(minimize_scalar(size, bounds=(loads[i - 1], loads[i + 1]), method="bounded").x)
+    to_torque, least = 1e-3 * radius, size(best)
+    curves = list(pitch_curves(excitation, companion))[int(np.argmin(np.abs(forces - best)))]
+    error = curves[LOADED].peak_to_peak_error
+    if not np.isfinite(error):
+        return to_torque * best, least, None, None, None
+    alike = sizes <= least + error
+    first = i - int(np.argmin(alike[i::-1])) + 1 if not alike[: i + 1].all() else 0
+    last = i + int(np.argmin(alike[i:])) - 1 if not alike[i:].all() else len(loads) - 1
+    return to_torque * best, least, float(error), to_torque * float(loads[first]), to_torque * float(loads[last])

@@ -14,6 +14,7 @@ from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import BranchRow, speed_of
+from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
@@ -23,16 +24,18 @@ ISO = "K_v of ISO 6336-1"
 
 
 def response_picture(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
-) -> bytes:
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
+    errors: VibrationErrors,
+) -> bytes:  # fmt: skip
     """PNG of `response_figure`."""
     with styled():
-        return png(response_figure(drive, swept, found, branch, iso))
+        return png(response_figure(drive, swept, found, branch, iso, errors))
 
 
 def response_figure(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
-) -> Figure:
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
+    errors: VibrationErrors,
+) -> Figure:  # fmt: skip
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
     speeds, accuracy = np.array([speed_of(drive, float(period)) for period in swept.periods]), iso.accuracy
@@ -53,6 +56,9 @@ def response_figure(
         for axes, values in zip((amplitude, factor, apart), figures):
             axes.plot(speeds, values, style, color=colour, label=f"running {way}")
             _mark_unrepeated(axes, speeds, values, runs)
+        if way == "up":
+            _draw_errors(amplitude, speeds, figures[0], 1e3 * errors.amplitude[way])
+            _draw_errors(factor, speeds, figures[1], errors.dynamic_factor[way])
     _draw_branch(amplitude, branch)
     _draw_iso(factor, speeds, iso)
     for axes in (amplitude, factor, apart):
@@ -74,6 +80,12 @@ def response_figure(
         f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
     )
     return figure
+
+
+def _draw_errors(axes: Axes, speeds: Floats, values: Sequence[float], errors: Floats) -> None:
+    """A band around the values of running up (n,); none where the errors (n,) are not known."""
+    middle = np.asarray(values)
+    axes.fill_between(speeds, middle - errors, middle + errors, color=PINION, alpha=0.2, linewidth=0.0, zorder=1)
 
 
 def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:

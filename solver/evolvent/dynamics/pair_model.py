@@ -84,11 +84,11 @@ def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSetti
     """Of both sides of the teeth. Raises Jammed where they overlap by more than the splines through their errors can
     have it; less is added to the backlash."""
     if settings.mesh == "force_surface":
-        side = mesh.force_surface()
+        side, begin = mesh.force_surface(), float(mesh.loaded.angles[0]) * pair.pinion.z / (2.0 * np.pi)
         try:
-            return mirrored_law(side, pair, settings.backlash)
+            return mirrored_law(side, pair, settings.backlash, begin)
         except Jammed as jammed:
             if jammed.overlap > OVERLAP * float(np.mean(mesh.under(load)[0])):
                 raise
-            return mirrored_law(side, pair, settings.backlash + jammed.overlap)
+            return mirrored_law(side, pair, settings.backlash + jammed.overlap, begin)
     return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)

@@ -21,6 +21,11 @@ from evolvent_meshes.arrays import Floats
 SUPERHARMONICS = (1, 2, 3, 4)
 """Parts of the natural speed that are marked."""
 ISO = "K_v of ISO 6336-1"
+BAND = (
+    "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
+    "with them."
+)
+"""Where error bars are known."""
 
 
 def response_picture(
@@ -78,14 +83,16 @@ def response_figure(
         "mesh.",
         f"K_v of ISO 6336-1, Method B: for base pitch and profile deviations of {accuracy.base_pitch_deviation:.3g} "
         f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
+        *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
     )
     return figure
 
 
 def _draw_errors(axes: Axes, speeds: Floats, values: Sequence[float], errors: Floats) -> None:
     """A band around the values of running up (n,); none where the errors (n,) are not known."""
-    middle = np.asarray(values)
-    axes.fill_between(speeds, middle - errors, middle + errors, color=PINION, alpha=0.2, linewidth=0.0, zorder=1)
+    if np.isfinite(errors).any():
+        ends = np.asarray(values) - errors, np.asarray(values) + errors
+        axes.fill_between(speeds, *ends, color=PINION, alpha=0.25, linewidth=0.0, zorder=1, label="its error")
 
 
 def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:

@@ -1,13 +1,15 @@
-"""Error bars of a pair's vibration over the speed: from sweeps through the same speeds on two other excitations.
+"""Error bars of a pair's vibration over the speed: from sweeps through the same speeds on other excitations.
 
 The error of a figure at a speed has two parts, each a multiple of how far the figure is off on another excitation:
 
 - The mesh: on elements of twice the size at the same positions. The factor is that of what varies over the pitch in the
   excitation (`curves.VARYING_FACTOR`), for that is what excites.
-- The spacing of positions: on every other position of the same mesh. The excitation is a spline through its positions.
-  Where a tooth pair comes into contact the stiffness jumps within a step, so that harmonics of the spline are off in
-  proportion to the step: half the step has half the error, and the difference is the error of the finer one, 1/(2 − 1).
-  So do the harmonics of the excitation (`curves.PitchCurve.amplitude_errors`) have it. Of kinks alone a third would do.
+- The spacing of positions: on every other position of the same mesh, from the first on and from the second on. The
+  excitation is a spline through its positions. Where a tooth pair comes into contact the stiffness jumps within a step,
+  so that harmonics of the spline are off in proportion to the step: half the step has half the error, and the
+  difference is the error of the finer one, 1/(2 − 1). Of kinks alone a third would do. Where in a step the jump lies is
+  chance; one half of the positions may see it just as all do, the other then does not, and the mean of both differences
+  is taken, as for the harmonics of the excitation (`curves.PitchCurve.amplitude_errors`).
 
 Both are added, as in all error bars: they are limits rather than deviations of chance, and both mostly move the same
 resonances, so that there is no reason for them to cancel as roots of squares have it. All sweeps are at the same speeds
@@ -27,11 +29,12 @@ from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.curves import TANGENT, CoarseExcitation, PitchCurve
+from evolvent.results.error_bars.position_spacing import every_other
 from evolvent_meshes.arrays import Floats
 
 WAYS = "up", "down"
-SPACING_FACTOR = 1.0
-"""Of the difference to every other position, see above."""
+SPACING_FACTOR = 0.5
+"""Of the difference to each half of the positions: their mean, see above."""
 FEWEST_POSITIONS = 6
 """Of which every other one still makes an excitation."""
 SAME_JUMP = 0.1
@@ -114,13 +117,20 @@ def mean_stiffness_error(
     return 1e3 * PitchCurve(TANGENT, values(excitation), coarse, companion.order).mean_error
 
 
-def every_other_position(excitation: MeshExcitation) -> MeshExcitation | None:
-    """The excitation from half its positions; None where they are odd in number, or fewer than `FEWEST_POSITIONS`."""
+def halves(excitation: MeshExcitation) -> tuple[MeshExcitation, ...]:
+    """The excitation from every other position, the first or the second one the first; none where positions are odd in
+    number, or fewer than `FEWEST_POSITIONS`."""
     loaded, count = excitation.loaded, len(excitation.unloaded_error)
     if count % 2 or count < FEWEST_POSITIONS:
-        return None
-    half = LoadedMesh(loaded.angles[::2], loaded.forces, loaded.errors[::2], loaded.stiffness[::2])
-    return MeshExcitation(excitation.unloaded_error[::2], half)
+        return ()
+    kept = [every_other(count, first) for first in (0, 1)]
+    return tuple(
+        MeshExcitation(
+            excitation.unloaded_error[half],
+            LoadedMesh(loaded.angles[half], loaded.forces, loaded.errors[half], loaded.stiffness[half]),
+        )
+        for half in kept
+    )
 
 
 def same_jumps(speeds: Sequence[float], others: Sequence[float]) -> Floats:
@@ -169,9 +179,9 @@ def _said(own: Vibration, other: OtherVibration) -> list[str]:
     for way in WAYS:
         here, there = own.jumps[way], other.vibration.jumps[way]
         if lost := _without(here, there):
-            parts.append(f"running {way} {lost} not found {other.what}")
+            parts.append(f"running {way}, {lost} not found {other.what}")
         if more := _without(there, here):
-            parts.append(f"running {way} {more} found {other.what} alone")
+            parts.append(f"running {way}, {more} found {other.what} alone")
     if not parts:
         return []
     return [f"dynamics.json: {'; '.join(parts)}: whether the pair jumps there is not sure. {other.remedy}"]

@@ -1,5 +1,4 @@
-"""The vibration on two other excitations, for its error bars: that of the coarse companion, and every other position.
-"""
+"""The vibration on other excitations, for its error bars: that of the coarse companion, and every other position."""
 
 from __future__ import annotations
 
@@ -17,7 +16,7 @@ from evolvent.dynamics.results.response_errors import (
     OtherVibration,
     Vibration,
     VibrationErrors,
-    every_other_position,
+    halves,
     mean_stiffness_error,
     vibration_errors,
 )
@@ -26,7 +25,7 @@ from evolvent.run.dynamics.speeds import sweep_at
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
 
-COARSE, THINNED = "on elements of twice the size", "on every other position"
+COARSE, THINNED = "on elements of twice the size", "on every other position from the {} on"
 FINER = "A finer mesh tells (mesh.level)"
 CLOSER = "More positions tell (sweep.positions)"
 
@@ -56,9 +55,10 @@ def errors_over_speed(
         _swept(name, mesh, lambda mesh: drive(problem.pair, mesh, load, settings), speeds)
         for name, mesh in _excitations(excitation, companion)
     ]
+    said = _without_spacing(excitation) if others else []
     stiffness = mean_stiffness_error(excitation, companion, load, settings.series_stiffness)
     found = vibration_errors(own, others, stiffness)
-    return replace(found, said=(*found.said, *_without_spacing(excitation, others)))
+    return replace(found, said=(*found.said, *said))
 
 
 def _excitations(
@@ -68,8 +68,8 @@ def _excitations(
     if companion.excitation is None:
         return
     yield OtherVibration(COARSE, FINER, VARYING_FACTOR[companion.order], None), companion.excitation
-    if (half := every_other_position(excitation)) is not None:
-        yield OtherVibration(THINNED, CLOSER, SPACING_FACTOR, None), half
+    for first, half in zip(("first", "second"), halves(excitation)):
+        yield OtherVibration(THINNED.format(first), CLOSER, SPACING_FACTOR, None), half
 
 
 def _swept(
@@ -83,9 +83,9 @@ def _swept(
         return replace(name, failure=str(error))
 
 
-def _without_spacing(excitation: MeshExcitation, others: list[OtherVibration]) -> list[str]:
-    """That the positions cannot be halved, where error bars are wanted."""
-    if not others or any(other.what == THINNED for other in others):
+def _without_spacing(excitation: MeshExcitation) -> list[str]:
+    """Where the positions cannot be halved."""
+    if halves(excitation):
         return []
     return [
         "response.csv: the error bars are those of the mesh alone; with an even number of positions (sweep.positions), "

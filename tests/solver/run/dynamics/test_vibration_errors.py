@@ -128,8 +128,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """He's pair with error bars."""
     folder = tmp_path_factory.mktemp("dynamics") / "out"
     settings = (
-        "sweep.positions=16", "dynamics.torque_percents=[50,100,200]", "dynamics.speeds=12",
-        "dynamics.speed_rpm=[1700,7000]",
+        "sweep.positions=12", "dynamics.torque_percents=[50,100,200]", "dynamics.speeds=12",
+        "dynamics.speed_rpm=[2600,7000]",
     )  # fmt: skip
     words = [word for setting in settings for word in ("--set", setting)]
     scene = str(ROOT / "demos/he2022_dynamics.toml")

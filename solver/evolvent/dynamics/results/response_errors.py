@@ -34,7 +34,8 @@ from evolvent_meshes.arrays import Floats
 
 WAYS = "up", "down"
 SPACING_FACTOR = 0.5
-"""Of the difference to each half of the positions: their mean, see above."""
+"""Of the difference to each half of the positions: their mean, see above. With the first half alone, 14 of 86 bars of
+the dynamic factor of He's pair at 20 positions were too small, by up to 19 times."""
 FEWEST_POSITIONS = 6
 """Of which every other one still makes an excitation."""
 SAME_JUMP = 0.1

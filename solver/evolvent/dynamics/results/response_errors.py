@@ -28,7 +28,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.pair_model import Drive
-from evolvent.dynamics.results.curves import TANGENT, CoarseExcitation, PitchCurve
+from evolvent.dynamics.results.curves import SECANT, TANGENT, CoarseExcitation, PitchCurve
 from evolvent.results.error_bars.position_spacing import every_other
 from evolvent_meshes.arrays import Floats
 
@@ -106,16 +106,19 @@ def vibration_errors(own: Vibration, others: Sequence[OtherVibration], mean_stif
 
 
 def mean_stiffness_error(
-    excitation: MeshExcitation, companion: CoarseExcitation, load: float, series_stiffness: float
-) -> float:
+    excitation: MeshExcitation, companion: CoarseExcitation, load: float, series_stiffness: float,
+    quantity: str = TANGENT,
+) -> float:  # fmt: skip
     """[N/mm] of `Drive.mean_stiffness` under a load [N], by mesh and spacing; NaN without a companion. That of
-    harmonics.csv, where nothing gives way in series (series_stiffness: [N/mm], infinite then)."""
+    harmonics.csv, where nothing gives way in series (series_stiffness: [N/mm], infinite then). quantity: the stiffness
+    that it is the mean of, TANGENT or SECANT."""
 
     def values(mesh: MeshExcitation) -> Floats:
-        return 1e-3 * (mesh if np.isinf(series_stiffness) else mesh.in_series(series_stiffness)).under(load)[1]
+        depth, tangent = (mesh if np.isinf(series_stiffness) else mesh.in_series(series_stiffness)).under(load)
+        return 1e-3 * (load / depth if quantity == SECANT else tangent)
 
     coarse = None if companion.excitation is None else values(companion.excitation)
-    return 1e3 * PitchCurve(TANGENT, values(excitation), coarse, companion.order).mean_error
+    return 1e3 * PitchCurve(quantity, values(excitation), coarse, companion.order).mean_error
 
 
 def halves(excitation: MeshExcitation) -> tuple[MeshExcitation, ...]:

@@ -11,7 +11,7 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
 from evolvent.dynamics.oscillator.response import Response, Spectrum
 from evolvent.dynamics.pair_model import DriveSettings, drive
-from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
+from evolvent.dynamics.results.curves import NO_COMPANION, SECANT, CoarseExcitation
 from evolvent.dynamics.results.response_errors import (
     OtherVibration,
     Vibration,
@@ -103,9 +103,11 @@ def test_halves_are_every_other_position() -> None:
 
 def test_error_of_a_stiffness() -> None:
     """Constant ones of 300 and 306 N/µm: half the difference, 3 N/µm, and nothing between the positions; behind
-    600 N/µm in series 200 and 202.65 N/µm, half of that difference; without a companion it is unknown."""
+    600 N/µm in series 200 and 202.65 N/µm, half of that difference; without a companion it is unknown. Secants of a
+    straight line are its tangents."""
     fine, coarse = excitation(3e5), CoarseExcitation(excitation(3.06e5))
     assert mean_stiffness_error(fine, coarse, LOAD, np.inf) == pytest.approx(3e3, rel=1e-9)
     behind = 0.5 * (1.0 / (1.0 / 3.06e5 + 1.0 / 6e5) - 2e5)
     assert mean_stiffness_error(fine, coarse, LOAD, 6e5) == pytest.approx(behind, rel=1e-9)
+    assert mean_stiffness_error(fine, coarse, LOAD, 6e5, SECANT) == pytest.approx(behind, rel=1e-9)
     assert np.isnan(mean_stiffness_error(fine, NO_COMPANION, LOAD, np.inf))

@@ -101,18 +101,18 @@ def _law(pair: GearPair, mesh: MeshExcitation, load: float, settings: DriveSetti
     """Of both sides of the teeth. Raises Jammed where they overlap by more than the splines through their errors can
     have it; less is added to the backlash."""
     if settings.mesh == "force_surface":
-        side = mesh.force_surface()
+        side, begin = mesh.force_surface(), float(mesh.loaded.angles[0]) * pair.pinion.z / (2.0 * np.pi)
         try:
-            return _mirrored(side, pair, settings)
+            return _mirrored(side, pair, settings, begin)
         except Jammed as jammed:
             if jammed.overlap > OVERLAP * float(np.mean(mesh.under(load)[0])):
                 raise
-            return mirrored_law(side, pair, settings.backlash + jammed.overlap)
+            return mirrored_law(side, pair, settings.backlash + jammed.overlap, begin)
     return paper_law(mesh.stiffness_side(load, settings.mesh == "secant"), settings.backlash)
 
 
-def _mirrored(side: MeshSide, pair: GearPair, settings: DriveSettings) -> MeshLaw:
-    """Both sides, each with its own room, where the mesh has them."""
+def _mirrored(side: MeshSide, pair: GearPair, settings: DriveSettings, begin: float = 0.0) -> MeshLaw:
+    """Both sides, each with its own room, where the mesh has them. begin: phase of the first position."""
     if settings.mesh != "force_surface":
         return paper_law(side, settings.backlash)
-    return mirrored_law(side, pair, settings.backlash)
+    return mirrored_law(side, pair, settings.backlash, begin)

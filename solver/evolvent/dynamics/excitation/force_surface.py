@@ -107,12 +107,12 @@ class MeshExcitation:
         return np.asarray(self._force(i)(np.minimum(depths, heaviest)) + slope * beyond)
 
 
-def mirrored_law(side: MeshSide, pair: GearPair, backlash: float) -> MeshLaw:
+def mirrored_law(side: MeshSide, pair: GearPair, backlash: float, begin: float = 0.0) -> MeshLaw:
     """Back flanks alike the loaded ones, their modifications included: at rotation φ of the pinion they stand as those
     do, seen in a mirror, at 2ψ − φ, with ψ the half angle of its tooth on the working pitch circle. backlash: [mm]
-    along the line of action."""
+    along the line of action; begin: phase of the pitch at which that of `side` is 0."""
     meeting = 2.0 * pair.pinion.half_angle(pair.working_pitch_diameters[0]) * pair.pinion.z / (2.0 * np.pi)
-    return MeshLaw(side, mirrored(side, meeting, backlash))
+    return MeshLaw(side, mirrored(side, meeting - 2.0 * begin, backlash))
 
 
 def paper_law(side: MeshSide, backlash: float) -> MeshLaw:

@@ -14,25 +14,33 @@ from evolvent.dynamics.oscillator.response import Response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive
 from evolvent.dynamics.results.response import BranchRow, speed_of
+from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 
 SUPERHARMONICS = (1, 2, 3, 4)
 """Parts of the natural speed that are marked."""
 ISO = "K_v of ISO 6336-1"
+BAND = (
+    "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
+    "with them."
+)
+"""Where error bars are known."""
 
 
 def response_picture(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
-) -> bytes:
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
+    errors: VibrationErrors,
+) -> bytes:  # fmt: skip
     """PNG of `response_figure`."""
     with styled():
-        return png(response_figure(drive, swept, found, branch, iso))
+        return png(response_figure(drive, swept, found, branch, iso, errors))
 
 
 def response_figure(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB
-) -> Figure:
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], branch: Sequence[BranchRow], iso: MethodB,
+    errors: VibrationErrors,
+) -> Figure:  # fmt: skip
     """Equivalent amplitude, dynamic factor with that of ISO 6336-1, and separated share over the speed, up and down,
     and the unstable steady states between."""
     speeds, accuracy = np.array([speed_of(drive, float(period)) for period in swept.periods]), iso.accuracy
@@ -53,6 +61,9 @@ def response_figure(
         for axes, values in zip((amplitude, factor, apart), figures):
             axes.plot(speeds, values, style, color=colour, label=f"running {way}")
             _mark_unrepeated(axes, speeds, values, runs)
+        if way == "up":
+            _draw_errors(amplitude, speeds, figures[0], 1e3 * errors.amplitude[way])
+            _draw_errors(factor, speeds, figures[1], errors.dynamic_factor[way])
     _draw_branch(amplitude, branch)
     _draw_iso(factor, speeds, iso)
     for axes in (amplitude, factor, apart):
@@ -72,8 +83,16 @@ def response_figure(
         "mesh.",
         f"K_v of ISO 6336-1, Method B: for base pitch and profile deviations of {accuracy.base_pitch_deviation:.3g} "
         f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
+        *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
     )
     return figure
+
+
+def _draw_errors(axes: Axes, speeds: Floats, values: Sequence[float], errors: Floats) -> None:
+    """A band around the values of running up (n,); none where the errors (n,) are not known."""
+    if np.isfinite(errors).any():
+        ends = np.asarray(values) - errors, np.asarray(values) + errors
+        axes.fill_between(speeds, *ends, color=PINION, alpha=0.25, linewidth=0.0, zorder=1, label="its error")
 
 
 def _draw_iso(axes: Axes, speeds: Floats, iso: MethodB) -> None:

@@ -12,6 +12,7 @@ from evolvent.dynamics.iso_dynamic_factor import MethodB
 from evolvent.dynamics.oscillator.response import Response, response
 from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
+from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
 from evolvent_meshes.arrays import Floats
@@ -36,6 +37,9 @@ class ResponseRow:
     equivalent_amplitude_um: float
     """√ΣA_r² of the first three mesh harmonics of s = r_b1 θ_1 − r_b2 θ_2, with the unloaded transmission error in it;
     the rms value of these is 1/√2 of it."""
+    equivalent_amplitude_um_error: float
+    """Its estimated error by the mesh and by the spacing of positions; NaN where there is no coarse companion
+    (`output.error_bars`). Large beside resonances and jumps that move with the excitation."""
     elastic_equivalent_amplitude_um: float
     """The same of s − e, without it."""
     harmonic_1_um: float
@@ -65,6 +69,8 @@ class ResponseRow:
     dynamic_factor: float
     """Largest mesh force of this motion over the static one; with the damping that the scene gives, and of all teeth in
     contact: not K_v of ISO 6336-1."""
+    dynamic_factor_error: float
+    """Its estimated error, likewise."""
     dynamic_factor_iso: float
     """K_v of ISO 6336-1:2006, Method B, at this speed: by the deviations and the mass that the scene gives, without its
     damping; the same up and down."""
@@ -104,8 +110,13 @@ class DriveSummary:
     mean_stiffness_N_per_um: float
     """Stiffness of the whole face under the torque, mean over the pitch, with what gives way in series: the secant one
     where dynamics.mesh is secant, else the tangent one."""
+    mean_stiffness_N_per_um_error: float | None
+    """Its estimated error by the mesh and by the spacing of positions; null where there is no coarse companion
+    (`output.error_bars`)."""
     natural_speed_rpm: float
     """Of the pinion, at which the mesh frequency is the natural one at that stiffness."""
+    natural_speed_rpm_error: float | None
+    """Its estimated error by that of the stiffness."""
     static_force_N: float
     """Torque over base radius."""
     damping_N_s_per_mm: float
@@ -127,8 +138,13 @@ class DriveSummary:
     jumps_up_rpm: tuple[float, ...]
     """Speeds at which a pair that runs up leaves the branch: at a fold, or where the steady state loses its stability
     otherwise; in the order in which it comes there."""
+    jumps_up_rpm_error: tuple[float | None, ...]
+    """Their estimated errors by the mesh and by the spacing of positions; null where there is no coarse companion, and
+    of a jump that is not found on its mesh, or from every other position."""
     jumps_down_rpm: tuple[float, ...]
     """The same of a pair that runs down."""
+    jumps_down_rpm_error: tuple[float | None, ...]
+    """Their estimated errors, likewise."""
     heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
     on straight. Null with another model of the mesh."""
@@ -159,17 +175,18 @@ def responses(drive: Drive, swept: SpeedSweep) -> dict[str, list[Response]]:
 
 
 def response_rows(
-    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], iso: MethodB
+    drive: Drive, swept: SpeedSweep, found: dict[str, list[Response]], iso: MethodB, errors: VibrationErrors
 ) -> Iterator[ResponseRow]:
     """Up, then down, at ascending speeds."""
     for way, runs in (("up", swept.up), ("down", swept.down)):
-        for period, run, each in zip(swept.periods, runs, found[way]):
+        bars = UM * errors.amplitude[way], errors.dynamic_factor[way]
+        for period, run, each, amplitude_error, factor_error in zip(swept.periods, runs, found[way], *bars):
             speed = speed_of(drive, float(period))
             yield ResponseRow(
-                speed, way, run.repeats, run.jumped, UM * each.equivalent_amplitude,
+                speed, way, run.repeats, run.jumped, UM * each.equivalent_amplitude, float(amplitude_error),
                 UM * each.elastic_equivalent_amplitude, *_five(UM * each.total), *_five(each.force),
-                each.largest_force, each.smallest_force, each.largest_force / drive.model.load, iso.factor(speed),
-                each.apart, each.behind,
+                each.largest_force, each.smallest_force, each.largest_force / drive.model.load, float(factor_error),
+                iso.factor(speed), each.apart, each.behind,
             )  # fmt: skip
 
 
@@ -194,16 +211,19 @@ def jumps(drive: Drive, runs: Iterable[Running]) -> tuple[float, ...]:
 
 
 def summary(
-    drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB
-) -> DriveSummary:
+    drive: Drive, settings: DriveSettings, swept: SpeedSweep, largest: float, heaviest: float, iso: MethodB,
+    errors: VibrationErrors,
+) -> DriveSummary:  # fmt: skip
     """largest: mesh force of all speeds; heaviest: of the force surface's torques [N]."""
     pinion, wheel = settings.inertias
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     return DriveSummary(
-        1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness, drive.natural_speed,
-        drive.model.load, drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
+        1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
+        _known(1e-3 * errors.mean_stiffness), drive.natural_speed, _known(errors.natural_speed), drive.model.load,
+        drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
         settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
-        jumps(drive, swept.up), jumps(drive, swept.down[::-1]),
+        jumps(drive, swept.up), tuple(map(_known, errors.jumps["up"])),
+        jumps(drive, swept.down[::-1]), tuple(map(_known, errors.jumps["down"])),
         largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
         iso.resonance_speed, iso.relief_term,
     )  # fmt: skip
@@ -212,6 +232,11 @@ def summary(
 def _different(speeds: Iterable[float]) -> tuple[float, ...]:
     """Each once, to six digits: pieces of the branch may be followed over the same fold."""
     return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
+
+
+def _known(error: float) -> float | None:
+    """JSON has no NaN."""
+    return error if np.isfinite(error) else None
 
 
 def write_response(

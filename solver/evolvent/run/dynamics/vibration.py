@@ -25,11 +25,11 @@ from evolvent.dynamics.results.response import (
     branch_rows,
     largest_force,
     response_rows,
-    responses,
     speed_of,
     summary,
     write_response,
 )
+from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.dynamics.results.spectrum import spectrum_rows, write_spectrum
 from evolvent.dynamics.results.torque_map import write_torque_map
 from evolvent.fem.parallel.ranks import on_first
@@ -47,6 +47,7 @@ from evolvent.run.dynamics.excitation import (
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
+from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
@@ -55,7 +56,7 @@ from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
 PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
-SPEEDS, MAP = "speeds", "torque map"
+SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
 def run_dynamics(
@@ -106,25 +107,30 @@ def _written(
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
     iso = method_b(first.pair, vibrating.model.mass, vibrating.model.load, accuracy(section), moduli)
     progress.stage(SPEEDS)
-    swept = sweep_at(vibrating, sweep_list(vibrating.natural_speed, section))
-    found, branch = responses(vibrating, swept), list(branch_rows(vibrating, swept))
+    speeds = sweep_list(vibrating.natural_speed, section)
+    swept = sweep_at(vibrating, speeds)
+    own, branch = vibration_of(vibrating, swept), list(branch_rows(vibrating, swept))
+    found = own.found
+    if companion.excitation is not None:
+        progress.stage(SPEEDS_AGAIN)
+    errors = errors_over_speed(own, excitation, companion, first, settings, speeds)
     moving = motions(vibrating, swept, section.histories_rpm)
     over_torque = _over_torque(excitation, first, vibrating, settings, section, progress)
     progress.stage(OUTPUT)
-    known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso)
+    known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso, errors)
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
     failures = write_excitation(folder, excitation, companion, problems, scene)
-    write_response(folder, response_rows(vibrating, swept, found, iso), branch, known)
+    write_response(folder, response_rows(vibrating, swept, found, iso, errors), branch, known)
     write_spectrum(folder, spectrum_rows(vibrating, swept, found))
     if moving:
         write_histories(folder, history_rows(moving))
     if over_torque.rows:
         write_torque_map(folder, over_torque.rows)
-    pictures = [*_pictures(vibrating, swept, found, branch, moving, iso), *map_pictures(over_torque)]
+    pictures = [*_pictures(vibrating, swept, found, branch, moving, iso, errors), *map_pictures(over_torque)]
     failures += draw(pictures if wanted_output(scene).pictures else [], folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
-    said = *said, *_not_repeating(vibrating, swept)
+    said = *said, *_not_repeating(vibrating, swept), *errors.said
     return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]
 
 
@@ -147,13 +153,14 @@ def _pictures(
     branch: Sequence[BranchRow],
     moving: Sequence[Motion],
     iso: MethodB,
+    errors: VibrationErrors,
 ) -> Iterator[Picture]:
     """Vibration over the speed, spectrum running up, and motions at speeds where any are wanted."""
 
     def over_speed() -> bytes:
         from evolvent.dynamics.figures.response import response_picture  # matplotlib takes a second
 
-        return response_picture(vibrating, swept, found, branch, iso)
+        return response_picture(vibrating, swept, found, branch, iso, errors)
 
     def waterfall() -> bytes:
         from evolvent.dynamics.figures.waterfall import waterfall_picture

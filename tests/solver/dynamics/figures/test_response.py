@@ -1,0 +1,68 @@
+"""What the picture of the vibration shows of its error, of a linear mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from evolvent.dynamics.excitation.force_surface import MeshExcitation
+from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh
+from evolvent.dynamics.figures.response import response_figure
+from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
+from evolvent.dynamics.oscillator.speed_sweep import speeds_to_periods, sweep_speeds
+from evolvent.dynamics.pair_model import DriveSettings, drive
+from evolvent.dynamics.results.response import branch_rows, responses
+from evolvent.dynamics.results.response_errors import Vibration, VibrationErrors, vibration_errors
+from evolvent.scene.gear_problem import gear_problem
+from tests.support.gear_cases import spur_scene
+
+LOAD, SPEEDS = 1000.0, np.linspace(3000.0, 6000.0, 5)
+BARS = np.array([1e-4, 2e-4, 3e-4, 2e-4, 1e-4])
+"""Of the amplitude [mm]."""
+
+
+def drawn(known: bool) -> Figure:
+    """Running through five speeds, with an error or without."""
+    pair, forces = gear_problem(spur_scene()).pair, np.array([LOAD, 2.0 * LOAD])
+    error, stiffness = 2e-4 * np.cos(2.0 * np.pi * np.arange(8) / 8), np.full((8, 2), 3e5)
+    angles = 2.0 * np.pi / 50.0 * np.arange(8) / 8
+    mesh = MeshExcitation(error, LoadedMesh(angles, forces, error[:, None] + forces / stiffness, stiffness))
+    vibrating = drive(pair, mesh, LOAD, DriveSettings((7.65, 7.65), 0.1, 0.05, mesh="tangent"))
+    swept = sweep_speeds(vibrating.model, speeds_to_periods(SPEEDS, 50))
+    found = responses(vibrating, swept)
+    errors: VibrationErrors = vibration_errors(Vibration(vibrating, found, {"up": (), "down": ()}), [], np.nan)
+    if known:
+        both = {"up": BARS, "down": 9.0 * BARS}
+        errors = replace(errors, amplitude=both, dynamic_factor={way: 1e3 * bars for way, bars in both.items()})
+    iso = method_b(pair, vibrating.model.mass, LOAD, Accuracy(5.0, 5.0), (2.1e5, 2.1e5))
+    return response_figure(vibrating, swept, found, list(branch_rows(vibrating, swept)), iso, errors)
+
+
+def bands(axes: Axes) -> list[PolyCollection]:
+    return [each for each in axes.collections if isinstance(each, PolyCollection)]
+
+
+def test_the_run_up_has_a_band_of_its_error() -> None:
+    """As wide as twice the error at each speed, in µm and in the factor; the foot says what it is."""
+    figure = drawn(known=True)
+    for axes, scale in zip(figure.axes, (1e3, 1e3)):
+        (band,) = bands(axes)
+        corners = np.concatenate([path.vertices for path in band.get_paths()])
+        for speed, bar in zip(SPEEDS, BARS):
+            heights = corners[np.isclose(corners[:, 0], speed), 1]
+            assert np.ptp(heights) == pytest.approx(2.0 * scale * bar, rel=1e-9)
+    assert any("Its error: " in text.get_text() for text in figure.texts)
+
+
+def test_an_unknown_error_has_none() -> None:
+    """Nor a word at the foot or in the legend."""
+    figure = drawn(known=False)
+    assert bands(figure.axes[0]) == bands(figure.axes[1]) == []
+    assert not any("Its error: " in text.get_text() for text in figure.texts)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None and "its error" not in [text.get_text() for text in legend.get_texts()]

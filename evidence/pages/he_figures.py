@@ -93,6 +93,7 @@ def figures(runs: HeRuns) -> Named:
         yield from _over_speed(name, Vibration.read(runs.run("dynamics", name, VIBRATION, *settings)))
     yield from _contact(runs, scene, at_paper_speed)
     yield from _worn(runs, "wear")
+    yield from _worn_stiffness(runs, scene, mass, series)
 
 
 def sensitivity(runs: HeRuns) -> Named:
@@ -191,11 +192,7 @@ def _worn(runs: HeRuns, name: str, *settings: str) -> Named:
         yield f"{worn}_deepest_um", report["deepest_um"]
         yield f"{worn}_at_diameter_mm", report["at_diameter_mm"]
         scene, of_scene = (folder / worn / "scene.toml", ()) if cycles else (WEAR, settings)
-        fine = runs.run("dynamics", f"{name}_{worn}", scene, *of_scene, FINE)
-        swept = Vibration.read(fine)
-        yield f"{worn}_fine_natural_rpm", float(swept.facts["natural_speed_rpm"])
-        for kind in ("tangent", "secant"):
-            yield f"{worn}_{kind}_N_per_um", _mean_stiffness(fine, TORQUE, kind)
+        swept = Vibration.read(runs.run("dynamics", f"{name}_{worn}", scene, *of_scene))
         yield f"{worn}_separated_percent", 100.0 * swept.largest("separated_share")
         yield f"{worn}_amplitude_um", swept.largest("equivalent_amplitude_um")
 
@@ -205,6 +202,19 @@ PARTS: Mapping[str, tuple[Callable[[HeRuns], Named], str]] = {
     "sensitivity": (sensitivity, SENSITIVITY),
 }
 """What computes a part's figures, and where they are kept."""
+
+
+def _worn_stiffness(runs: HeRuns, scene: Scene, mass: float, series: float) -> Named:
+    """Of the mesh as worn, and the natural speed with the series compliance [N/µm], at positions that are near enough
+    for a mean."""
+    for cycles in REPORTS:
+        worn = f"worn_{cycles}"
+        folder = runs.run("excitation", f"stiffness_{worn}", runs.out / "wear" / worn / "scene.toml" if cycles else WEAR,
+                          FINE)  # fmt: skip
+        tangent, secant = (_mean_stiffness(folder, TORQUE, kind) for kind in ("tangent", "secant"))
+        yield f"{worn}_tangent_N_per_um", tangent
+        yield f"{worn}_secant_N_per_um", secant
+        yield f"{worn}_fine_natural_rpm", _natural(1.0 / (1.0 / tangent + 1.0 / series), mass, scene.pinion.teeth)
 
 
 def main() -> None:

@@ -30,11 +30,13 @@ class HeRuns:
     """Of all of them, behind their own."""
 
     def run(self, command: str, name: str, scene: str | Path, *settings: str) -> Path:
-        """`evolvent COMMAND SCENE --out OUT/name`. Raises RunFailed."""
+        """`evolvent COMMAND SCENE --out OUT/name`, without error bars; what an earlier call has solved there is gone on
+        from. Raises RunFailed."""
         self.out.mkdir(parents=True, exist_ok=True)
         folder = self.out / name
-        set_to = [f"--set={setting}" for setting in (*settings, *self.settings)]
-        words = module_run("evolvent", command, scene, "--out", folder, "--quiet", "--overwrite", *set_to)
+        set_to = [f"--set={setting}" for setting in ("output.error_bars=false", *settings, *self.settings)]
+        go_on = "--resume" if (folder / "results").exists() else "--overwrite"
+        words = module_run("evolvent", command, scene, "--out", folder, "--quiet", go_on, *set_to)
         run(Command(words, ROOT, self.out / f"{name}.log", time_limit=TIME_LIMIT))
         return folder
 

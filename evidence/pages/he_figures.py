@@ -209,8 +209,8 @@ def _worn_stiffness(runs: HeRuns, scene: Scene, mass: float, series: float) -> N
     for a mean."""
     for cycles in REPORTS:
         worn = f"worn_{cycles}"
-        folder = runs.run("excitation", f"stiffness_{worn}", runs.out / "wear" / worn / "scene.toml" if cycles else WEAR,
-                          FINE)  # fmt: skip
+        worn_scene = runs.out / "wear" / worn / "scene.toml" if cycles else WEAR
+        folder = runs.run("excitation", f"stiffness_{worn}", worn_scene, FINE)
         tangent, secant = (_mean_stiffness(folder, TORQUE, kind) for kind in ("tangent", "secant"))
         yield f"{worn}_tangent_N_per_um", tangent
         yield f"{worn}_secant_N_per_um", secant

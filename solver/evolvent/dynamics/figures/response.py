@@ -20,6 +20,9 @@ from evolvent_meshes.arrays import Floats
 
 SUPERHARMONICS = (1, 2, 3, 4)
 """Parts of the natural speed that are marked."""
+LEAST_SHARE, FAR_ABOVE = 5.0, 2.0
+"""End of the axis of time out of contact at the least [%]; steady states above the runs from which on the amplitude's
+axis leaves them out, over the largest amplitude of the runs."""
 ISO = "K_v of ISO 6336-1"
 BAND = (
     "Its error: estimated, of running up, by the mesh and by the spacing of positions; large beside a jump that moves "
@@ -46,7 +49,7 @@ def response_figure(
     speeds, accuracy = np.array([speed_of(drive, float(period)) for period in swept.periods]), iso.accuracy
     figure = sheet(
         "Vibration over the speed: running up, running down, and the steady states between",
-        f"Natural speed {drive.natural_speed:.0f} r/min at the mean tangent stiffness of "
+        f"Natural speed {drive.natural_speed:.0f} r/min at the mean {_kind(drive)} stiffness of "
         f"{1e-3 * drive.mean_stiffness:.1f} N/µm{_folds(drive, swept)}.",
         (11.0, 8.6),
     )
@@ -64,28 +67,50 @@ def response_figure(
         if way == "up":
             _draw_errors(amplitude, speeds, figures[0], 1e3 * errors.amplitude[way])
             _draw_errors(factor, speeds, figures[1], errors.dynamic_factor[way])
+    alike = all(run.repeats == 1 for run in (*swept.up, *swept.down))
+    hollow = "" if alike else " Hollow: a motion that does not repeat with every mesh."
     _draw_branch(amplitude, branch)
     _draw_iso(factor, speeds, iso)
     for axes in (amplitude, factor, apart):
         for part in SUPERHARMONICS:
             axes.axvline(drive.natural_speed / part, color=FAINT, lw=0.8, ls=":", zorder=0)
         axes.set_ylim(bottom=0.0)
+    beyond = _limit(amplitude, found, branch)
+    apart.set_ylim(top=max(LEAST_SHARE, apart.get_ylim()[1]))
+    for part in SUPERHARMONICS:
+        name = "natural" if part == 1 else f"1/{part}"
+        amplitude.text(drive.natural_speed / part, 0.995, f" {name}", va="top", color=INK, fontsize=8.0,
+                       transform=amplitude.get_xaxis_transform(), clip_on=True)  # fmt: skip
     amplitude.set_xlim(speeds[0], speeds[-1])
     amplitude.set_ylabel("transmission error, equivalent\namplitude of 3 harmonics [µm]")
     factor.set_ylabel("largest mesh force\nover the static one")
     factor.legend(*_iso_alone(factor), loc="upper right")
     apart.set_ylabel("out of contact\n[% of the time]")
     apart.set_xlabel("speed of the pinion [r/min]")
-    amplitude.legend(loc="upper left")
+    amplitude.legend(loc="upper right")
     foot(
         figure,
-        "Dotted: the natural speed and its half, third and quarter. Hollow: a motion that does not repeat with every "
-        "mesh.",
+        "Dotted: the natural speed and its half, third and quarter." + hollow + beyond,
         f"K_v of ISO 6336-1, Method B: for base pitch and profile deviations of {accuracy.base_pitch_deviation:.3g} "
         f"and {accuracy.profile_deviation:.3g} µm; shaded: its main resonance around {iso.resonance_speed:.0f} r/min.",
         *([BAND] if np.isfinite(errors.dynamic_factor["up"]).any() else []),
     )
     return figure
+
+
+def _kind(drive: Drive) -> str:
+    """Of the mean stiffness."""
+    return "secant" if drive.settings.mesh == "secant" else "tangent"
+
+
+def _limit(axes: Axes, found: dict[str, list[Response]], branch: Sequence[BranchRow]) -> str:
+    """Keeps the axis to what is run up and down where steady states go on far above; a sentence where it does."""
+    run = 1e3 * max(each.equivalent_amplitude for runs in found.values() for each in runs)
+    highest = max(row.equivalent_amplitude_um for row in branch)
+    if highest <= FAR_ABOVE * run:
+        return ""
+    axes.set_ylim(top=1.2 * run)
+    return f" Steady states that no run comes to go on to {highest:.3g} µm: branch.csv."
 
 
 def _draw_errors(axes: Axes, speeds: Floats, values: Sequence[float], errors: Floats) -> None:

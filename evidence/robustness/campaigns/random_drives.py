@@ -94,7 +94,8 @@ def random_drive(seed: int) -> RandomDrive:
     excitation = _excitation(springs, load, phases, _waves(draw, phases, draw.decades(0.01, 1.0)) * load / stiffness)
     settings = _settings(draw, pair, excitation)
     mesh = draw.one_of(settings.mesh, settings.mesh, settings.mesh, "sudden steps")
-    found = drive(pair, excitation, int(np.argmax(PERCENTS == 100.0)), settings)
+    nominal = float(excitation.loaded.forces[int(np.argmax(PERCENTS == 100.0))])
+    found = drive(pair, excitation, nominal, settings)
     if mesh == "sudden steps":
         found = _suddenly(draw, pair, found, settings)
     speeds = np.linspace(FROM, TO, draw.whole(60, 100)) * found.natural_speed

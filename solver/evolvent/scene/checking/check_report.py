@@ -52,11 +52,21 @@ def overview(scene: Scene) -> str:
         table("Pair", _pair_rows(pair)),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
+        *_vibration(scene),
         table("Mesh and cost (estimate)", _cost_rows(scene), GEARS) + _room_line(scene),
         _skip_lines(scene),
         *_warning_lines(scene),
     ]
     return "\n\n".join(blocks)
+
+
+def _vibration(scene: Scene) -> list[str]:
+    """The table of [dynamics], where the scene has it."""
+    if scene.dynamics is None:
+        return []
+    from evolvent.scene.checking.vibration_rows import vibration_lines  # Numba takes a second to import
+
+    return [table("Vibration", [Row(*line) for line in vibration_lines(scene, scene.dynamics)], GEARS)]
 
 
 def _skip_lines(scene: Scene) -> str:

@@ -1,0 +1,54 @@
+"""What `evolvent check` tells of the section [dynamics]: inertia, backlash and the room for it, and the size of the
+calls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
+from evolvent.dynamics.gear_inertia import equivalent_mass
+from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
+from evolvent.dynamics.oscillator.mesh_law import Jammed
+from evolvent.dynamics.pair_model import DriveSettings, check_room
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
+
+Line = tuple[str, str, str, tuple[str, ...]]
+"""Name, symbol, unit and the values of pinion and wheel, or of both."""
+
+
+def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
+    """Of a scene with the section."""
+    problem, count = gear_problem(scene), scene.sweep.positions
+    settings = drive_settings(problem.pair, section)
+    mass = equivalent_mass(problem.pair, settings.inertias)
+    force = problem.torque / problem.pair.gears[problem.torque_on].base_radius
+    moduli = problem.materials[0].youngs_modulus, problem.materials[1].youngs_modulus
+    iso = method_b(problem.pair, mass, force, Accuracy(), moduli)
+    swept = ["by default", *(f"{speed:g}" for speed in section.speed_rpm or ())]
+    return [
+        ("moment of inertia", "I", "kg·m²", tuple(f"{1e-3 * each:.4g}" for each in settings.inertias)),
+        ("equivalent mass along the line of action", "m_e", "kg", (f"{1e3 * mass:.4g}",)),
+        ("damping ratio", "ζ", "", (f"{settings.damping_ratio:g}",)),
+        ("backlash along the line of action", "j", "µm", (f"{1e3 * settings.backlash:.4g}",)),
+        ("  lacking for unloaded errors", "", "µm", (f"{1e3 * _lacking(problem, settings, count):.3g}",)),
+        ("natural speed by c_γα of ISO 6336-1", "n_E1", "r/min", (f"{iso.resonance_speed:.4g}",)),
+        ("speeds", "n", "r/min", tuple(swept[1:] or swept[:1])),
+        ("positions × torques of the excitation", "", "", (f"{count} × {len(section.torque_percents)}",)),
+        ("speeds, up and down", "", "", (str(section.speeds),)),
+    ]
+
+
+def _lacking(problem: GearProblem, settings: DriveSettings, count: int) -> float:
+    """Backlash [mm] that unloaded errors want beyond the given one; 0 where they have room, to a micrometre."""
+    angles = np.array(uniform_pitch(problem.pair.pinion.z, count).angles)
+    error = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
+    try:
+        check_room(problem.pair, error, settings)
+    except Jammed as jammed:
+        return jammed.overlap
+    return 0.0

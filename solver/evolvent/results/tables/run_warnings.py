@@ -41,10 +41,22 @@ def warnings_of(run: RunData, mesh: MeshFacts) -> tuple[str, ...]:
     """Warnings of a finished run, a sentence each. mesh: quality of its meshes."""
     rows = friction_rows(run)
     about = (
-        _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run), _about_large_bars(rows),
-        _about_error_bars(run), _about_spacing(run, rows),
+        _about_the_load(run), _about_the_mesh(run, mesh), _about_tip_edges(run), _about_relief(run),
+        _about_large_bars(rows), _about_error_bars(run), _about_spacing(run, rows),
     )  # fmt: skip
     return tuple(sentence for each in about for sentence in each)
+
+
+def _about_the_load(run: RunData) -> Iterator[str]:
+    """That the load is a mesh force, where it is one."""
+    given = run.scene.dynamics
+    if given is not None and given.operating_rpm is not None:
+        yield (
+            f"The load is the mesh force of the vibration at {given.operating_rpm:g} r/min, running {given.coming} to "
+            "it: pressures, line loads and the transmission error, which is that at rest, are under the force of each "
+            "position; Hertz's formula and the mean line load beside them are under the torque. Error bars are without "
+            "that of the force."
+        )
 
 
 def _about_the_mesh(run: RunData, mesh: MeshFacts) -> Iterator[str]:

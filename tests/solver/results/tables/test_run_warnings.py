@@ -21,6 +21,7 @@ from evolvent.results.tables.tables import summary, write_tables
 from evolvent.run.coarse_run import solved_run
 from evolvent.run.pitch_run import pitch_of
 from evolvent.scene.plain_text import brief
+from evolvent.scene.schema.dynamics import DynamicsSection
 from tests.support.gear_cases import spur_scene
 from tests.support.run_parts import FACTS, GOOD
 from tests.support.synthetic_run import synthetic_run
@@ -43,6 +44,14 @@ def quiet() -> RunData:
 def test_good_run_has_no_warning(quiet: RunData) -> None:
     """Three elements across, good cells, no edge, error bars: no warning."""
     assert warnings_of(quiet, GOOD) == ()
+
+
+def test_load_of_a_vibration_is_said(quiet: RunData) -> None:
+    """The mesh force at a speed is named as the load; a vibration that no load comes from is not."""
+    for section, count in ((DynamicsSection(operating_rpm=2000.0), 1), (DynamicsSection(), 0)):
+        sentences = warnings_of(replace(quiet, scene=quiet.scene.model_copy(update={"dynamics": section})), GOOD)
+        assert len(sentences) == count
+        assert all("mesh force of the vibration at 2000 r/min, running up" in sentence for sentence in sentences)
 
 
 @pytest.mark.parametrize(

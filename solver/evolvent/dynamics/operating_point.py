@@ -7,6 +7,7 @@ motion becomes.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -104,11 +105,11 @@ class Operation:
         return min(p.smallest_force for p in self.paths) / load, max(p.largest_force for p in self.paths) / load
 
     @property
-    def heaviest_torque_share(self) -> float | None:
+    def heaviest_torque_share(self) -> float:
         """Largest mesh force over that of the heaviest torque of the force surface, beyond which this goes on straight;
-        None where the mesh is a stiffness."""
+        NaN where the mesh is a stiffness."""
         if self.drive.settings.mesh != "force_surface":
-            return None
+            return math.nan
         return self.forces[1] * self.drive.model.load / float(self.excitation.loaded.forces[-1])
 
     @property

@@ -36,9 +36,9 @@ class OperationFigures:
     """Torque over base radius."""
     largest_force_N: float
     """Largest mesh force, damping included."""
-    heaviest_torque_share: float | None
+    heaviest_torque_share: float
     """Largest mesh force over that of the heaviest torque of the force surface; above 1 the surface went on straight.
-    Null with another model of the mesh."""
+    NaN, in JSON null, with another model of the mesh."""
     smallest_force_N: float
     """Smallest one: below 0 where back flanks press, or the damper pulls."""
     separated_share: float
@@ -68,7 +68,7 @@ class OperationFigures:
 def operation_warnings(found: Sequence[OperationFigures]) -> list[str]:
     """What a reader of contact and wear under the mesh forces of these vibrations has to know."""
     sentences = []
-    shares = [each.heaviest_torque_share for each in found if each.heaviest_torque_share is not None]
+    shares = [each.heaviest_torque_share for each in found if each.heaviest_torque_share > 1.0]
     if (largest := max(shares, default=0.0)) > 1.0:
         sentences.append(
             f"dynamics.torque_percents: the largest mesh force at the operating speed is {largest:.3g} times that of "

@@ -101,3 +101,12 @@ def test_killed_twice_and_resumed(whole: Path, run_script: Run, tmp_path: Path) 
     assert np.abs(one.depth - other.depth).max() < 1e-9 * other.depth.max()
     assert one.vibration.state == pytest.approx(other.vibration.state, rel=1e-9)
     assert_same(out, whole, LAST_DIGIT)
+
+
+def test_a_mesh_that_is_a_stiffness_has_no_heaviest_torque(run_script: Run, tmp_path: Path) -> None:
+    """Worn with the tangent stiffness times the deflection: kept and read again, NaN in the table, null in the file."""
+    out = tmp_path / "out"
+    computed(run_script, out, "--set", "dynamics.mesh=tangent", "--set", "wear.cycles=2e4", "--set",
+             "wear.report_at_cycles=[]", "--set", "wear.first_block_cycles=2e4")  # fmt: skip
+    assert np.isnan(columns(out / "vibration.csv")["heaviest_torque_share"]).all()
+    assert json.loads((out / "operation.json").read_text(encoding="utf-8"))["heaviest_torque_share"] is None

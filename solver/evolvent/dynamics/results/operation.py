@@ -21,4 +21,5 @@ def write_operation(folder: RunFolder, operation: Operation, coming: str, radius
     write_tables(folder, excitation_rows(operation.excitation, radius), harmonic_rows(operation.excitation, radius))
     motion = Motion(figures.speed_rpm, coming, operation.period, operation.repeats, operation.paths)
     write_histories(folder, history_rows([motion]))
-    folder.write_text(OPERATION, json.dumps(asdict(figures), indent=1, ensure_ascii=False) + "\n")
+    known = {name: None if value != value else value for name, value in asdict(figures).items()}  # JSON has no NaN
+    folder.write_text(OPERATION, json.dumps(known, indent=1, ensure_ascii=False) + "\n")

@@ -1,7 +1,8 @@
 """The cost of a pair's excitation and of its vibration over the speed: CPU seconds of one process with one thread.
 
-Without the start of Python and without error bars; their coarse companion adds what `run.coarse_run` says. What a ratio
-divides is measured twice in turn, and the lesser seconds count.
+Without the start of Python and without error bars; their coarse companion adds what `run.coarse_run` says. What the
+ratio of the blocks divides is measured twice in turn, and the lesser seconds count; the helical pair, which takes
+minutes, once.
 """
 
 from __future__ import annotations
@@ -94,8 +95,7 @@ def rows(sizes: DynamicsSizes) -> Iterator[DynamicsRow]:
                       EXCITATION_BAR)  # fmt: skip
     yield _speeds(sizes)
     helical = _scene(SCENES / "narrow_helical.toml", "quick", sizes.helical_positions)
-    turns = [[_excitation(helical, percents)[1] for percents in (sizes.percents, (100.0,))] for _ in range(TURNS)]
-    whole, one = (min(each) for each in zip(*turns))
+    whole, one = (_excitation(helical, percents)[1] for percents in (sizes.percents, (100.0,)))
     yield DynamicsRow(
         f"excitation of a helical pair, {sizes.helical_positions} positions, {count} torques over one", whole, one,
         TORQUES_BAR,

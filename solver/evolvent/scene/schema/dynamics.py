@@ -27,9 +27,9 @@ def _inertia(gear: str) -> Any:
     return key(
         f"moment of inertia of the {gear} with all that turns rigidly with it; by default that of its body, from "
         "geometry and density",
-        "a number above 0 up to 1e9, in kg·m²",
+        "a number from 1e-12 to 1e9, in kg·m²",
         "mind the unit: 1 kg·m² is 1e6 kg·mm²; or delete the key",
-        default=None, gt=0, le=1e9,
+        default=None, ge=1e-12, le=1e9,
     )  # fmt: skip
 
 

@@ -56,8 +56,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "dynamics", "scene.schema"),
     "scene.checking": (
-        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure", "gears.sweep",
-        "dynamics", "dynamics.excitation", "dynamics.oscillator", "scene", "scene.schema",
+        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure",
+        "dynamics", "dynamics.oscillator", "scene", "scene.schema",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (

@@ -9,10 +9,12 @@ from typing import Literal
 import numpy as np
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, mirrored_law, paper_law
+from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.oscillator.mesh_law import Jammed, MeshLaw, MeshSide, linear_side
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel
-from evolvent_meshes.arrays import Floats
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent_meshes.gears.pair import GearPair
 
 MeshModel = Literal["force_surface", "tangent", "secant"]
@@ -78,11 +80,13 @@ def drive(pair: GearPair, excitation: MeshExcitation, load: float, settings: Dri
     return Drive(model, mean, pair.pinion.z, settings)
 
 
-def check_room(pair: GearPair, error: Floats, settings: DriveSettings) -> None:
-    """Raises Jammed where unloaded errors e (n,) [mm] at equidistant positions leave no room between both sides of the
+def check_room(problem: GearProblem, positions: int, settings: DriveSettings) -> None:
+    """Raises Jammed where unloaded errors at so many positions of the pitch leave no room between both sides of the
     teeth: by more than a micrometre, so that it is known before any contact is solved. `drive` sees the rest."""
+    angles = np.array(uniform_pitch(problem.pair.pinion.z, positions).angles)
+    error = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
     try:
-        _mirrored(linear_side(np.ones(len(error)), error), pair, settings)
+        _mirrored(linear_side(np.ones(len(error)), error), problem.pair, settings)
     except Jammed as jammed:
         if jammed.overlap > CERTAIN:
             raise

@@ -70,7 +70,7 @@ class Response:
 def response(model: TorsionalModel, period: float, state: Floats, repeats: int = 1) -> Response:
     """Of the motion from a state (2,) at phase 0, over the mesh periods [s] after which it repeats. repeats: 0 where it
     does not; harmonics are then those of `LONGEST_REPEAT` meshes, the rest is of `MESHES`."""
-    wanted, later = np.arange(SAMPLES) / SAMPLES, [] if repeats else [MESHES - LONGEST_REPEAT]
+    wanted, later = np.arange(SAMPLES) / SAMPLES, 0 if repeats else MESHES - LONGEST_REPEAT
     repeats = repeats or LONGEST_REPEAT
     paths = histories(model, period, state, repeats, wanted)
     at = np.searchsorted(paths[0].phases, wanted - 1e-12)
@@ -81,8 +81,7 @@ def response(model: TorsionalModel, period: float, state: Floats, repeats: int =
     mesh = slice(repeats - 1, HARMONICS * repeats, repeats)
     count = HIGHEST_ORDER * repeats
     spectrum = Spectrum(np.arange(1, count + 1) / repeats, s[:count], F[:count])
-    for count in later:
-        paths += histories(model, period, end_of(paths[-1]), count, wanted[:1])
+    paths += histories(model, period, end_of(paths[-1]), later, wanted[:1])
     largest, smallest = max(path.largest_force for path in paths), min(path.smallest_force for path in paths)
     apart, behind = (float(np.mean([getattr(path, name) for path in paths])) for name in ("apart", "behind"))
     return Response(s[mesh], x[mesh], F[mesh], largest, smallest, apart, behind, spectrum)

@@ -10,6 +10,7 @@ from evolvent.dynamics.operation_figures import OperationFigures
 from evolvent.dynamics.results.histories import Motion, history_rows, write_histories
 from evolvent.dynamics.results.tables import excitation_rows, harmonic_rows, write_tables
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import without_nan
 
 OPERATION, PICTURE = "operation.json", "30_mesh_force.png"
 
@@ -21,5 +22,4 @@ def write_operation(folder: RunFolder, operation: Operation, coming: str, radius
     write_tables(folder, excitation_rows(operation.excitation, radius), harmonic_rows(operation.excitation, radius))
     motion = Motion(figures.speed_rpm, coming, operation.period, operation.repeats, operation.paths)
     write_histories(folder, history_rows([motion]))
-    known = {name: None if value != value else value for name, value in asdict(figures).items()}  # JSON has no NaN
-    folder.write_text(OPERATION, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
+    folder.write_text(OPERATION, json.dumps(without_nan(asdict(figures)), indent=1, ensure_ascii=False) + "\n")

@@ -14,7 +14,7 @@ from evolvent.dynamics.oscillator.speed_sweep import Running, SpeedSweep
 from evolvent.dynamics.pair_model import Drive, DriveSettings
 from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.tables.tables import csv_text
+from evolvent.results.tables.tables import csv_text, without_nan
 from evolvent_meshes.arrays import Floats
 
 RESPONSE, BRANCH, DYNAMICS = "response.csv", "branch.csv", "dynamics.json"
@@ -110,12 +110,12 @@ class DriveSummary:
     mean_stiffness_N_per_um: float
     """Stiffness of the whole face under the torque, mean over the pitch, with what gives way in series: the secant one
     where dynamics.mesh is secant, else the tangent one."""
-    mean_stiffness_N_per_um_error: float | None
+    mean_stiffness_N_per_um_error: float
     """Its estimated error by the mesh and by the spacing of positions; null where there is no coarse companion
     (`output.error_bars`)."""
     natural_speed_rpm: float
     """Of the pinion, at which the mesh frequency is the natural one at that stiffness."""
-    natural_speed_rpm_error: float | None
+    natural_speed_rpm_error: float
     """Its estimated error by that of the stiffness."""
     static_force_N: float
     """Torque over base radius."""
@@ -138,12 +138,12 @@ class DriveSummary:
     jumps_up_rpm: tuple[float, ...]
     """Speeds at which a pair that runs up leaves the branch: at a fold, or where the steady state loses its stability
     otherwise; in the order in which it comes there."""
-    jumps_up_rpm_error: tuple[float | None, ...]
+    jumps_up_rpm_error: tuple[float, ...]
     """Their estimated errors by the mesh and by the spacing of positions; null where there is no coarse companion, and
     of a jump that is not found on its mesh, or from every other position."""
     jumps_down_rpm: tuple[float, ...]
     """The same of a pair that runs down."""
-    jumps_down_rpm_error: tuple[float | None, ...]
+    jumps_down_rpm_error: tuple[float, ...]
     """Their estimated errors, likewise."""
     heaviest_torque_share: float | None
     """Largest mesh force of all speeds over that of the heaviest torque of the force surface; above 1 the surface went
@@ -219,11 +219,11 @@ def summary(
     folds = _different(speed_of(drive, swept.branch.points[i].period) for i in swept.branch.folds)
     return DriveSummary(
         1e3 * drive.model.mass, 1e-3 * pinion, 1e-3 * wheel, 1e-3 * drive.mean_stiffness,
-        _known(1e-3 * errors.mean_stiffness), drive.natural_speed, _known(errors.natural_speed), drive.model.load,
+        1e-3 * errors.mean_stiffness, drive.natural_speed, errors.natural_speed, drive.model.load,
         drive.model.damping, UM * settings.backlash, settings.mesh, settings.damping_ratio,
         settings.damped_apart, settings.ground_damping_ratio, drive.natural_speed * drive.teeth / 60.0, folds,
-        jumps(drive, swept.up), tuple(map(_known, errors.jumps["up"])),
-        jumps(drive, swept.down[::-1]), tuple(map(_known, errors.jumps["down"])),
+        jumps(drive, swept.up), errors.jumps["up"],
+        jumps(drive, swept.down[::-1]), errors.jumps["down"],
         largest / heaviest if settings.mesh == "force_surface" else None, iso.single_stiffness, iso.mesh_stiffness,
         iso.resonance_speed, iso.relief_term,
     )  # fmt: skip
@@ -234,18 +234,13 @@ def _different(speeds: Iterable[float]) -> tuple[float, ...]:
     return tuple({float(f"{speed:.6g}"): speed for speed in speeds}.values())
 
 
-def _known(error: float) -> float | None:
-    """JSON has no NaN."""
-    return error if np.isfinite(error) else None
-
-
 def write_response(
     folder: RunFolder, rows: Iterable[ResponseRow], branch: Iterable[BranchRow], known: DriveSummary
 ) -> None:
     """Writes response.csv, branch.csv and dynamics.json. Raises WriteError, FolderError."""
     folder.write_text(RESPONSE, csv_text([asdict(row) for row in rows]))
     folder.write_text(BRANCH, csv_text([asdict(row) for row in branch]))
-    folder.write_text(DYNAMICS, json.dumps(asdict(known), indent=1, ensure_ascii=False) + "\n")
+    folder.write_text(DYNAMICS, json.dumps(without_nan(asdict(known)), indent=1, ensure_ascii=False) + "\n")
 
 
 def largest_force(found: dict[str, list[Response]]) -> float:

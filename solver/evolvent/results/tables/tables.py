@@ -49,7 +49,7 @@ def write_tables(folder: RunFolder, content: Summary) -> None:
 def write_summary(folder: RunFolder, content: Summary) -> None:
     """Writes summary.json. Raises WriteError, FolderError."""
     values = {"schema_version": content.schema_version, **asdict(content)}
-    text = json.dumps(_without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
+    text = json.dumps(without_nan(values), ensure_ascii=False, indent=1, allow_nan=False)
     folder.write_text("summary.json", text + "\n")
 
 
@@ -74,10 +74,10 @@ def _rounded(value: object) -> object:
     return f"{value:.9g}" if isinstance(value, float) else value
 
 
-def _without_nan(value: object) -> object:
+def without_nan(value: object) -> object:
     """The value with null in place of numbers that are not finite, which JSON does not have."""
     if isinstance(value, Mapping):
-        return {str(key): _without_nan(item) for key, item in value.items()}
+        return {str(key): without_nan(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_without_nan(item) for item in value]
+        return [without_nan(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -13,12 +13,8 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.excitation.loaded_mesh import Figures, LoadedMesh, loaded_mesh, mesh_of
 from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.results.curves import NO_COMPANION, CoarseExcitation
-from evolvent.dynamics.results.design_load import EXCITATION_FACTS, excitation_facts, write_excitation_facts
-from evolvent.dynamics.results.histories import HISTORIES
-from evolvent.dynamics.results.response import BRANCH, DYNAMICS, RESPONSE
-from evolvent.dynamics.results.spectrum import SPECTRUM
-from evolvent.dynamics.results.tables import EXCITATION, HARMONICS, excitation_rows, harmonic_rows, write_tables
-from evolvent.dynamics.results.torque_map import TORQUE_MAP
+from evolvent.dynamics.results.design_load import excitation_facts, write_excitation_facts
+from evolvent.dynamics.results.tables import EXCITATION, excitation_rows, harmonic_rows, write_tables
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Mesher
@@ -31,6 +27,7 @@ from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
+from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions
@@ -38,14 +35,6 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
-
-PICTURE = "excitation.png"
-WRITTEN = EXCITATION, HARMONICS, EXCITATION_FACTS, f"pictures/{PICTURE}"
-OF_DYNAMICS = (
-    *WRITTEN, RESPONSE, BRANCH, DYNAMICS, SPECTRUM, HISTORIES, TORQUE_MAP,
-    *(f"pictures/{name}.png" for name in ("vibration", "waterfall", "histories", "torque_map")),
-)  # fmt: skip
-"""What `evolvent dynamics` writes; an excitation that is computed anew removes it, as it belongs to another one."""
 
 
 def run_excitation(
@@ -61,11 +50,11 @@ def run_excitation(
     Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
     WriteError.
     """
-    comm = MPI.COMM_WORLD
+    comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     fine, coarse = kept_positions(scenes, out, resume)
-    with writing_to(out, WRITTEN, comm, resume, overwrite) as said, Progress(hidden=quiet or comm.rank > 0) as progress:
+    with writing_to(out, OF_EXCITATION, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
         progress.stage(OUTPUT)
@@ -180,5 +169,5 @@ def write_excitation(
 
         return excitation_picture(excitation, facts, companion)
 
-    failures = draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
+    failures = draw([Picture(EXCITATION_PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
     return [*failures, *([companion.failure] if companion.failure else [])]

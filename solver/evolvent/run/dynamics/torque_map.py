@@ -12,9 +12,8 @@ from evolvent.dynamics.results.torque_map import MapRow, map_rows
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.drawing.picture_files import Picture
 from evolvent.run.dynamics.speeds import sweep_at
+from evolvent.run.dynamics.written_files import MAP_PICTURE
 from evolvent_meshes.arrays import Floats
-
-PICTURE = "torque_map.png"
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def map_pictures(found: TorqueMap) -> list[Picture]:
 
         return torque_map_picture(found.rows)
 
-    return [Picture(PICTURE, drawn)] if found.rows else []
+    return [Picture(MAP_PICTURE, drawn)] if found.rows else []
 
 
 def _beyond(rows: Sequence[MapRow], heaviest: float) -> list[str]:

@@ -6,11 +6,9 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, method_b
 from evolvent.dynamics.iso_stiffness import outside_range
 from evolvent.dynamics.oscillator.response import MESHES, Response
@@ -34,11 +32,9 @@ from evolvent.dynamics.results.spectrum import spectrum_rows, write_spectrum
 from evolvent.dynamics.results.torque_map import write_torque_map
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.excitation import (
-    OF_DYNAMICS,
     companion_of,
     computed_excitation,
     write_excitation,
@@ -48,6 +44,7 @@ from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
+from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
@@ -55,7 +52,6 @@ from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
 
-PICTURE, WATERFALL, PORTRAITS = "vibration.png", "waterfall.png", "histories.png"
 SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
@@ -77,10 +73,7 @@ def run_dynamics(
     check_positions(scenes[0])
     problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
     fine, coarse = kept_positions(scenes, out, resume)
-    first = problems[0]
-    angles = np.array(uniform_pitch(first.pair.pinion.z, scenes[0].sweep.positions).angles)
-    error = unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on)
-    check_room(first.pair, error, drive_settings(first.pair, section))
+    check_room(problems[0], scenes[0].sweep.positions, drive_settings(problems[0].pair, section))
     with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
         companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
@@ -172,7 +165,7 @@ def _pictures(
 
         return histories_picture(moving, vibrating.model.load)
 
-    yield Picture(PICTURE, over_speed)
+    yield Picture(VIBRATION_PICTURE, over_speed)
     yield Picture(WATERFALL, waterfall)
     if moving:
         yield Picture(PORTRAITS, over_time)

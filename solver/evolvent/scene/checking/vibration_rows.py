@@ -3,15 +3,11 @@ calls."""
 
 from __future__ import annotations
 
-import numpy as np
-
-from evolvent.dynamics.excitation.unloaded_error import RigidFlanks, unloaded_error
 from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, method_b
 from evolvent.dynamics.oscillator.mesh_law import Jammed
 from evolvent.dynamics.pair_model import DriveSettings, check_room
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene
@@ -45,10 +41,8 @@ def vibration_lines(scene: Scene, section: DynamicsSection) -> list[Line]:
 
 def _lacking(problem: GearProblem, settings: DriveSettings, count: int) -> float:
     """Backlash [mm] that unloaded errors want beyond the given one; 0 where they have room, to a micrometre."""
-    angles = np.array(uniform_pitch(problem.pair.pinion.z, count).angles)
-    error = unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on)
     try:
-        check_room(problem.pair, error, settings)
+        check_room(problem, count, settings)
     except Jammed as jammed:
         return jammed.overlap
     return 0.0

@@ -119,7 +119,7 @@ def excited(gears: GearModel, positions: int) -> MeshExcitation:
     """Unloaded error and loaded mesh at equidistant positions of a pitch."""
     angles = np.array(uniform_pitch(gears.pair.pinion.z, positions).angles)
     torques = [gears.load.torque * gears.width_factor * percent / 100.0 for percent in PERCENT]
-    loaded = loaded_mesh([gears] * len(torques), torques, angles)
+    loaded = loaded_mesh(gears, torques, angles)
     return MeshExcitation(unloaded_error(RigidFlanks(gears.pair), angles, gears.load.on), loaded)
 
 

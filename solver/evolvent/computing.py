@@ -152,9 +152,11 @@ def excitation(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.excitation import run_excitation
+        from evolvent.run.dynamics.scene_torques import scene_torques
 
-        scenes = list(_scenes(_unworn(loaded), percent, force).values())
-        _warn(run_excitation(scenes, out, resume, overwrite, quiet))
+        torques = scene_torques(loaded, percent)
+        require_room(torques.scene, "run", force, MPI.COMM_WORLD)
+        _warn(run_excitation(torques, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
 
@@ -181,19 +183,12 @@ def dynamics(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.vibration import run_dynamics
-        from evolvent.scene.schema.dynamics import DynamicsSection
 
-        section = loaded.dynamics or DynamicsSection()
-        scenes = list(_scenes(_unworn(loaded), section.torque_percents, force).values())
-        _warn(run_dynamics(scenes, section, out, resume, overwrite, quiet))
+        require_room(loaded.model_copy(update={"wear": None}), "run", force, MPI.COMM_WORLD)
+        _warn(run_dynamics(loaded, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
             typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")
-
-
-def _unworn(scene: Scene) -> Scene:
-    """The scene without [wear]: excitation and vibration are those of its flanks as they are."""
-    return scene.model_copy(update={"wear": None})
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -20,9 +20,8 @@ from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.dynamics.excitation import loaded_pitch
-from evolvent.run.load_list import load_scenes
+from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.progress import Progress
-from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_text
 
 PERCENTS = 25.0, 100.0, 200.0
@@ -74,9 +73,8 @@ def _with_positions(scene: Scene) -> Scene:
 
 def _excitation(scene: Scene, percents: Sequence[float], mesh: Mesher) -> MeshExcitation:
     """On this rank alone."""
-    loads = load_scenes(scene, percents).values()
-    problems = sorted((gear_problem(each) for each in loads), key=lambda each: each.torque)
-    angles = np.array(uniform_pitch(problems[0].pair.pinion.z, scene.sweep.positions).angles)
+    loads = scene_torques(scene, percents)
+    angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, scene.sweep.positions).angles)
     with Progress(hidden=True) as progress:
-        loaded = loaded_pitch(problems, angles, mesh, MPI.COMM_SELF, progress)
+        loaded = loaded_pitch(loads, angles, mesh, MPI.COMM_SELF, progress)
     return MeshExcitation(np.zeros(len(angles)), loaded)

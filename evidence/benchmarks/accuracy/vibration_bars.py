@@ -19,7 +19,6 @@ from evidence.checkout import DEMOS
 from evidence.tables import markdown, read_csv
 from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
 from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.load_list import load_scenes
 from evolvent.scene.scene import load_scene
 from evolvent_meshes.arrays import Floats
 
@@ -66,10 +65,8 @@ def swept(level: str, positions: int, variant: str, out: Path) -> Swept:
     settings = f'mesh.level="{level}"', f"sweep.positions={positions}", "output.animation=false"
     bars = f"output.error_bars={str(level == 'quick').lower()}"
     scene = load_scene(DEMOS / "he2022_dynamics.toml", [*settings, bars, *SPEEDS, variant])
-    assert scene.dynamics is not None
     folder = out / f"{level}_{positions}"
-    scenes = list(load_scenes(scene, scene.dynamics.torque_percents).values())
-    run_dynamics(scenes, scene.dynamics, folder, resume=True, quiet=True)
+    run_dynamics(scene, folder, resume=True, quiet=True)
     rows, known = read_csv(folder / RESPONSE), json.loads((folder / DYNAMICS).read_text(encoding="utf-8"))
     names = "speed_rpm", *(name for figure in FIGURES for name in (figure, f"{figure}_error"))
     columns = {name: np.array([float(row[name]) for row in rows]) for name in names}

@@ -21,8 +21,8 @@ from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.pair_model import drive
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.run.dynamics.excitation import computed_excitation
+from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.dynamics.speeds import sweep_at, sweep_list
-from evolvent.run.load_list import load_scenes
 from evolvent.run.progress import Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import drive_settings, operating_point
@@ -130,11 +130,10 @@ def _scene(path: Path, level: str, positions: int, *settings: str) -> Scene:
 
 def _excitation(scene: Scene, percents: Sequence[float]) -> tuple[MeshExcitation, float]:
     """And its CPU seconds, from meshing on."""
-    scenes = load_scenes(scene, percents).values()
-    problems = sorted((gear_problem(each) for each in scenes), key=lambda each: each.torque)
+    loads = scene_torques(scene, percents)
     begin = time.process_time()
     with Progress(hidden=True) as progress:
-        excitation = computed_excitation(problems, scene.sweep.positions, MPI.COMM_SELF, progress)
+        excitation = computed_excitation(loads, MPI.COMM_SELF, progress)
     return excitation, time.process_time() - begin
 
 

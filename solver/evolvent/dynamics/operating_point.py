@@ -174,10 +174,10 @@ class OperatingPoint:
         self, model: GearModel, shares: tuple[float, ...], angles: Floats, comm: MPI.Comm, kept: Positions | None
     ) -> tuple[LoadedMesh, Positions | None]:
         """The pitch under some of the torques, and its positions in 2D. kept: searched before."""
-        gears, torques = [model] * len(shares), self._torques(model, shares)
+        torques = self._torques(model, shares)
         if model.bodies[0].d == 2:
-            return loaded_mesh_again(gears, torques, angles, comm, kept)
-        return loaded_mesh(gears, torques, angles, comm), None
+            return loaded_mesh_again(model, torques, angles, comm, kept)
+        return loaded_mesh(model, torques, angles, comm), None
 
     def _operation(
         self, model: GearModel, excitation: MeshExcitation, shares: tuple[float, ...], before: Start | None,
@@ -197,7 +197,7 @@ class OperatingPoint:
     ) -> Positions:
         """This rank's positions under some torques [N·mm], searched at given places (positions · torques,): all of
         them, in their order."""
-        models, count = under_torques([model] * len(torques), torques), len(torques)
+        models, count = under_torques(model, torques), len(torques)
         numbers = range(self.positions)[division(self.positions, comm.size)[comm.rank]]
 
         def position(i: int) -> Mapping[float, SharedPosition]:

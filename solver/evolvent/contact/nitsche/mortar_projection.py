@@ -1,7 +1,7 @@
 """Mortar projection of the trace of surface 2 onto the nodal space of surface 1.
 
-M Π = B with M = ∫N_1 N_1 and B = ∫N_1 N_2∘π. M⁻¹ is dense, M and B are sparse: Π is applied by solving with the
-factored M, and written out only for a few columns.
+M Π = B with M = ∫N_1 N_1 and B = ∫N_1 N_2∘π. M⁻¹ is dense, M and B are sparse: Π is applied to a few columns by
+solving with the factored M, and written out to be applied to many.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ import scipy.sparse.linalg as spla
 
 from evolvent_meshes.arrays import Floats, Ints
 
+MANY = 0.25
+"""Columns over those of Π itself from which on it is written out: for 360 nodes, as many columns as a compliance has
+take a fifth of the time so, and Π is no larger than they are."""
 ROUNDING = 1e-15
 """Of the projection's largest entry: smaller ones are rounding errors."""
 
@@ -45,7 +48,10 @@ class MortarProjection:
 
     def __matmul__(self, values: Floats) -> Floats:
         """Π values, (n, ...) from (n2, ...)."""
-        return self.solved(_times(self.mixed, values))
+        columns = np.asarray(values, dtype=float).reshape(len(values), -1)
+        if columns.shape[1] < MANY * self.mixed.shape[1]:
+            return self.solved(_times(self.mixed, values))
+        return np.asarray(self._dense @ columns).reshape(-1, *values.shape[1:])
 
     def transposed(self, values: Floats) -> Floats:
         """Πᵀ values, (n2, ...) from (n, ...)."""
@@ -76,6 +82,11 @@ class MortarProjection:
         """Several projections side by side, block-diagonal."""
         mass, mixed = (sp.block_diag(each, format="csr") for each in zip(*((p.mass, p.mixed) for p in projections)))
         return MortarProjection(mass, mixed)
+
+    @cached_property
+    def _dense(self) -> Floats:
+        """Π (n, n2)."""
+        return self.solved(self.mixed.toarray())
 
     @cached_property
     def _factor(self) -> spla.SuperLU:

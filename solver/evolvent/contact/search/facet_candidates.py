@@ -28,15 +28,16 @@ def facet_candidates(surface1: Surface, surface2: Surface, facets1: Ints, max_ga
     """
     if not (len(facets1) and len(surface2.facets)):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    frames, balls2 = (_frames(surface1), _frames(surface2)), facet_balls(surface2, np.arange(len(surface2.facets)))
+    balls2 = facet_balls(surface2, np.arange(len(surface2.facets)))
     tree, found = cKDTree(balls2[0]), []
     for chosen in np.array_split(facets1, math.ceil(len(facets1) / AT_ONCE)):
         centre1, radius1 = facet_balls(surface1, chosen)
-        frame1 = frames[0][chosen]
+        frame1 = _frames(surface1, chosen)
         beside = radius1 + max(max_gap, max_overlap) * _tilt(surface1.normals[surface1.facets[chosen]], frame1[:, 0])
         layers = _Layers(centre1, radius1, frame1[:, 0], beside, (max_gap, max_overlap))
         i1, i2 = layers.candidates(tree, *balls2)
-        keep = np.einsum("pd,pd->p", frame1[i1, 0], frames[1][i2, 0]) < OPPOSED
+        near, place = np.unique(i2, return_inverse=True)
+        keep = np.einsum("pd,pd->p", frame1[i1, 0], _frames(surface2, near)[place, 0]) < OPPOSED
         i1, i2 = i1[keep], i2[keep]
         keep = _boxes_meet(surface1, surface2, chosen[i1], i2, frame1[i1], max_gap, max_overlap)
         found.append((chosen[i1[keep]], i2[keep]))
@@ -127,12 +128,11 @@ def facet_balls(surface: Surface, facets: Ints) -> tuple[Floats, Floats]:
     return centre, 1.1 * np.linalg.norm(x - centre[:, None], axis=2).max(axis=1, initial=0.0)
 
 
-def _frames(surface: Surface) -> Floats:
-    """Orthonormal frame of each facet at its centre, rows n, t1, (t2): (m, d, d)."""
-    every = np.arange(len(surface.facets))
+def _frames(surface: Surface, facets: Ints) -> Floats:
+    """Orthonormal frame of facets (m,) at their centres, rows n, t1, (t2): (m, d, d)."""
     centre = reference_cell(surface.shape, surface.order).centre
-    centres = np.broadcast_to(centre, (len(every), 1, len(centre)))
-    tangents = [t[:, 0] for t in surface.evaluate(surface.points, every, centres)[1]]
+    centres = np.broadcast_to(centre, (len(facets), 1, len(centre)))
+    tangents = [t[:, 0] for t in surface.evaluate(surface.points, facets, centres)[1]]
     normal, first = area_vector(tangents), tangents[0]
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     first = first / np.linalg.norm(first, axis=1, keepdims=True)

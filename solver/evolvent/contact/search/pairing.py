@@ -77,6 +77,8 @@ def pair_surfaces(surface1: Surface, surface2: Surface, max_gap: float, max_over
     _check(surface1, surface2, max_gap, max_overlap)
     chosen = np.arange(len(surface1.facets)) if facets1 is None else np.unique(np.asarray(facets1, dtype=np.int64))
     pairs = facet_candidates(surface1, surface2, chosen, max_gap, max_overlap)
+    if len(pairs[0]) == 0:
+        return _no_points(surface1.points.shape[1])
     if surface1.shape == "interval":
         segments = segments_2d(surface1, surface2, *pairs)
     else:
@@ -91,6 +93,12 @@ def _check(surface1: Surface, surface2: Surface, max_gap: float, max_overlap: fl
     if not (max_gap >= 0.0 and max_overlap >= 0.0):
         raise InputError(f"contact: wanted a reach >= 0 mm, found {max_gap} for gaps and {max_overlap} for overlaps; "
                          "give it in mm")
+
+
+def _no_points(d: int) -> Pairing:
+    """Of surfaces out of each other's reach."""
+    facets, xi, values = np.empty(0, dtype=np.int64), np.empty((0, d - 1)), np.empty(0)
+    return Pairing(facets, xi, facets, xi, values, values, 0.0)
 
 
 def _points(surface1: Surface, surface2: Surface, segments: Segments, max_gap: float, max_overlap: float,

@@ -15,12 +15,11 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import together
 from evolvent.gears.gear_load import GearLoad
 from evolvent.gears.gear_model import GearModel
-from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.parallel_sweep import division
 from evolvent.gears.sweep.position_search import SharedPosition, shared_position
 from evolvent.gears.sweep.worn_position import worn_on
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.gear import GearParameters
 
 Positions = tuple[Mapping[float, SharedPosition], ...]
 """A rank's positions, each by its torque [N·mm]."""
@@ -43,20 +42,20 @@ class LoadedMesh:
 
 
 def loaded_mesh(
-    gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
+    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm = MPI.COMM_WORLD,
     known: Figures = MappingProxyType({}),
     keep: Callable[[Figures], None] = lambda _: None,
 ) -> LoadedMesh:  # fmt: skip
     """Solves all positions under all torques; the ranks divide the positions, and each solves one at a time.
 
-    gears: as condensed for each torque.
+    model: of the gears under any torque.
     torques: (m,) ascending, on the gear that holds the load [N·mm].
     known: positions that were solved before.
     keep: called with all positions that are solved, on all ranks, each time that they have solved another one.
 
     Raises NotConverged, SearchError.
     """
-    models, found = under_torques(gears, torques), dict(known)
+    models, found = under_torques(model, torques), dict(known)
     missing = [i for i in range(len(angles)) if i not in known]
     shares = [missing[part] for part in division(len(missing), comm.size)]
     own = shares[comm.rank]
@@ -70,17 +69,17 @@ def loaded_mesh(
         for each in comm.allgather(solved_now):
             found |= each
         keep(found)
-    return mesh_of(found, models[0].pair.gears[models[0].load.on], torques, angles)
+    return mesh_of(found, np.array(torques) / _radius(model), angles)
 
 
-def mesh_of(found: Figures, gear: GearParameters, torques: Sequence[float], angles: Floats) -> LoadedMesh:
-    """Of all positions. gear: the one that holds the torques (m,) [N·mm]."""
+def mesh_of(found: Figures, forces: Floats, angles: Floats) -> LoadedMesh:
+    """Of all positions. forces: (m,) along the line of action [N]."""
     figures = np.array([found[i] for i in range(len(angles))])
-    return LoadedMesh(angles, np.asarray(torques) / gear.base_radius, figures[..., 0], figures[..., 1])
+    return LoadedMesh(angles, forces, figures[..., 0], figures[..., 1])
 
 
 def loaded_mesh_again(
-    gears: Sequence[GearModel], torques: Sequence[float], angles: Floats, comm: MPI.Comm, kept: Positions | None
+    model: GearModel, torques: Sequence[float], angles: Floats, comm: MPI.Comm, kept: Positions | None
 ) -> tuple[LoadedMesh, Positions]:
     """The same, on flanks that wear: positions (of this rank) that were searched before are not searched again as long
     as the gears stand near there (`worn_on`). Returns those to go on from.
@@ -89,28 +88,35 @@ def loaded_mesh_again(
 
     Raises NotConverged, SearchError.
     """
-    models = under_torques(gears, torques)
+    models = under_torques(model, torques)
     own = angles[division(len(angles), comm.size)[comm.rank]]
     before = [[row.get(torque) for torque in torques] for row in kept] if kept is not None else None
     rows = together(comm, lambda: tuple(_searched(models, own, before)))
     figures = [np.array([_figures(*each) for each in zip(models, row)]) for row in rows]
     found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
-    mesh = mesh_of(found, models[0].pair.gears[models[0].load.on], torques, angles)
+    mesh = mesh_of(found, np.array(torques) / _radius(model), angles)
     return mesh, tuple(dict(zip(torques, row)) for row in rows)
 
 
-def under_torques(gears: Sequence[GearModel], torques: Sequence[float]) -> list[GearModel]:
-    """Gears each under its torque [N·mm], whose course does not vary."""
-    return [
-        replace(model, load=GearLoad(torque / model.width_factor, model.load.on))
-        for model, torque in zip(gears, torques, strict=True)
-    ]
+def under_torques(model: GearModel, torques: Sequence[float]) -> list[GearModel]:
+    """The gears under each torque [N·mm], whose course does not vary."""
+    loads = [GearLoad(torque / model.width_factor, model.load.on) for torque in torques]
+    return [replace(model, load=load) for load in loads]
+
+
+def _radius(model: GearModel) -> float:
+    """Base radius of the gear with the torque [mm]."""
+    return model.bodies[model.load.on].gear.base_radius
 
 
 def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
     """Transmission error [mm] and stiffness [N/mm]."""
-    stand = position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
-    return stand.transmission_error, position.stiffness * model.width_factor
+    return _equilibrium(model, position).transmission_error, position.stiffness * model.width_factor
+
+
+def _equilibrium(model: GearModel, position: SharedPosition) -> Stand:
+    """Where the gears stand under their torque."""
+    return position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
 
 
 def _searched(
@@ -118,17 +124,40 @@ def _searched(
     kept: Sequence[Sequence[SharedPosition | None]] | None = None,
 ) -> Iterator[tuple[SharedPosition, ...]]:  # fmt: skip
     """Positions one after the other, each under all torques (m,). kept: those that may do with the present wear."""
-    ahead: Sequence[SharedPosition | None] = [None] * len(models)
+    ahead: tuple[SharedPosition, ...] = ()
     for i, angle in enumerate(angles):
-        row: list[SharedPosition] = []
+        row: tuple[SharedPosition, ...] = ()
         for j, model in enumerate(models):
             old = kept[i][j] if kept is not None else None
             position = worn_on(model, old) if old is not None else None
             if position is None:
-                near = old or ahead[j] or (row[-1] if row else None)
-                extra = near.contact.stand.extra if near else (0.0, 0.0)
-                patch: ContactPatch | None = near.patch if near else None
+                extra = old.contact.stand.extra if old is not None else _predicted(models, row, ahead)
+                near = old or (ahead[j] if ahead else None) or (row[-1] if row else None)
+                patch = near.patch if near is not None else None
                 position = shared_position(model, float(angle), extra, [0.0], patch, exact=True)
-            row.append(position)
+            row = *row, position
         ahead = row
-        yield tuple(row)
+        yield row
+
+
+def _predicted(
+    models: Sequence[GearModel], row: Sequence[SharedPosition], ahead: Sequence[SharedPosition]
+) -> tuple[float, float]:
+    """Rotations beyond the nominal ones [rad] under the torque that follows those of `row`: along the tangent stiffness
+    of the last one, and as much beside it as at the last position. A flank is searched once where this is within the
+    accuracy of a search. ahead: the last position under all torques; empty before the first one."""
+    j = len(row)
+    if j == 0:
+        return _equilibrium(models[0], ahead[0]).extra if ahead else (0.0, 0.0)
+    step = _step_along_tangent(models, row)
+    if ahead and (before := _step_along_tangent(models, ahead[:j])) > 0.0:
+        last, this = (_equilibrium(model, each) for model, each in zip(models[j - 1 : j + 1], ahead[j - 1 : j + 1]))
+        step *= (this.transmission_error - last.transmission_error) / before
+    return _equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).extra
+
+
+def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:
+    """By how much [mm] the transmission error grows up to the torque that follows those of `row`, at the last one's
+    stiffness."""
+    last, this = models[len(row) - 1 : len(row) + 1]
+    return (this.load.torque - last.load.torque) / _radius(this) / row[-1].stiffness

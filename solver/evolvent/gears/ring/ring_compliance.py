@@ -25,7 +25,7 @@ The cost of condensing and of the ring is measured in docs/benchmark.md.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -56,6 +56,11 @@ class MappedNodes:
     def jumps(self, displacements: Floats) -> Floats:
         """The functionals (m, c) of columns of displacements (d·k, c)."""
         return displacements if self.map is None else self.map.jumps(displacements)
+
+    def of_turned(self, turn: Floats) -> MappedNodes:
+        """The same functionals of displacements before they are turned by `turn` (d, d)."""
+        axes = np.broadcast_to(turn, (len(self.nodes), *turn.shape)) if self.map is None else self.map.axes @ turn
+        return replace(self, map=JumpMap(None if self.map is None else self.map.projection, axes))
 
 
 class Compliance(Protocol):
@@ -125,14 +130,15 @@ class ChainedCompliance:
         """See `Compliance.jumps`. The maps are applied to the few modes of the coupling, and to the whole compliance of
         their own tooth only."""
         self._check([(part.tooth, node) for part in parts for node in part.nodes])
-        modes = [part.jumps(self._turned(part.tooth, self._modes[_dofs(part.nodes, self.dimension)])) for part in parts]
+        parts = [part.of_turned(self._turn(part.tooth)) if part.tooth else part for part in parts]
+        modes = [part.jumps(self._modes[_dofs(part.nodes, self.dimension)]) for part in parts]
         ends = np.cumsum([0] + [len(mode) for mode in modes])
         result = np.empty((ends[-1], ends[-1]))
         for i, (part, mode) in enumerate(zip(parts, modes)):
             for j in range(i, len(parts)):
                 block = mode @ self._between(part.tooth, parts[j].tooth) @ modes[j].T
                 if j == i:
-                    block += part.jumps(part.jumps(self._turned_sector(part)).T)
+                    block += part.jumps(part.jumps(self._own(part.nodes)).T)
                 result[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
                 result[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
         return result
@@ -143,7 +149,7 @@ class ChainedCompliance:
         dofs = [_dofs(nodes, self.dimension) for _, nodes in parts]
         teeth = [tooth for tooth, _ in parts]
         coupling = np.block([[self._between(tooth, other) for other in teeth] for tooth in teeth])
-        own = tuple(self._sector.compliance[np.ix_(each, each)] for each in dofs)
+        own = tuple(self._own(nodes) for _, nodes in parts)
         return RingWindow(own, tuple(self._modes[each] for each in dofs), coupling)
 
     def apply(self, rows_in: Ints, forces: Floats, rows_out: Ints) -> Floats:
@@ -213,13 +219,10 @@ class ChainedCompliance:
     def _turn(self, tooth: int) -> Floats:
         return turn_by(tooth * self._pitch, self.dimension)
 
-    def _turned(self, tooth: int, matrix: Floats) -> Floats:
-        return matrix if tooth == 0 else _turn_rows(self._turn(tooth), matrix)
-
-    def _turned_sector(self, part: MappedNodes) -> Floats:
-        dofs = _dofs(part.nodes, self.dimension)
-        local = self._sector.compliance[np.ix_(dofs, dofs)]
-        return self._turned(part.tooth, self._turned(part.tooth, local).T)
+    def _own(self, nodes: Ints) -> Floats:
+        """Compliance of the sector between some nodes, in its own frame."""
+        dofs = _dofs(nodes, self.dimension)
+        return self._sector.compliance[np.ix_(dofs, dofs)]
 
 
 def _frames_of_faces(size: int, settings: ChainSettings) -> sp.csr_array:
@@ -234,12 +237,6 @@ def turn_by(angle: float, dimension: int) -> Floats:
     turn = np.eye(dimension)
     turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     return turn
-
-
-def _turn_rows(turn: Floats, matrix: Floats) -> Floats:
-    """Every node's d rows of `matrix` (d·k × c) turned by `turn` (d × d)."""
-    d = len(turn)
-    return np.matmul(turn, matrix.reshape(-1, d, matrix.shape[1])).reshape(matrix.shape)
 
 
 def _dofs(nodes: Ints, dimension: int) -> Ints:

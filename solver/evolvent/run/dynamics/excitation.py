@@ -17,33 +17,30 @@ from evolvent.dynamics.results.design_load import excitation_facts, write_excita
 from evolvent.dynamics.results.tables import EXCITATION, excitation_rows, harmonic_rows, write_tables
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Mesher
-from evolvent.gears.load_list import LoadList
+from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
-from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
+from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
-from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions
-from evolvent.scene.scene import Scene
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import EvolventError
 
 
 def run_excitation(
-    scenes: Sequence[Scene], out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
+    loads: SceneTorques, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
 ) -> list[str]:
     """Computes the excitation under some torques and writes its tables and picture to `out`. Returns a sentence where
     a picture could not be drawn or error bars not be estimated. Collective.
 
-    scenes: the scene under each torque, see `load_scenes`.
+    loads: the scene and its torques, see `scene_torques`.
     resume: go on from the positions that an earlier call has solved.
     overwrite: begin anew, and replace what an earlier call has written.
 
@@ -51,14 +48,13 @@ def run_excitation(
     WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
-    check_positions(scenes[0])
-    problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
-    fine, coarse = kept_positions(scenes, out, resume)
+    check_positions(loads.scene)
+    fine, coarse = kept_positions(loads, out, resume)
     with writing_to(out, OF_EXCITATION, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
-        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
-        companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
+        excitation = computed_excitation(loads, comm, progress, fine)
+        companion = companion_of(excitation, loads, comm, progress, coarse)
         progress.stage(OUTPUT)
-        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, problems, scenes[0]))
+        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
 
 
 @contextmanager
@@ -89,42 +85,40 @@ def _checked(out: Path, written: Sequence[str], resume: bool, overwrite: bool) -
 
 
 def computed_excitation(
-    problems: Sequence[GearProblem], positions: int, comm: MPI.Comm, progress: Progress,
-    kept: KeptPositions | None = None,
-) -> MeshExcitation:  # fmt: skip
-    """Of the same gears under each torque, the lightest first. Collective."""
-    first = problems[0]
-    angles = np.array(uniform_pitch(first.pair.pinion.z, positions).angles)
-    loaded = loaded_pitch(problems, angles, run_mesh, comm, progress, POSITIONS, kept)
-    return MeshExcitation(unloaded_error(RigidFlanks(first.pair, first.flanks), angles, first.torque_on), loaded)
+    loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None
+) -> MeshExcitation:
+    """Of the scene's gears under each torque. kept: positions on disk. Collective."""
+    problem = loads.problem
+    angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
+    loaded = loaded_pitch(loads, angles, run_mesh, comm, progress, POSITIONS, kept)
+    return MeshExcitation(unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on), loaded)
 
 
 def companion_of(
-    excitation: MeshExcitation, problems: Sequence[GearProblem], scene: Scene, comm: MPI.Comm, progress: Progress,
+    excitation: MeshExcitation, loads: SceneTorques, comm: MPI.Comm, progress: Progress,
     kept: KeptPositions | None = None,
 ) -> CoarseExcitation:  # fmt: skip
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
     meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
-    if not wanted_output(scene).error_bars:
+    if not wanted_output(loads.scene).error_bars:
         return NO_COMPANION
     angles = excitation.loaded.angles
     try:
-        loaded = loaded_pitch(problems, angles, companion_mesh, comm, progress, ERROR_BARS, kept)
-        return CoarseExcitation(MeshExcitation(excitation.unloaded_error, loaded), scene.mesh.order)
+        loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept)
+        return CoarseExcitation(MeshExcitation(excitation.unloaded_error, loaded), loads.scene.mesh.order)
     except EvolventError as error:  # the same on all ranks
         return CoarseExcitation(None, failure=f"Error bars: their coarse companion could not be solved: {error}")
 
 
 def loaded_pitch(
-    problems: Sequence[GearProblem], angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress,
-    stage: str = POSITIONS, kept: KeptPositions | None = None,
+    loads: SceneTorques, angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
+    kept: KeptPositions | None = None,
 ) -> LoadedMesh:  # fmt: skip
-    """The pitch under each problem's torque, on the sectors that `mesh` makes. Collective.
+    """The pitch under each torque, on the sectors that `mesh` makes. Collective.
 
     stage: name of the solution in the progress.
     kept: positions on disk; where all of them are there, no gears are meshed.
     """
-    first, torques = problems[0], [each.torque for each in problems]
     known = on_first(comm, kept.read) if kept is not None else {}
 
     def keep(found: Figures) -> None:
@@ -134,31 +128,27 @@ def loaded_pitch(
 
     if len(known) == len(angles):
         progress.stage(stage, len(angles), len(known))
-        return mesh_of(known, first.pair.gears[first.torque_on], torques, angles)
+        return mesh_of(known, loads.forces, angles)
     progress.stage(MESHING)
-    gears = LoadList(problems)
-    gears.prepare(first, comm, mesh, meshed=lambda: progress.stage(CONDENSING))
+    model = prepare_model(loads.problem, comm, mesh, lambda: progress.stage(CONDENSING)).model
     progress.stage(stage, len(angles), len(known))
-    return loaded_mesh([gears.prepare(each, comm, mesh).model for each in problems], torques, angles, comm, known, keep)
+    return loaded_mesh(model, loads.torques, angles, comm, known, keep)
 
 
 def _written(
-    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
-    scene: Scene,
-) -> list[str]:  # fmt: skip
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
+) -> list[str]:
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     folder.remove(OF_DYNAMICS)
-    return write_excitation(folder, excitation, companion, problems, scene)
+    return write_excitation(folder, excitation, companion, loads)
 
 
 def write_excitation(
-    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem],
-    scene: Scene,
-) -> list[str]:  # fmt: skip
+    folder: RunFolder, excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques
+) -> list[str]:
     """Writes tables and, where it is wanted, the picture; returns a sentence where that could not be drawn or error
     bars not be estimated. Raises WriteError, FolderError."""
-    first = problems[0]
-    radius = first.pair.gears[first.torque_on].base_radius
+    scene, radius = loads.scene, loads.base_radius
     facts = excitation_facts(scene.title, scene.mesh.level, excitation, radius, companion)
     tables = excitation_rows(excitation, radius, companion), harmonic_rows(excitation, radius, companion)
     write_tables(folder, *tables)

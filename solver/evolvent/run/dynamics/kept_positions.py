@@ -8,7 +8,7 @@ need no contact to be solved.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.scene.scene import Scene
+from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent_meshes.arrays import Floats
 
 KEPT, KEPT_COARSE = "results/excitation.npz", "results/excitation_coarse.npz"
@@ -58,18 +58,16 @@ class KeptPositions:
         self.folder.write(self.name, arrays_bytes(arrays))
 
 
-def kept_positions(scenes: Sequence[Scene], out: Path, resume: bool) -> tuple[KeptPositions, KeptPositions]:
-    """Of the meshes of the scene and of the companion's. scenes: the scene under each torque."""
-    fine, coarse = (KeptPositions(RunFolder(out), name, identity(scenes), resume) for name in (KEPT, KEPT_COARSE))
+def kept_positions(loads: SceneTorques, out: Path, resume: bool) -> tuple[KeptPositions, KeptPositions]:
+    """Of the meshes of the scene and of the companion's."""
+    fine, coarse = (KeptPositions(RunFolder(out), name, identity(loads), resume) for name in (KEPT, KEPT_COARSE))
     return fine, coarse
 
 
-def identity(scenes: Sequence[Scene]) -> str:
+def identity(loads: SceneTorques) -> str:
     """SHA-256 of all that the excitation of gears under some torques depends on: neither friction nor what is done with
     the excitation."""
-    smooth = [scene.contact.model_copy(update={"friction": (0.0,)}) for scene in scenes]
-    bare = [
-        scene.model_copy(update={"dynamics": None, "wear": None, "contact": contact})
-        for scene, contact in zip(scenes, smooth)
-    ]
-    return hashlib.sha256("".join(sorted(fingerprint(each) for each in bare)).encode()).hexdigest()
+    scene = loads.scene
+    smooth = scene.contact.model_copy(update={"friction": (0.0,)})
+    bare = scene.model_copy(update={"dynamics": None, "contact": smooth})
+    return hashlib.sha256(f"{fingerprint(bare)} {loads.torques}".encode()).hexdigest()

@@ -41,12 +41,12 @@ from evolvent.run.dynamics.excitation import (
     writing_to,
 )
 from evolvent.run.dynamics.kept_positions import kept_positions
+from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.dynamics.speeds import map_list, sweep_at, sweep_list
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.dynamics.vibration_errors import errors_over_speed, vibration_of
 from evolvent.run.dynamics.written_files import OF_DYNAMICS, PORTRAITS, VIBRATION_PICTURE, WATERFALL
 from evolvent.run.progress import OUTPUT, Progress
-from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
@@ -56,28 +56,27 @@ SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
 def run_dynamics(
-    scenes: Sequence[Scene], section: DynamicsSection, out: Path, resume: bool = False, overwrite: bool = False,
-    quiet: bool = False,
-) -> list[str]:  # fmt: skip
+    scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
+) -> list[str]:
     """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
     reader has to know, pictures that could not be drawn among them. Collective.
 
-    scenes: the scene under each torque of the force surface, see `load_scenes`; that of the section's 100 % among them.
-    section: [dynamics].
+    scene: with or without a section [dynamics]; its wear is left out.
     resume: go on from the positions of the excitation that an earlier call has solved; the rest is computed anew.
     overwrite: begin anew, and replace what an earlier call has written.
 
     Raises as `run_excitation`, and NoSteadyState.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
-    check_positions(scenes[0])
-    problems = sorted((gear_problem(scene) for scene in scenes), key=lambda problem: problem.torque)
-    fine, coarse = kept_positions(scenes, out, resume)
-    check_room(problems[0], scenes[0].sweep.positions, drive_settings(problems[0].pair, section))
+    check_positions(scene)
+    section = scene.dynamics or DynamicsSection()
+    loads = scene_torques(scene, section.torque_percents)
+    fine, coarse = kept_positions(loads, out, resume)
+    check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
     with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
-        excitation = computed_excitation(problems, scenes[0].sweep.positions, comm, progress, fine)
-        companion = companion_of(excitation, problems, scenes[0], comm, progress, coarse)
-        written = partial(_written, excitation, companion, problems, section, out, progress, scenes[0])
+        excitation = computed_excitation(loads, comm, progress, fine)
+        companion = companion_of(excitation, loads, comm, progress, coarse)
+        written = partial(_written, excitation, companion, loads, section, out, progress)
         return said + on_first(comm, written)
 
 
@@ -90,11 +89,11 @@ def accuracy(section: DynamicsSection) -> Accuracy:
 
 
 def _written(
-    excitation: MeshExcitation, companion: CoarseExcitation, problems: Sequence[GearProblem], section: DynamicsSection,
-    out: Path, progress: Progress, scene: Scene,
+    excitation: MeshExcitation, companion: CoarseExcitation, loads: SceneTorques, section: DynamicsSection, out: Path,
+    progress: Progress,
 ) -> list[str]:  # fmt: skip
     """Sweeps the speeds and writes everything, in place of what an earlier call has written. On rank 0 alone."""
-    percents, first = sorted(section.torque_percents), problems[0]
+    percents, first = sorted(section.torque_percents), loads.problem
     settings = drive_settings(first.pair, section)
     vibrating = drive(first.pair, excitation, float(excitation.loaded.forces[percents.index(100.0)]), settings)
     moduli = first.materials[0].youngs_modulus, first.materials[1].youngs_modulus
@@ -113,7 +112,7 @@ def _written(
     known = summary(vibrating, settings, swept, largest_force(found), float(excitation.loaded.forces[-1]), iso, errors)
     folder = RunFolder(out)
     folder.remove(OF_DYNAMICS)
-    failures = write_excitation(folder, excitation, companion, problems, scene)
+    failures = write_excitation(folder, excitation, companion, loads)
     write_response(folder, response_rows(vibrating, swept, found, iso, errors), branch, known)
     write_spectrum(folder, spectrum_rows(vibrating, swept, found))
     if moving:
@@ -121,7 +120,7 @@ def _written(
     if over_torque.rows:
         write_torque_map(folder, over_torque.rows)
     pictures = [*_pictures(vibrating, swept, found, branch, moving, iso, errors), *map_pictures(over_torque)]
-    failures += draw(pictures if wanted_output(scene).pictures else [], folder).failures
+    failures += draw(pictures if wanted_output(loads.scene).pictures else [], folder).failures
     said = *_warnings(vibrating, settings, known), *_not_followed(vibrating, swept), *_branch_warnings(swept)
     said = *said, *_not_repeating(vibrating, swept), *errors.said
     return [*failures, *said, *_iso_warnings(first), *over_torque.warnings]

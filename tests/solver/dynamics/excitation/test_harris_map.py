@@ -22,7 +22,7 @@ def test_long_relief_has_its_least_transmission_error_at_its_load() -> None:
     model = model_of(spur_scene("mesh.level=quick", *RELIEF))
     torques = 1e3 * np.array([85.0, 119.0, 136.0, 153.0, 161.5, 170.0, 178.5, 187.0, 204.0, 221.0, 255.0])
     angles = 2.0 * np.pi / 50.0 * np.arange(20) / 20
-    size = np.ptp(loaded_mesh([model] * len(torques), torques.tolist(), angles).errors, axis=0)
+    size = np.ptp(loaded_mesh(model, torques.tolist(), angles).errors, axis=0)
     least = int(np.argmin(size))
     assert torques[least] == pytest.approx(170e3, rel=0.1001)
     assert size[least] < min(size[0], size[-1]) / 3.0

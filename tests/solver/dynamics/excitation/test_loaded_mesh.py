@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 
 from evolvent.dynamics.excitation.force_surface import MeshExcitation, NoForceSurface
 from evolvent.dynamics.excitation.loaded_mesh import LoadedMesh, loaded_mesh
+from evolvent.gears.contact.pair_contact import GearContact
 from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep import position_search
 from tests.support.gear_cases import model_of, spur_scene, swept
 
 TORQUES = np.array([20e3, 85e3, 170e3, 255e3])
@@ -23,7 +26,7 @@ def model() -> GearModel:
 
 @cache
 def mesh() -> LoadedMesh:
-    return loaded_mesh([model()] * len(TORQUES), TORQUES.tolist(), ANGLES)
+    return loaded_mesh(model(), TORQUES.tolist(), ANGLES)
 
 
 def test_each_torque_is_that_of_a_sweep() -> None:
@@ -39,9 +42,26 @@ def test_each_torque_is_that_of_a_sweep() -> None:
 def test_tangent_stiffness_is_that_of_two_loads() -> None:
     """dF/ds against the difference of loads 0.1 % above and below: 1e-4."""
     torques = (170e3 * np.array([0.999, 1.0, 1.001])).tolist()
-    found = loaded_mesh([model()] * 3, torques, ANGLES)
+    found = loaded_mesh(model(), torques, ANGLES)
     difference = (found.forces[2] - found.forces[0]) / (found.errors[:, 2] - found.errors[:, 0])
     assert found.stiffness[:, 1] == pytest.approx(difference, rel=1e-4)
+
+
+def test_flanks_are_searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each torque's displacement is predicted from the lighter one's: after the first position, where nothing is known
+    of the second differences, at most one of four torques wants a second search."""
+    count, search = 0, position_search.gear_contact
+
+    def counted(*args: Any) -> GearContact:
+        nonlocal count
+        count += 1
+        return search(*args)
+
+    monkeypatch.setattr(position_search, "gear_contact", counted)
+    loaded_mesh(model(), TORQUES.tolist(), ANGLES[:1])
+    first = count
+    loaded_mesh(model(), TORQUES.tolist(), ANGLES)
+    assert count - 2 * first <= 5 * (len(ANGLES) - 1)
 
 
 def test_force_surface_has_the_solved_forces_and_stiffnesses() -> None:

@@ -10,16 +10,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from evolvent.gears.load_list import LoadList
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.results.archive.archive import ArchiveError
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.excitation import loaded_pitch, run_excitation
 from evolvent.run.dynamics.kept_positions import KeptPositions
-from evolvent.run.load_list import load_scenes
+from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.progress import Progress
-from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import SceneError
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshError
@@ -43,7 +41,7 @@ def column(lines: list[dict[str, str]], name: str) -> Floats:
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Under 50 and 100 % of the torque."""
     folder = tmp_path_factory.mktemp("excitation")
-    assert run_excitation(list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values()), folder, quiet=True) == []
+    assert run_excitation(scene_torques(spur_scene(*SETTINGS), PERCENTS), folder, quiet=True) == []
     return folder
 
 
@@ -53,8 +51,7 @@ def test_table_has_what_a_sweep_finds(out: Path) -> None:
     lines = rows(out / "excitation.csv")
     assert len(lines) == 12
     full = [line for line in lines if float(line["torque_Nm"]) == 170.0]
-    scene = load_scenes(spur_scene(*SETTINGS), PERCENTS)["load_100.0_percent"]
-    (curves,) = swept(model_of(scene), column(full, "pinion_angle_deg"), [0.0])
+    (curves,) = swept(model_of(spur_scene(*SETTINGS)), column(full, "pinion_angle_deg"), [0.0])
     assert column(full, "transmission_error_um") == pytest.approx(1e3 * curves.of("transmission_error"), rel=1e-6)
     stiffness = 20.0e-3 * np.array([result.stiffness for result in curves.results])
     assert column(full, "tangent_stiffness_N_per_um") == pytest.approx(stiffness, rel=1e-6)
@@ -82,13 +79,12 @@ def test_harmonics_are_those_of_the_table(out: Path) -> None:
 def test_error_bars_come_from_a_coarse_companion(out: Path, tmp_path: Path) -> None:
     """Where they are asked for: of every position half the difference to the excitation on elements of twice the size,
     at least; the values stay, 1e-8; without the companion there are none."""
-    scenes = list(load_scenes(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS).values())
-    assert run_excitation(scenes, tmp_path, quiet=True) == []
+    loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS)
+    assert run_excitation(loads, tmp_path, quiet=True) == []
     lines, plain = rows(tmp_path / "excitation.csv"), rows(out / "excitation.csv")
-    problems = sorted((gear_problem(each) for each in scenes), key=lambda each: each.torque)
     angles = np.radians(column(lines[:6], "pinion_angle_deg"))
     with Progress(hidden=True) as progress:
-        coarse = loaded_pitch(problems, angles, companion_mesh, MPI.COMM_SELF, progress)
+        coarse = loaded_pitch(loads, angles, companion_mesh, MPI.COMM_SELF, progress)
     for name, factor, values in (("transmission_error_um", 1e3, coarse.errors),
                                  ("tangent_stiffness_N_per_um", 1e-3, coarse.stiffness)):  # fmt: skip
         found, bars = column(lines, name), column(lines, f"{name}_error")
@@ -106,17 +102,17 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
         raise MeshError("too coarse")
 
     monkeypatch.setattr(excitation, "companion_mesh", refuse)
-    scenes = list(load_scenes(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1]).values())
-    (said,) = run_excitation(scenes, tmp_path, quiet=True)
+    loads = scene_torques(spur_scene(*SETTINGS, "output.error_bars=true"), PERCENTS[:1])
+    (said,) = run_excitation(loads, tmp_path, quiet=True)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
     assert np.isnan(column(rows(tmp_path / "excitation.csv"), "secant_stiffness_N_per_um_error")).all()
 
 
 def test_results_are_not_replaced_unasked(out: Path) -> None:
     """A second call is refused before anything is computed, and says what to do."""
-    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
     with pytest.raises(FolderError, match="remedy: --resume goes on from its positions, --overwrite"):
-        run_excitation(scenes, out, quiet=True)
+        run_excitation(loads, out, quiet=True)
 
 
 class Killed(Exception):
@@ -126,7 +122,7 @@ class Killed(Exception):
 def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Killed after the second of six positions and resumed: four are solved, and the table is that of a call that was
     not stopped, 1e-8. Resumed once more nothing is meshed. With other torques it is refused."""
-    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
     write, counts = KeptPositions.write, []
 
     def killed(kept: KeptPositions, found: Mapping[int, Floats]) -> None:
@@ -137,41 +133,41 @@ def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(KeptPositions, "write", killed)
     with pytest.raises(Killed):
-        run_excitation(scenes, tmp_path, quiet=True)
+        run_excitation(loads, tmp_path, quiet=True)
     with pytest.raises(FolderError, match=r"found results/excitation\.npz of an earlier call"):
-        run_excitation(scenes, tmp_path, quiet=True)
-    assert run_excitation(scenes, tmp_path, resume=True, quiet=True) == []
+        run_excitation(loads, tmp_path, quiet=True)
+    assert run_excitation(loads, tmp_path, resume=True, quiet=True) == []
     assert counts == [1, 2, 3, 4, 5, 6]
     for name in ("transmission_error_um", "tangent_stiffness_N_per_um"):
         whole, resumed = (column(rows(folder / "excitation.csv"), name) for folder in (out, tmp_path))
         assert resumed == pytest.approx(whole, rel=1e-8)
-    monkeypatch.setattr(LoadList, "prepare", None)
-    assert run_excitation(scenes, tmp_path, resume=True, quiet=True) == []
+    monkeypatch.setattr(excitation, "prepare_model", None)
+    assert run_excitation(loads, tmp_path, resume=True, quiet=True) == []
     with pytest.raises(ArchiveError, match="found those of other gears, meshes, torques or positions"):
-        run_excitation(scenes[:1], tmp_path, resume=True, quiet=True)
+        run_excitation(scene_torques(spur_scene(*SETTINGS), PERCENTS[:1]), tmp_path, resume=True, quiet=True)
 
 
 def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
     """The call begins from the start, with a sentence."""
-    scenes = list(load_scenes(spur_scene(*SETTINGS, "sweep.positions=3"), PERCENTS[:1]).values())
-    (said,) = run_excitation(scenes, tmp_path, resume=True, quiet=True)
+    loads = scene_torques(spur_scene(*SETTINGS, "sweep.positions=3"), PERCENTS[:1])
+    (said,) = run_excitation(loads, tmp_path, resume=True, quiet=True)
     assert said.startswith("--resume found nothing to continue")
 
 
 def test_two_positions_are_too_few(tmp_path: Path) -> None:
     """Refused before anything is computed: they hold no harmonic."""
-    scenes = list(load_scenes(spur_scene(*SETTINGS, "sweep.positions=2"), PERCENTS).values())
+    loads = scene_torques(spur_scene(*SETTINGS, "sweep.positions=2"), PERCENTS)
     with pytest.raises(SceneError, match=r"sweep\.positions: found 2; allowed: 3 or more"):
-        run_excitation(scenes, tmp_path, quiet=True)
+        run_excitation(loads, tmp_path, quiet=True)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_foreign_files_stay(tmp_path: Path) -> None:
     """Also with --overwrite a file that no call has written is left as it is."""
     (tmp_path / "harmonics.csv").write_text("mine")
-    scenes = list(load_scenes(spur_scene(*SETTINGS), PERCENTS).values())
+    loads = scene_torques(spur_scene(*SETTINGS), PERCENTS)
     with pytest.raises(FolderError, match=r"harmonics\.csv"):
-        run_excitation(scenes, tmp_path, overwrite=True, quiet=True)
+        run_excitation(loads, tmp_path, overwrite=True, quiet=True)
     assert (tmp_path / "harmonics.csv").read_text() == "mine"
 
 

@@ -18,7 +18,6 @@ from evolvent.run.dynamics import torque_map as module
 from evolvent.run.dynamics.speeds import sweep_at
 from evolvent.run.dynamics.torque_map import TorqueMap, map_pictures, torque_map
 from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.load_list import load_scenes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
@@ -118,7 +117,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """He's pair at its torque and at two fifths of it."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    run_dynamics(list(load_scenes(one, one.dynamics.torque_percents).values()), one.dynamics, folder, quiet=True)
+    run_dynamics(one, folder, quiet=True)
     return folder
 
 

@@ -13,9 +13,8 @@ from scipy.integrate import trapezoid
 from evolvent.cli import main
 from evolvent.dynamics.oscillator.mesh_law import Jammed
 from evolvent.dynamics.pair_model import geometric_backlash
-from evolvent.gears.load_list import LoadList
+from evolvent.run.dynamics import excitation
 from evolvent.run.dynamics.vibration import run_dynamics
-from evolvent.run.load_list import load_scenes
 from evolvent.scene.pair_dynamics import drive_settings
 from evolvent.scene.scene import Scene, load_scene
 from evolvent.scene.schema.errors import SceneError
@@ -45,8 +44,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With the force surface."""
     folder, one = tmp_path_factory.mktemp("dynamics"), scene()
     assert one.dynamics is not None
-    loads = load_scenes(one, one.dynamics.torque_percents)
-    (said,) = run_dynamics(list(loads.values()), one.dynamics, folder, quiet=True)
+    (said,) = run_dynamics(one, folder, quiet=True)
     assert said.startswith("dynamics.torque_percents: the largest mesh force is")
     return folder
 
@@ -129,9 +127,7 @@ def test_histories_are_those_of_the_sweep(tmp_path: Path) -> None:
     force is at most that of response.csv, and within 2 % of it; its mean force is the static one (no damping against
     the ground), to 1e-3 by the trapezoidal rule."""
     one = scene("dynamics.histories_rpm=[1700,3900]", "dynamics.speeds=20", 'dynamics.mesh="secant"')
-    assert one.dynamics is not None
-    loads = load_scenes(one, one.dynamics.torque_percents)
-    run_dynamics(list(loads.values()), one.dynamics, tmp_path, quiet=True)
+    run_dynamics(one, tmp_path, quiet=True)
     response = {(line["speed_rpm"], line["way"]): line for line in rows(tmp_path / "response.csv")}
     assert len(response) == 2 * 21
     lines = rows(tmp_path / "histories.csv")
@@ -167,9 +163,7 @@ def test_settings_follow_from_the_gears() -> None:
 def test_little_backlash_is_warned_of(tmp_path: Path) -> None:
     """That of the reference centre distance, none: the key and the static deflection are named."""
     one = scene("dynamics.backlash_um=0", 'dynamics.mesh="secant"', "dynamics.speeds=2")
-    assert one.dynamics is not None
-    loads = load_scenes(one, one.dynamics.torque_percents)
-    (said,) = run_dynamics(list(loads.values()), one.dynamics, tmp_path, quiet=True)
+    (said,) = run_dynamics(one, tmp_path, quiet=True)
     known = json.loads((tmp_path / "dynamics.json").read_text(encoding="utf-8"))
     deflection = known["static_force_N"] / known["mean_stiffness_N_per_um"]
     assert said.startswith(f"dynamics.backlash_um: found 0 µm, less than the static deflection of {deflection:.3g} µm")
@@ -231,9 +225,7 @@ def test_too_little_backlash_is_said_before_contact_is_solved(monkeypatch: pytes
     chart = "diameter_mm,depth_um\n140,-10\n157,-10\n"
     (tmp_path / "proud.csv").write_text(chart)
     given = scene(f'pinion.flank_csv="{tmp_path / "proud.csv"}"', "dynamics.backlash_um=0")
-    monkeypatch.setattr(LoadList, "prepare", None)
-    scenes = list(load_scenes(given, [50.0, 100.0]).values())
-    assert given.dynamics is not None
+    monkeypatch.setattr(excitation, "prepare_model", None)
     with pytest.raises(Jammed, match=r"overlap on both sides, unloaded errors included, by 20"):
-        run_dynamics(scenes, given.dynamics, tmp_path / "out", quiet=True)
+        run_dynamics(given, tmp_path / "out", quiet=True)
     assert not (tmp_path / "out").exists()

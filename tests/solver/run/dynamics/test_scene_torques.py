@@ -1,0 +1,52 @@
+"""Torques of an excitation, and the torque that its meshes are sized for."""
+
+from __future__ import annotations
+
+import pytest
+
+from evolvent.gears.meshing.levelled_meshes import flank_cells
+from evolvent.run.dynamics.scene_torques import scene_torques
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import SceneError
+from evolvent_meshes.gears.member import Member
+from tests.support.gear_cases import spur_scene
+
+LIST = [200.0, 5.0, 100.0]
+"""He's pair has 170 N·m."""
+
+
+def test_meshes_are_those_of_the_scenes_torque() -> None:
+    """As many cells as its own run has, also with the lightest torque of a list at 5 %; torques in N·mm, ascending,
+    forces over the base radius."""
+    loads = scene_torques(spur_scene(), LIST)
+    assert loads.torques == pytest.approx((8.5e3, 170e3, 340e3))
+    assert flank_cells(loads.problem, Member.PINION) == flank_cells(gear_problem(spur_scene()), Member.PINION)
+    assert loads.problem.mesh_torques == pytest.approx((170e3, 340e3))
+    assert loads.forces == pytest.approx([each / 70.4769 for each in loads.torques], rel=1e-5)
+
+
+@pytest.mark.parametrize(("percents", "sized"), [([5.0, 50.0], 85e3), ([150.0, 200.0], 255e3)])
+def test_lists_beside_the_scenes_torque(percents: list[float], sized: float) -> None:
+    """The nearest torque of the list."""
+    assert scene_torques(spur_scene(), percents).problem.torque == pytest.approx(sized)
+
+
+def test_scene_may_ask_for_meshes_of_lighter_torques() -> None:
+    """`load.mesh_torques_Nm` from a sixteenth on: a quarter of the Hertz width, about four times the cells."""
+    settings = [], ["load.mesh_torques_Nm=[10.625, 170]"]
+    plain, fine = (scene_torques(spur_scene(*each), LIST).problem for each in settings)
+    assert fine.mesh_torques == pytest.approx((10.625e3, 340e3))
+    (few, _), (many, _) = (flank_cells(each, Member.PINION) for each in (plain, fine))
+    assert many == pytest.approx(4 * few, abs=6)
+
+
+def test_torques_beyond_the_scenes_limits_are_refused() -> None:
+    """As `load.torque_Nm` itself."""
+    with pytest.raises(SceneError, match=r"load\.torque_Nm"):
+        scene_torques(spur_scene(), [100.0, 1e12])
+
+
+def test_wear_is_left_out() -> None:
+    """The excitation is that of the flanks as they are."""
+    wearing = "wear.pinion_mm2_per_N=1e-13", "wear.wheel_mm2_per_N=1e-13", "wear.cycles=1e5"
+    assert scene_torques(spur_scene(*wearing), LIST).scene.wear is None

@@ -1,5 +1,5 @@
-"""Error bars of the excitation against true errors: of every position, and of the pitch's mean, peak-to-peak value and
-mesh harmonics, under several torques. Meshes and references are those of `error_bars`.
+"""Errors of the excitation, and how often its error bars hold them: of every position, and of the pitch's mean,
+peak-to-peak value and mesh harmonics, under several torques. Meshes and references are those of `error_bars`.
 
 The references have several times the positions, those of the cases among them: figures of the pitch are held against
 the pitch, not against the same samples of it.
@@ -8,11 +8,12 @@ the pitch, not against the same samples of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
-from evidence.benchmarks.accuracy.error_bars import BarProblem, BarRow, reference_mesh
+from evidence.benchmarks.accuracy.error_bars import BarProblem, reference_mesh
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.results.curves import CoarseExcitation, PitchCurve, pitch_curves
 from evolvent.gears.gear_model import Mesher
@@ -23,47 +24,97 @@ from evolvent.run.dynamics.excitation import loaded_pitch
 from evolvent.run.dynamics.scene_torques import scene_torques
 from evolvent.run.progress import Progress
 from evolvent.scene.scene import Scene, scene_from_text
+from evolvent_meshes.arrays import Floats
 
-PERCENTS = 25.0, 100.0, 200.0
-"""Torques, in percent of the scene's."""
+PERCENTS = 5.0, 25.0, 100.0, 200.0
+"""Torques, in percent of the scene's, whose mesh all of them have."""
 FINER = 4
 """Positions of the reference over those of the cases."""
 
 
-def measure_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[BarRow]:
-    """One row a case, torque and figure. problem: of a pair without flank modifications, so that there is no unloaded
-    transmission error."""
+@dataclass(frozen=True)
+class ExcitationRow:
+    """A kind of figure of a quantity on one mesh under one torque."""
+
+    pair: str
+    mesh: str
+    """Order, shape and elements across the contact width."""
+    percent: float
+    """The torque, in percent of the scene's."""
+    quantity: str
+    """As in excitation.csv."""
+    figure: str
+    """"positions", "mean", "peak to peak" or "harmonics"."""
+    count: int
+    """How many figures there are."""
+    inside: int
+    """Of them, those whose bar holds the true error."""
+    decided: int
+    """Those of which the reference is good enough to tell."""
+    decided_inside: int
+    error: float
+    """Median true error, over the mean of the quantity, of peak-to-peak values and harmonics over the former."""
+    bar: float
+    """Median bar, likewise."""
+    reference_error: float
+    """By how much the reference itself may be off, likewise."""
+
+
+def measure_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[ExcitationRow]:
+    """Four rows a case, torque and quantity. problem: of a pair without flank modifications, so that there is no
+    unloaded transmission error."""
     at = _with_positions(problem.with_mesh(problem.reference))
     best, second = (_excitation(at, percents, reference_mesh(problem, problem.halvings - last)) for last in (0, 1))
+    exact, nearly = (pitch_curves(each, CoarseExcitation(None)) for each in (best, second))
     for case in problem.cases:
         scene = problem.with_mesh(case)
-        coarse = CoarseExcitation(_excitation(scene, percents, companion_mesh), scene.mesh.order)
+        elements = scene_torques(scene, percents).elements
+        coarse = CoarseExcitation(_excitation(scene, percents, companion_mesh), scene.mesh.order, elements)
         tried = pitch_curves(_excitation(scene, percents, run_mesh), coarse)
-        exact, nearly = (pitch_curves(each, CoarseExcitation(None)) for each in (best, second))
+        mesh = ", ".join(setting.split("=")[1] for setting in case)
         for percent, *curves in zip(sorted(percents), tried, exact, nearly):
-            yield from _rows(", ".join((problem.name, *case, f"{percent:g} % of the torque")), *curves)
+            yield from _rows(problem.name, mesh, percent, *curves)
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Figures of one kind, (k,) each."""
+
+    value: Floats
+    bar: Floats
+    exact: Floats
+    nearly: Floats
+    """As the reference has them before its cells are halved for the last time."""
+
+    def row(self, head: tuple[str, str, float, str], figure: str, over: float) -> ExcitationRow:
+        """head: pair, mesh, torque and quantity. over: what errors are divided by."""
+        error, doubt = np.abs(self.value - self.exact), np.abs(self.exact - self.nearly)
+        inside, decided = error <= self.bar, np.abs(error - self.bar) > doubt
+        counts = len(error), int(inside.sum()), int(decided.sum()), int((inside & decided).sum())
+        medians = (float(np.median(each)) / over for each in (error, self.bar, doubt))
+        return ExcitationRow(*head, figure, *counts, *medians)
 
 
 def _rows(
-    case: str, tried: Mapping[str, PitchCurve], exact: Mapping[str, PitchCurve], nearly: Mapping[str, PitchCurve]
-) -> Iterator[BarRow]:
-    """All figures of all quantities under one torque."""
+    pair: str, mesh: str, percent: float, tried: Mapping[str, PitchCurve], exact: Mapping[str, PitchCurve],
+    nearly: Mapping[str, PitchCurve],
+) -> Iterator[ExcitationRow]:  # fmt: skip
+    """All kinds of figures of all quantities under one torque."""
     for quantity, curve in tried.items():
         best, second = exact[quantity], nearly[quantity]
-        places = zip(curve.values, curve.bars, best.values[::FINER], second.values[::FINER])
+        head = pair, mesh, percent, quantity
         mean, size = (
-            [float(figure(each.values)) for each in (curve, best, second)] for figure in (np.mean, np.ptp)
+            [np.array([figure(each.values)]) for each in (curve, best, second)] for figure in (np.mean, np.ptp)
         )
-        figures: list[tuple[str, float, float, float, float]] = [
-            *((quantity, *place) for place in places),
-            (f"{quantity}, mean", mean[0], curve.mean_error, mean[1], mean[2]),
-            (f"{quantity}, peak to peak", size[0], curve.peak_to_peak_error, size[1], size[2]),
-        ]
-        amplitudes = zip(curve.harmonics[0], curve.amplitude_errors, best.harmonics[0], second.harmonics[0])
-        figures += [(f"{quantity}, harmonics", *each) for each in amplitudes]
-        for figure, value, bar, reference, other in figures:
-            errors = abs(value - reference), abs(reference - other)
-            yield BarRow(case, figure, 0.0, float(value), float(bar), *map(float, errors))
+        positions = Errors(curve.values, curve.bars, best.values[::FINER], second.values[::FINER])
+        yield positions.row(head, "positions", float(mean[1][0]))
+        yield Errors(mean[0], np.array([curve.mean_error]), *mean[1:]).row(head, "mean", float(mean[1][0]))
+        ranges = Errors(size[0], np.array([curve.peak_to_peak_error]), *size[1:])
+        yield ranges.row(head, "peak to peak", float(size[1][0]))
+        count = len(curve.harmonics[0])
+        amplitudes = (each.harmonics[0][:count] for each in (best, second))
+        harmonics = Errors(curve.harmonics[0], curve.amplitude_errors, *amplitudes)
+        yield harmonics.row(head, "harmonics", float(size[1][0]))
 
 
 def _with_positions(scene: Scene) -> Scene:

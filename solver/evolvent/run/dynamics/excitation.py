@@ -54,7 +54,7 @@ def run_excitation(
         excitation = computed_excitation(loads, comm, progress, fine)
         companion = companion_of(excitation, loads, comm, progress, coarse)
         progress.stage(OUTPUT)
-        return said + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
+        return said + loads.warnings + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
 
 
 @contextmanager
@@ -105,7 +105,8 @@ def companion_of(
     angles = excitation.loaded.angles
     try:
         loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept)
-        return CoarseExcitation(MeshExcitation(excitation.unloaded_error, loaded), loads.scene.mesh.order)
+        coarse = MeshExcitation(excitation.unloaded_error, loaded)
+        return CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements)
     except EvolventError as error:  # the same on all ranks
         return CoarseExcitation(None, failure=f"Error bars: their coarse companion could not be solved: {error}")
 

@@ -7,16 +7,23 @@ of He's pair, level standard, 1 % of the transmission error and 2 % of the tange
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from evolvent.gears.meshing.element_sizes import elements_per_contact_width
+from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene, scene_from_values
 from evolvent_meshes.arrays import Floats
+
+NARROWEST = 0.35
+"""Elements across the contact width from which on error bars hold nine errors in ten: at level quick from 5 % of the
+torque on, at standard from 2 %."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +51,25 @@ class SceneTorques:
     def forces(self) -> Floats:
         """(m,) along the line of action [N]."""
         return np.array(self.torques) / self.base_radius
+
+    @property
+    def elements(self) -> tuple[float, ...]:
+        """(m,) elements across the Hertz width, which grows with the square root of the torque."""
+        own = elements_per_contact_width(self.problem, is_two_level(self.problem))
+        return tuple(own * math.sqrt(torque / self.problem.lightest.torque) for torque in self.torques)
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence where contacts are too narrow for their error bars."""
+        narrow = [torque for torque, elements in zip(self.torques, self.elements) if elements < NARROWEST]
+        if not narrow:
+            return []
+        return [
+            f"torques up to {1e-3 * narrow[-1]:.3g} N·m: wanted a contact at least {NARROWEST:g} elements wide, found "
+            f"{self.elements[0]:.2g} under the lightest; transmission error and stiffness may be off by several per "
+            "cent, and error bars too small. Leave these torques out, or take finer meshes: "
+            f"--set load.mesh_torques_Nm=[{1e-3 * narrow[0]:.3g},{1e-3 * self.torques[-1]:.4g}]"
+        ]
 
 
 def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:

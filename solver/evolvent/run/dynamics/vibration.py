@@ -77,7 +77,7 @@ def run_dynamics(
         excitation = computed_excitation(loads, comm, progress, fine)
         companion = companion_of(excitation, loads, comm, progress, coarse)
         written = partial(_written, excitation, companion, loads, section, out, progress)
-        return said + on_first(comm, written)
+        return said + loads.warnings + on_first(comm, written)
 
 
 def accuracy(section: DynamicsSection) -> Accuracy:

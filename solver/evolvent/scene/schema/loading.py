@@ -60,7 +60,8 @@ class LoadSection(SceneSection):
 
     mesh_torques_Nm: tuple[float, float] | None = key(
         "range of torques that the meshes are made for: elements small enough for the lightest one, fine flanks long "
-        "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` sets it",
+        "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` sets it, "
+        "`evolvent excitation` and `dynamics` take meshes for load.torque_Nm unless it is given",
         "two numbers above 0, load.torque_Nm between them",
         "give the lightest and the heaviest torque, or delete the key: the mesh is then that of load.torque_Nm alone",
         default=None,

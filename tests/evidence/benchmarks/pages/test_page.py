@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
+from evidence.benchmarks.accuracy.excitation_bars import ExcitationRow
 from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
 from evidence.benchmarks.gears.dynamics import DynamicsRow
@@ -48,7 +49,10 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                   SkipRow("window", "demos/a.toml", "", 10.0, 11.0, 100.0, 100.0, 1e-2, 1e-3)],
         "spur": [SpurRow(1.0, 0, 1.0, 100.0, 0.003, 1.0, 3, 25.0, 900.0, 0.002)],
         "bars": [BarRow("a", "peak", 0.1, 100.0, 2.0, 1.0, 0.1), BarRow("b", "peak", 0.1, 100.0, 2.0, 3.0, 0.1)],
-        "excitation_bars": [BarRow("a", "k", 0.0, 300.0, 2.0, 1.0, 0.1), BarRow("a", "k", 0.0, 300.0, 2.0, 1.5, 0.1)],
+        "excitation_bars": [
+            ExcitationRow("a", "2, hexahedron, 3", 5.0, name, "positions", 20, 19, 12, 11, error, 0.03, 0.001)
+            for name, error in (("transmission_error_um", 0.012), ("tangent_stiffness_N_per_um", 0.025))
+        ],
         "dynamics": [DynamicsRow("speeds", 12.0, nan, 10.0), DynamicsRow("torques", 30.0, 20.0, 2.0)],
         "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
                       AccuracyRow("a", "mean", 0.001, nan)],
@@ -66,7 +70,9 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
         write_rows(tmp_path / "benchmark" / f"{name}.csv", own)
     text = write_page(tmp_path).read_text(encoding="utf-8")
     for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures",
-                   "**2 of 2** figures", "| speeds | 12 |  | **12** | at most 10 | MISSED |", "75.0", "14",
+                   "**38 of 40** figures", "| a, 5 % of the torque | 40 | 38 | 95 | 24 | 22 |",
+                   "| a | 2, hexahedron, 3 | 1.20 (0.10) | 2.50 (0.10) |", "75.0", "14",
+                   "| speeds | 12 |  | **12** | at most 10 | MISSED |",
                    "| torques | 30 | 20 | **1.5** | at most 2 | met |",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
                    "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |",

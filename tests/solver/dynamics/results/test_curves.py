@@ -24,6 +24,18 @@ def test_errors_that_converge_are_held() -> None:
     assert curve.mesh_error(lambda values: float(values.mean())) == pytest.approx(bar, rel=1e-12)
 
 
+@pytest.mark.parametrize(("elements", "factor"), [(0.25, 2.0), (0.7, np.log2(1.0 / 0.7)), (0.8, 0.5), (3.0, 0.5)])
+def test_contacts_narrower_than_an_element_have_wider_bars(elements: float, factor: float) -> None:
+    """A deflection that goes with the logarithm of the element's size until that is the contact's width: on elements of
+    twice the size it is less by 0.01 ln 2; the bar of the mean is log2(element over width) times that, the true error,
+    and half of it at least, 1e-9."""
+    size = 1.0 / elements
+    fine, coarse = (np.full(40, 10.0 - 0.01 * np.log(each)) for each in (size, 2.0 * size))
+    bar = PitchCurve(LOADED, fine, coarse, 2, elements).mesh_error(lambda values: float(values.mean()))
+    assert bar == pytest.approx(factor * 0.01 * np.log(2.0), rel=1e-9)
+    assert bar >= 10.0 - float(fine.mean()) - 1e-12
+
+
 def test_harmonics_do_not_depend_on_the_mean() -> None:
     """Curves that differ by a constant: no error of the mesh in harmonics and peak-to-peak value, one in the mean."""
     curve = PitchCurve(LOADED, wave(40, 10.0, 3.0), wave(40, 11.0, 3.0), 2)

@@ -33,11 +33,29 @@ def test_lists_beside_the_scenes_torque(percents: list[float], sized: float) -> 
 
 def test_scene_may_ask_for_meshes_of_lighter_torques() -> None:
     """`load.mesh_torques_Nm` from a sixteenth on: a quarter of the Hertz width, about four times the cells."""
-    settings = [], ["load.mesh_torques_Nm=[10.625, 170]"]
-    plain, fine = (scene_torques(spur_scene(*each), LIST).problem for each in settings)
+    scenes = spur_scene(), spur_scene("load.mesh_torques_Nm=[10.625, 170]")
+    plain, fine = (scene_torques(each, LIST).problem for each in scenes)
     assert fine.mesh_torques == pytest.approx((10.625e3, 340e3))
     (few, _), (many, _) = (flank_cells(each, Member.PINION) for each in (plain, fine))
     assert many == pytest.approx(4 * few, abs=6)
+
+
+def test_elements_across_the_contact() -> None:
+    """3 at level standard under the scene's torque, and with the root of the torque under others."""
+    assert scene_torques(spur_scene("mesh.level=standard"), LIST).elements == pytest.approx(
+        [3.0 * 0.05**0.5, 3.0, 3.0 * 2.0**0.5]
+    )
+
+
+def test_contacts_too_narrow_for_error_bars_are_said() -> None:
+    """At level quick 2 % of the torque have a contact 0.24 elements wide, 5 % one of 0.38; the remedy is one: with its
+    meshes nothing is said."""
+    quick = spur_scene("mesh.level=quick")
+    assert scene_torques(quick, [5.0, 100.0]).warnings == []
+    (said,) = scene_torques(quick, [2.0, 5.0, 100.0]).warnings
+    assert "torques up to 3.4 N·m" in said and "found 0.24 under" in said
+    remedy = said.rsplit("--set ", 1)[1]
+    assert scene_torques(spur_scene("mesh.level=quick", remedy), [2.0, 5.0, 100.0]).warnings == []
 
 
 def test_torques_beyond_the_scenes_limits_are_refused() -> None:

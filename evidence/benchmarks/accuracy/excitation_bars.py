@@ -65,7 +65,7 @@ def measure_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> I
     unloaded transmission error."""
     at = _with_positions(problem.with_mesh(problem.reference))
     best, second = (_excitation(at, percents, reference_mesh(problem, problem.halvings - last)) for last in (0, 1))
-    exact, nearly = (pitch_curves(each, CoarseExcitation(None)) for each in (best, second))
+    exact, nearly = (list(pitch_curves(each, CoarseExcitation(None))) for each in (best, second))
     for case in problem.cases:
         scene = problem.with_mesh(case)
         elements = scene_torques(scene, percents).elements

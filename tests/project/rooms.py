@@ -53,6 +53,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
         "dynamics.oscillator",
     ),
+    "strength.standard": ("meshes", "meshes.gears"),
     "scene.schema": ("meshes",),
     "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "dynamics", "scene.schema"),
     "scene.checking": (

@@ -208,17 +208,19 @@ def _left_at(known: _Steady, before: Running, number: int, rising: bool) -> floa
     first, last = max(int(np.ceil(before.place)) - 1, 0), before.motion
     step = 1 if (branch.periods[first + 1] < branch.periods[first]) == rising else -1
     i = first + 1 if step > 0 else int(np.floor(before.place))
-    while 0 <= i < len(branch.points) and (branch.periods[i] > period) == rising:
+    while 0 <= i < len(branch.points):
         if min(i, i - step) in branch.gaps:
             return last.period
+        if (branch.periods[i] > period) != rising:
+            break
         if i in branch.folds:
             return float(branch.periods[i])
         if not branch.stable[i]:
             return _unstable_from(model, last, branch.points[i])
         last, i = branch.points[i], i + step
-    ahead = [each for each in known.coexisting[number] if (each.place - before.place) * step > 0.0]
-    beyond = min(ahead, key=lambda each: abs(each.place - float(before.place or 0.0)), default=None)
-    return _unstable_from(model, last, beyond.state) if beyond and not beyond.state.stable else period
+    low, high = sorted((i - step, i))
+    beyond = [each.state for each in known.coexisting[number] if low <= each.place <= high and not each.state.stable]
+    return _unstable_from(model, last, beyond[0]) if beyond else period
 
 
 def _unstable_from(model: TorsionalModel, stable: SteadyState, unstable: SteadyState) -> float:

@@ -7,10 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from evolvent.dynamics.oscillator import speed_sweep
 from evolvent.dynamics.oscillator.continuation import Branch
 from evolvent.dynamics.oscillator.mesh_law import MeshLaw, linear_side, no_side
 from evolvent.dynamics.oscillator.settling import settled
-from evolvent.dynamics.oscillator.speed_sweep import SpeedSweep, speeds_to_periods, sweep_speeds
+from evolvent.dynamics.oscillator.speed_sweep import OnBranch, Running, SpeedSweep, speeds_to_periods, sweep_speeds
 from evolvent.dynamics.oscillator.steady_state import SteadyState, steady_state
 from evolvent.dynamics.oscillator.time_integration import integrate
 from evolvent.dynamics.oscillator.torsional_model import TorsionalModel, history
@@ -131,3 +132,19 @@ def test_multipliers_of_a_linear_oscillator() -> None:
     multipliers = sorted(found.multipliers, key=lambda μ: float(np.imag(μ)))
     assert sorted([exact, exact.conjugate()], key=lambda μ: float(np.imag(μ))) == pytest.approx(multipliers, abs=1e-10)
     assert found.stable
+
+
+@pytest.mark.parametrize("rising", [True, False])
+def test_a_branch_that_cannot_be_followed_further_is_left_at_its_end(rising: bool) -> None:
+    """Mesh periods of 5, 4 and 3 s, and 1 and 0.5 s of a piece that is not connected, with an unstable state on it
+    at 2 s: a pair that follows the first piece from 4.5 s leaves it at 3 s, one that comes down from 0.7 s at 1 s."""
+
+    def state(period: float, growth: float) -> SteadyState:
+        return SteadyState(period, np.zeros(2), np.diag([growth, 0.5])[:, [0, 1, 1]])
+
+    branch = Branch(tuple(state(period, 0.5) for period in (5.0, 4.0, 3.0, 1.0, 0.5)), (), gaps=(2,))
+    known = speed_sweep._Steady.__new__(speed_sweep._Steady)
+    known.branch, known.periods = branch, np.array([4.5, 2.0])
+    known.model, known.coexisting = softening(0.1), [[], [OnBranch(1.5 if not rising else 3.5, state(2.0, 1.5))]]
+    before = Running(state(4.5, 0.5), 0.5, None) if rising else Running(state(0.7, 0.5), 3.6, None)
+    assert speed_sweep._left_at(known, before, 1, rising) == (3.0 if rising else 1.0)

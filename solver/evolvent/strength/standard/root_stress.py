@@ -1,0 +1,153 @@
+"""Nominal tooth root stress σ_F0 of a gear pair under its static torque: ISO 6336-3, Method B, and Zhang et al. 2023.
+
+No application, dynamic, face and transverse load factor: these multiply it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evolvent.strength.standard.contact_points import contact_points
+from evolvent.strength.standard.critical_section import CriticalSection, root_section
+from evolvent.strength.standard.factors import (
+    Edition,
+    deep_tooth_factor,
+    helix_angle_factor,
+    load_distribution_factor,
+)
+from evolvent.strength.standard.load_sharing import pedrero_share
+from evolvent.strength.standard.tooth_form import ToothForm, load_point
+from evolvent.strength.standard.virtual_gear import virtual_contact_ratio
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
+
+FINE, ROUNDS = 400, 3
+"""Points of the flank among which the largest stress is sought, and how often the best one's surroundings are."""
+
+
+@dataclass(frozen=True)
+class StandardStress:
+    """σ_F0 and what it is made of."""
+
+    stress: float
+    """[MPa]."""
+    form_factor: float
+    """Y_F, in 2019 with f_ε."""
+    stress_correction_factor: float
+    """Y_S."""
+    helix_angle_factor: float
+    """Y_β."""
+    deep_tooth_factor: float
+    """Y_DT; 1 in 2019."""
+    form: ToothForm
+    """The tooth and its load."""
+
+
+@dataclass(frozen=True)
+class PointStress:
+    """The stress with the load at one point of the flank."""
+
+    name: str
+    """Of the point."""
+    below_tip: float
+    """Its distance from the tip along the line of action, in base pitches."""
+    share: float
+    """Part of the load that the tooth bears."""
+    stress: float
+    """[MPa]."""
+    form: ToothForm
+    """The tooth and its load."""
+
+
+@dataclass(frozen=True)
+class RootLoad:
+    """What loads the root of one gear of a pair."""
+
+    pair: GearPair
+    """The gears."""
+    member: Member
+    """Whose root it is."""
+    pinion_torque: float
+    """[N·mm]."""
+
+    @property
+    def section(self) -> CriticalSection:
+        """The critical section."""
+        return root_section(self.pair.gears[self.member])
+
+    @property
+    def contact_ratio(self) -> float:
+        """ε_αn."""
+        return virtual_contact_ratio(self.pair)
+
+    @property
+    def tangential_force(self) -> float:
+        """F_t = 2 T_1/d_1 at the reference circle [N]."""
+        return 2.0 * self.pinion_torque / self.pair.pinion.reference_diameter
+
+    @property
+    def face_stress(self) -> float:
+        """F_t/(b m_n) [MPa]; b is the common face width."""
+        return self.tangential_force / (self.pair.face_width * self.pair.pinion.normal_module)
+
+    def form_at(self, below_tip: float) -> ToothForm:
+        """Loaded at a point. below_tip: distance from the tip along the line of action, in base pitches."""
+        section = self.section
+        return ToothForm(section, load_point(section.gear, below_tip * section.gear.base_pitch))
+
+
+def standard_stress(load: RootLoad, edition: Edition, tolerance_class: int = 6) -> StandardStress:
+    """σ_F0 by ISO 6336-3 with all the load at the outer point of single contact of the virtual gear, (ε_αn − 1) p_bn
+    below the tip, also where two pairs are always in contact: there Y_DT (2006) or f_ε (2019) say what they share.
+
+    tolerance_class: by ISO 1328-1.
+    """
+    pair, ε = load.pair, load.contact_ratio
+    form = load.form_at(ε - 1.0)
+    form_factor = form.form_factor * load_distribution_factor(ε, pair.overlap_ratio, edition)
+    helix = helix_angle_factor(pair.pinion.helix_angle, pair.overlap_ratio, edition)
+    deep = deep_tooth_factor(ε, tolerance_class) if edition == 2006 else 1.0
+    stress = load.face_stress * form_factor * form.stress_correction_factor * helix * deep
+    return StandardStress(stress, form_factor, form.stress_correction_factor, helix, deep, form)
+
+
+def boundary_stresses(load: RootLoad) -> tuple[PointStress, ...]:
+    """Equal sharing at the points where pairs of a spur gear pair begin or end to share the load (Zhang et al. 2023,
+    Eq. 6), from the tip down. Raises InputError for helical gears."""
+    _require_spur(load)
+    return tuple(
+        _at(load, point.name, point.below_tip, 1.0 / point.pairs) for point in contact_points(load.contact_ratio)
+    )
+
+
+def largest_stress(load: RootLoad) -> PointStress:
+    """Over the whole path of contact of a spur pair, with Pedrero's sharing. Raises InputError for helical gears."""
+    _require_spur(load)
+    low, high = 0.0, load.contact_ratio
+    for _ in range(ROUNDS):
+        step = (high - low) / FINE
+        tried = [_shared(load, low + i * step) for i in range(FINE + 1)]
+        best = max(tried, key=lambda each: each.stress)
+        low, high = max(0.0, best.below_tip - step), min(load.contact_ratio, best.below_tip + step)
+    return best
+
+
+def _require_spur(load: RootLoad) -> None:
+    angle = load.pair.pinion.helix_angle_deg
+    if angle > 0.0:
+        raise InputError(
+            f"root stress at points of the flank: wanted spur gears, found a helix angle of {angle:g}°; contact lines "
+            "of helical gears load many points at once, take the standard's stress or finite elements"
+        )
+
+
+def _shared(load: RootLoad, below_tip: float) -> PointStress:
+    share = pedrero_share(load.contact_ratio - below_tip, load.contact_ratio)
+    return _at(load, "largest with Pedrero's sharing", below_tip, share)
+
+
+def _at(load: RootLoad, name: str, below_tip: float, share: float) -> PointStress:
+    form = load.form_at(below_tip)
+    stress = share * load.face_stress * form.form_factor * form.stress_correction_factor
+    return PointStress(name, below_tip, share, stress, form)

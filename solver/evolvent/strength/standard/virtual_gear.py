@@ -1,0 +1,69 @@
+"""The spur gear in the normal section of a helical one, on which ISO 6336-3 bases its tooth form: ISO 6336-3:2006, 6.2.
+
+A spur gear is its own virtual gear. Lengths are in mm and angles in rad, unless a name says otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.gear_geometry import involute_function
+from evolvent_meshes.gears.pair import GearPair
+
+
+@dataclass(frozen=True)
+class VirtualGear:
+    """A spur gear, whose number of teeth need not be whole."""
+
+    teeth: float
+    """z_n."""
+    module: float
+    """m_n [mm]."""
+    pressure_angle: float
+    """α_n [rad]."""
+    profile_shift: float
+    """Coefficient x."""
+    tip_diameter: float
+    """d_an [mm]."""
+
+    @property
+    def reference_diameter(self) -> float:
+        """d_n = m_n z_n [mm]."""
+        return self.module * self.teeth
+
+    @property
+    def base_diameter(self) -> float:
+        """d_bn = d_n cos α_n [mm]."""
+        return self.reference_diameter * math.cos(self.pressure_angle)
+
+    @property
+    def base_pitch(self) -> float:
+        """p_bn = π m_n cos α_n [mm]."""
+        return math.pi * self.module * math.cos(self.pressure_angle)
+
+    @property
+    def tip_roll_length(self) -> float:
+        """Radius of curvature of the involute at the tip [mm]."""
+        return 0.5 * math.sqrt(self.tip_diameter**2 - self.base_diameter**2)
+
+    def half_angle(self, pressure_angle: float) -> float:
+        """γ [rad], half the angle that the tooth covers where the involute has this pressure angle [rad]."""
+        shift = 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        return (
+            (0.5 * math.pi + shift) / self.teeth
+            + involute_function(self.pressure_angle) - involute_function(pressure_angle)
+        )  # fmt: skip
+
+
+def virtual_gear(gear: GearParameters) -> VirtualGear:
+    """z_n = z/(cos² β_b cos β), d_an = d_n + d_a − d."""
+    teeth = gear.z / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle))
+    tip = teeth * gear.normal_module + gear.tip_diameter - gear.reference_diameter
+    return VirtualGear(teeth, gear.normal_module, gear.normal_pressure_angle, gear.profile_shift, tip)
+
+
+def virtual_contact_ratio(pair: GearPair) -> float:
+    """ε_αn = ε_α/cos² β_b."""
+    return pair.transverse_contact_ratio / math.cos(pair.pinion.base_helix_angle) ** 2

@@ -61,12 +61,12 @@ def he(tip_diameter: float = 156.0) -> GearPair:
     return GearPair(he_gear(tip_diameter), he_gear(tip_diameter), 150.0)
 
 
-def zhang() -> GearPair:
+def zhang(rack_tip_radius_coefficient: float = 0.2) -> GearPair:
     """Spur pair 33/46 of high contact ratio: tip from the printed addenda, root from the printed height 6.465."""
     common: dict[str, Any] = {
         "normal_module": 2.3,
         "normal_pressure_angle_deg": 18.0,
-        "rack_tip_radius": 0.46,
+        "rack_tip_radius": 2.3 * rack_tip_radius_coefficient,
         "bore_diameter": 40.0,
     }
     small = GearParameters(

@@ -13,8 +13,10 @@ from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from tests.support.zhang import TORQUE, zhang_pair
+from tests.support.paper_pairs import zhang
 
+TORQUE = 500e3
+"""On the pinion [N·mm]."""
 EDITIONS: tuple[Edition, ...] = 2006, 2019
 STRESSES = {
     (0.20, Member.PINION): (530.1, 351.9, 328.0, 220.7), (0.20, Member.WHEEL): (546.5, 372.9, 348.6, 228.3),
@@ -45,7 +47,7 @@ def helical_pair(angle: float, face_width: float = 20.0) -> GearPair:
 @pytest.mark.parametrize(("radius", "member"), list(STRESSES))
 def test_stresses_at_the_boundary_points(radius: float, member: Member) -> None:
     """Zhang's pair at 500 N·m with equal sharing: 0.1 % (0.03 % for the digits that are known)."""
-    found = {point.name[-2]: point.stress for point in boundary_stresses(load(zhang_pair(radius), member))}
+    found = {point.name[-2]: point.stress for point in boundary_stresses(load(zhang(radius), member))}
     wanted = STRESSES[radius, member]
     assert [found[name] for name in "bcde"][: len(wanted)] == pytest.approx(wanted, rel=3e-4)
 
@@ -53,7 +55,7 @@ def test_stresses_at_the_boundary_points(radius: float, member: Member) -> None:
 def test_largest_stress_lies_between_the_boundary_points() -> None:
     """With Pedrero's sharing the root bears less at b than with half of the load, and most between b and c; each point
     of a fine list bears no more."""
-    pair = zhang_pair()
+    pair = zhang()
     root = load(pair, Member.PINION)
     b, c = (point for point in boundary_stresses(root) if point.name[-2] in "bc")
     worst = largest_stress(root)
@@ -65,7 +67,7 @@ def test_largest_stress_lies_between_the_boundary_points() -> None:
 def test_standard_takes_the_outer_point_of_single_contact() -> None:
     """Zhang's pair, whole load at d, (ε − 1) p_b below the tip: twice the 328.0 MPa of equal sharing, times Y_DT =
     2.366 − 0.666 ε at a tolerance class of 4 in the edition of 2006, times 0.7 in that of 2019: 0.03 %."""
-    root = load(zhang_pair(), Member.PINION)
+    root = load(zhang(), Member.PINION)
     deep = 2.366 - 0.666 * 2.14131
     assert standard_stress(root, 2006, 6).stress == pytest.approx(656.0, rel=3e-4)
     assert standard_stress(root, 2006, 4).stress == pytest.approx(656.0 * deep, rel=3e-4)
@@ -91,7 +93,7 @@ def test_points_of_helical_flanks_are_refused() -> None:
 def test_normal_force_of_a_long_tooth_bends_it_as_a_beam() -> None:
     """Y_F alone is the bending stress M/W of the load's part across the tooth's axis, σ b m_n/F_t: from the same load
     point by statics, 1e-12."""
-    form = load(zhang_pair(), Member.WHEEL).form_at(0.5)
+    form = load(zhang(), Member.WHEEL).form_at(0.5)
     gear, section = form.section.gear, form.section
     normal_force = 1.0 / math.cos(gear.pressure_angle)  # for F_t = 1 N at the reference circle
     moment = normal_force * math.cos(form.point.load_angle) * (form.point.height - section.height)

@@ -73,6 +73,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
         "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
+    "strength": ("meshes", "meshes.mesh", "meshes.gears", "fem", "gears", "gears.sweep", "results.fields"),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
         "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",

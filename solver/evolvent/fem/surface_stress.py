@@ -1,9 +1,9 @@
 """Stress on a body's free surface from the displacements of its nodes alone, as strain gauges find it.
 
 A free surface bears no traction, so that its strain along the surface says everything. Strains are taken at the points
-of the facets at which derivatives of shape functions converge one order faster than elsewhere (Barlow 1976), are
-continued to the nodes facet by facet, and averaged there. No cell is looked at: displacements of surface nodes may come
-from a condensed body.
+of the facets at which derivatives of shape functions converge one order faster than elsewhere (Barlow 1976). Stresses
+there are turned with the normal to that of a node, continued to it facet by facet, and averaged. No cell is looked at:
+displacements of surface nodes may come from a condensed body.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from evolvent.fem.lagrange import node_points
 from evolvent.fem.material import Material
-from evolvent.fem.reference_facets import monomials, reference_cell
+from evolvent.fem.reference_facets import area_vector, monomials, reference_cell
 from evolvent.fem.surface import Surface
 from evolvent_meshes.arrays import Floats
 
@@ -32,7 +32,8 @@ def surface_stress(surface: Surface, material: Material, displacement: Floats) -
     places = np.broadcast_to(points, (len(every), *points.shape))
     tangents, slopes = (surface.evaluate(field, every, places)[1] for field in (surface.points, displacement))
     sampled = _stress(np.stack(tangents, axis=-2), np.stack(slopes, axis=-2), material)
-    nodal = np.einsum("kq,mqab->mkab", continued, sampled)
+    turns = _turns(_unit(area_vector(tangents)), _unit(surface.normals)[surface.facets])
+    nodal = np.einsum("kq,mkqac,mqcd,mkqbd->mkab", continued, turns, sampled, turns, optimize=True)
     total = np.zeros((len(surface.points), 3, 3))
     np.add.at(total, surface.facets.ravel(), nodal.reshape(-1, 3, 3))
     count = np.bincount(surface.facets.ravel(), minlength=len(total))
@@ -54,6 +55,23 @@ def _stress(a: Floats, change: Floats, material: Material) -> Floats:
     if d == 2:
         stress[..., 2, 2] = ν * (stress[..., 0, 0] + stress[..., 1, 1])
     return stress
+
+
+def _unit(normals: Floats) -> Floats:
+    """Unit vectors (..., 3) of normals (..., d)."""
+    n = np.zeros((*normals.shape[:-1], 3))
+    n[..., : normals.shape[-1]] = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+    return n
+
+
+def _turns(normals: Floats, nodal: Floats) -> Floats:
+    """Smallest rotations (m, k, q, 3, 3) from the normals (m, q, 3) at q points of a facet to those (m, k, 3) of its k
+    nodes, by Rodrigues' formula."""
+    a, b = normals[:, None], nodal[:, :, None]
+    sine = b[..., :, None] * a[..., None, :]
+    sine = sine - np.swapaxes(sine, -1, -2)  # v ↦ (a × b) × v
+    cosine = np.einsum("...a,...a->...", a, b)[..., None, None]
+    return np.asarray(np.eye(3) + sine + sine @ sine / (1.0 + cosine))
 
 
 @cache

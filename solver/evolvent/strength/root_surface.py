@@ -1,0 +1,66 @@
+"""The root of a tooth: the fillets of both sides of its sector, on which stress is looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evolvent.fem.surface import Surface, surface_of
+from evolvent_meshes.arrays import Bools, Floats
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.mesh.mesh_data import MeshData
+
+
+@dataclass(frozen=True, eq=False)
+class RootSurface:
+    """Root of one side of tooth 0 in the gear's frame, from the start of the flank's mesh to the middle of the
+    space."""
+
+    gear: GearParameters
+    """Whose root it is."""
+    surface: Surface
+    """n nodes, numbered as in the sector's mesh by `nodes`."""
+
+    @property
+    def heights(self) -> Floats:
+        """Axial positions (n,) [mm]; 0 in plane strain."""
+        x = self.surface.points
+        return np.asarray(x[:, 2]) if x.shape[1] == 3 else np.zeros(len(x))
+
+    @property
+    def radii(self) -> Floats:
+        """(n,) [mm]."""
+        return np.hypot(self.surface.points[:, 0], self.surface.points[:, 1])
+
+    @property
+    def tangent_angles(self) -> Floats:
+        """Angles (n,) [rad] between the profile's tangent and the tooth's centre line in the node's transverse section:
+        about the pressure angle at the flank, 30° at the standard's critical section, 90° at the root circle."""
+        turn = self.gear.twist * self.heights
+        n = self.surface.normals
+        along = np.cos(turn) * n[:, 0] + np.sin(turn) * n[:, 1]
+        across = np.cos(turn) * n[:, 1] - np.sin(turn) * n[:, 0]
+        return np.arctan2(np.abs(along), np.abs(across))
+
+
+def tension_side(mesh: MeshData, gear: GearParameters) -> RootSurface:
+    """The root below the loaded flank, which bending pulls. mesh: a sector."""
+    return RootSurface(gear, surface_of(mesh, "fillet"))
+
+
+def compression_side(mesh: MeshData, gear: GearParameters) -> RootSurface:
+    """The root of the back, up to the same radius, which bending presses. mesh: a sector."""
+    top = tension_side(mesh, gear).radii.max()
+    back = RootSurface(gear, surface_of(mesh, "back"))
+    return RootSurface(gear, _part(back.surface, back.radii <= top * (1.0 + 1e-9)))
+
+
+def _part(surface: Surface, kept: Bools) -> Surface:
+    """The facets all of whose nodes are kept, with these nodes alone. kept: (n,) bool."""
+    facets = surface.facets[kept[surface.facets].all(axis=1)]
+    used, number = np.unique(facets, return_inverse=True)
+    return replace(
+        surface, points=surface.points[used], normals=surface.normals[used], nodes=surface.nodes[used],
+        facets=number.reshape(facets.shape),
+    )  # fmt: skip

@@ -1,0 +1,95 @@
+"""Root stress of Zhang's pair in plane strain, against the paper, statics, and finer fillets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from evolvent.fem.material import Material
+from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
+from evolvent.strength.root_passage import GearRoots, root_passages
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_data import MeshData
+from tests.support.gear_cases import swept
+from tests.support.paper_pairs import zhang
+
+STEEL = Material(212e3, 0.289)
+TORQUE, POSITIONS = 500e3, 12
+
+
+def finer_fillets(problem: GearProblem, member: Member) -> MeshData:
+    """Four times the elements in the root."""
+    return gear_mesh(
+        problem, member,
+        adapted=lambda root: replace(
+            root, fillet_elements=4 * root.fillet_elements, back_elements=4 * root.back_elements,
+            neck_elements=4 * root.neck_elements,
+        ),
+    )  # fmt: skip
+
+
+@cache
+def roots(fine: bool = False) -> tuple[GearRoots, GearRoots]:
+    """Of both gears at 500 N·m, μ = 0.05, over 25 mm of both faces."""
+    pair = zhang()
+    pair = replace(pair, pinion=replace(pair.pinion, face_width=pair.wheel.face_width))
+    problem = GearProblem(pair, torque=TORQUE, materials=(STEEL, STEEL), mesh=MeshSettings("quick"))
+    mesh: Mesher = finer_fillets if fine else gear_mesh
+    model = prepare_model(problem, MPI.COMM_SELF, mesh).model
+    (curves,) = swept(model, np.degrees(2.0 * np.pi / pair.pinion.z * np.arange(POSITIONS) / POSITIONS), [0.05])
+    pinion, wheel = (root_passages(body, curves.results) for body in model.bodies)
+    return pinion, wheel
+
+
+@pytest.mark.parametrize(("member", "paper"), [(Member.PINION, 490.6), (Member.WHEEL, 487.01)])
+def test_largest_tension_beside_the_paper(member: Member, paper: float) -> None:
+    """Within 10 % of the paper's finite elements, and below: its tool tip radius is not known."""
+    tension = roots(fine=True)[member].loaded_side.tension
+    assert 0.9 * paper < tension.stress < paper
+    assert np.radians(30.0) < tension.tangent_angle < np.radians(60.0)
+
+
+@pytest.mark.parametrize("member", Member)
+def test_fillets_of_the_usual_mesh(member: Member) -> None:
+    """Six elements around the fillet: tension and compression within 4 % of four times as many."""
+    usual, fine = roots()[member], roots(fine=True)[member]
+    assert usual.loaded_side.tension.stress == pytest.approx(fine.loaded_side.tension.stress, rel=0.04)
+    assert usual.back_side.compression.stress == pytest.approx(fine.back_side.compression.stress, rel=0.04)
+
+
+@pytest.mark.parametrize("member", Member)
+def test_back_is_pressed_while_the_loaded_side_is_pulled(member: Member) -> None:
+    """At the rotation of the largest tension the back's smallest principal stress is as large, a fifth more or less,
+    and below zero. Where the tooth bears no load, its neighbours, which share the middle of the space, leave less than
+    a fifth of that where the profile is steeper than 45°."""
+    own = roots()[member]
+    loaded, back = own.loaded_side, own.back_side
+    k = int(np.argmin(np.abs(loaded.angles - loaded.tension.angle)))
+    assert -back.principal[k, :, 0].min() == pytest.approx(loaded.tension.stress, rel=0.2)
+    for passage in (loaded, back):
+        for end in (0, -1):
+            own_part = passage.root.tangent_angles < np.radians(45.0)
+            assert np.abs(passage.principal[end, own_part]).max() < 0.2 * loaded.tension.stress
+
+
+@pytest.mark.parametrize("member", Member)
+def test_mean_and_amplitude_are_of_one_direction(member: Member) -> None:
+    """Their sum is the largest tension; neighbours under load press the root a little before it is loaded, so that the
+    amplitude is more than half of the largest."""
+    tension = roots()[member].loaded_side.tension
+    assert tension.mean + tension.amplitude == pytest.approx(tension.stress, rel=1e-9)
+    assert 0.5 < tension.amplitude / tension.stress < 0.6
+
+
+def test_free_surface_bears_no_traction() -> None:
+    """σ n = 0 at every node and rotation, 1e-9 of the largest stress."""
+    passage = roots()[Member.PINION].loaded_side
+    normals = np.pad(passage.root.surface.normals, ((0, 0), (0, 1)))
+    traction = np.einsum("knab,nb->kna", passage.stress, normals)
+    assert np.abs(traction).max() < 1e-9 * np.abs(passage.stress).max()

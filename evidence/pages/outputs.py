@@ -28,6 +28,7 @@ from evolvent.results.shaft_forces import ShaftForces
 from evolvent.results.tables.load_table import ERROR, LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from evolvent.scene.skips import Skipped
+from evolvent.strength.results.tables import RootStressRow, StrengthRow
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.report import GearReport, PairReport, WearReport
 
@@ -76,6 +77,8 @@ FILES = (
     ("dynamics.json", "`evolvent dynamics`: what the vibration is computed from, and its jumps"),
     ("operation.json", "`evolvent run` at an operating speed: the vibration under whose force contact was computed"),
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
+    ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
+    ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
     ("pictures/loads.png", "`evolvent loads`: transmission error, largest pressure and mesh stiffness over the torque"),
 )
 ARRAYS = (
@@ -125,6 +128,8 @@ SECTIONS = (
     ("`torque_map.csv`", MapRow, "Of `evolvent dynamics` with `dynamics.map_percents`; the lightest torque first."),
     ("`dynamics.json`", DriveSummary, ""),
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
+    ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
+    ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
     ("`wear.csv`", BlockRow, ""),
     ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
     ("`wear.json`", WearReport, ""),

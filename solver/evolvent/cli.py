@@ -20,10 +20,12 @@ from evolvent.computing import (
     EXCITATION_EPILOG,
     LOADS_EPILOG,
     RUN_EPILOG,
+    STRENGTH_EPILOG,
     dynamics,
     excitation,
     loads,
     run,
+    strength,
 )
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
@@ -45,7 +47,7 @@ from evolvent_meshes.files import require_writable
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-SHARED = ("run", "loads", "excitation", "dynamics")
+SHARED = ("run", "loads", "excitation", "dynamics", "strength")
 """The commands that all ranks take part in."""
 app = typer.Typer(
     name="evolvent",
@@ -73,6 +75,7 @@ app.command(epilog=RUN_EPILOG)(run)
 app.command(epilog=LOADS_EPILOG)(loads)
 app.command(epilog=EXCITATION_EPILOG)(excitation)
 app.command(epilog=DYNAMICS_EPILOG)(dynamics)
+app.command(epilog=STRENGTH_EPILOG)(strength)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

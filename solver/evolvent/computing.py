@@ -67,6 +67,14 @@ Examples:
 {STATUSES}"""
 
 
+STRENGTH_EPILOG = f"""\b
+Examples:
+  evolvent strength demos/zhang2023.toml --out out/zhang2023 --set pinion.face_width_mm=25
+  evolvent strength demos/he2022.toml --out out/roots --level quick --set contact.friction=[0,0.1]
+
+{STATUSES}"""
+
+
 def run(
     scene: SceneFile,
     out: Annotated[
@@ -189,6 +197,33 @@ def dynamics(
         if not quiet and MPI.COMM_WORLD.rank == 0:
             pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
             typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")
+
+
+def strength(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
+    ],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute the stress at the roots of a pair's teeth.
+
+    By finite elements over the whole engagement of a tooth, on both sides, beside ISO 6336-3 and formulas for chosen
+    points of load. Nominal stresses: load factors multiply them.
+    """
+    with reported(parallel=True):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        from evolvent.run.strength.strength_run import run_strength
+
+        require_room(loaded.model_copy(update={"wear": None}), "run", force, MPI.COMM_WORLD)
+        _warn(run_strength(loaded, out, overwrite, quiet))
+        if not quiet and MPI.COMM_WORLD.rank == 0:
+            typer.echo(f"done: {out / 'strength.csv'}, {out / 'root_stress.csv'}, {out / 'pictures/root_stress.png'}")
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

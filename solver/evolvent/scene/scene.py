@@ -26,6 +26,7 @@ from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
 from evolvent.scene.schema.output import OutputSection, SkipSection
 from evolvent.scene.schema.section import SceneSection, key
+from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.schema.wear import WearSection
 from evolvent_meshes.csv_tables import TableError
 from evolvent_meshes.gears.member import MemberName
@@ -56,6 +57,7 @@ class Scene(SceneSection):
     sweep: SweepSection = SweepSection()
     wear: WearSection | None = None
     dynamics: DynamicsSection | None = None
+    strength: StrengthSection | None = None
     output: OutputSection = OutputSection()
     skip: SkipSection = SkipSection()
 

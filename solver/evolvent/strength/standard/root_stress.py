@@ -5,6 +5,7 @@ No application, dynamic, face and transverse load factor: these multiply it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from evolvent.strength.standard.contact_points import contact_points
@@ -90,6 +91,15 @@ class RootLoad:
     def face_stress(self) -> float:
         """F_t/(b m_n) [MPa]; b is the common face width."""
         return self.tangential_force / (self.pair.face_width * self.pair.pinion.normal_module)
+
+    def tooth_rotation(self, below_tip: float) -> float:
+        """Pinion rotation [rad] of a spur tooth that is loaded at a point, 0 at the pitch point; NaN for helical gears,
+        whose virtual gear is another one. below_tip: as of `form_at`."""
+        if self.pair.pinion.helix_angle_deg > 0.0:
+            return math.nan
+        (start, end), pitch = self.pair.path_of_contact, self.pair.pinion.transverse_base_pitch
+        ξ = end - below_tip * pitch if self.member is Member.PINION else start + below_tip * pitch
+        return ξ / self.pair.pinion.base_radius
 
     def form_at(self, below_tip: float) -> ToothForm:
         """Loaded at a point. below_tip: distance from the tip along the line of action, in base pitches."""

@@ -1,0 +1,1 @@
+"""Root strength of a scene."""

@@ -1,0 +1,69 @@
+"""Picture of root stress: over the rotation of a tooth, beside the formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.style import INK, foot, friction_colours, png, sheet, styled
+from evolvent.strength.results.tables import FrictionRoots, StrengthRow, pressure_curve, tension_curve
+from evolvent_meshes.gears.member import Member
+
+MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}
+"""First word of a method -> its marker."""
+
+
+def root_stress_picture(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> bytes:
+    """PNG of `root_stress_figure`."""
+    with styled():
+        return png(root_stress_figure(title, found, rows))
+
+
+def root_stress_figure(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> Figure:
+    """Largest tension of the loaded side and pressure of the back over the rotation of a tooth, a column a gear; the
+    formulas at the rotation of their load.
+
+    title: of the scene. rows: of both gears.
+    """
+    head = "Root stress over the engagement of a tooth"
+    figure = sheet(head, f"{title}. Nominal, without load factors.", (11.0, 6.2))
+    axes = figure.subplots(1, 2, sharey=True)
+    colours = friction_colours([each.friction for each in found])
+    for member, own in zip(Member, axes):
+        for each, colour in zip(found, colours):
+            for curve, style in ((tension_curve, "-"), (pressure_curve, "--")):
+                stress = curve(each.gears[member])
+                own.plot(np.degrees(stress.angle), stress.values, style, color=colour, lw=1.6)
+        _formulas(own, [row for row in rows if row.gear == member.label and np.isnan(row.friction)])
+        own.axhline(0.0, color=INK, lw=0.6)
+        own.set_title(member.label)
+        own.set_xlabel("pinion rotation from the pitch point [°]")
+    axes[0].set_ylabel("principal stress at the root [MPa]")
+    for each, colour in zip(found, colours):
+        axes[0].plot([], [], color=colour, label=f"finite elements, μ = {each.friction:g}")
+    axes[1].legend(*_named(axes), loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
+    foot(figure, "Full: largest tension of the loaded side; dashed: pressure of the back. Places: strength.csv.")
+    return figure
+
+
+def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
+    """Formulas that know the rotation of their load as marks, others as lines."""
+    for row in rows:
+        word = row.method.split()[0].split("'")[0]
+        if np.isnan(row.tooth_rotation_deg):
+            axes.axhline(row.stress_MPa, color=INK, lw=0.8, ls=":", label=row.method)
+        else:
+            filled = INK if row.method.endswith("2019") or word == "Pedrero" else "none"
+            axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=5.5,
+                      label=row.method.split(",")[0], ls="none")  # fmt: skip
+
+
+def _named(axes: Sequence[Axes]) -> tuple[list[object], list[str]]:
+    """Each name once."""
+    both = [pair for own in axes for pair in zip(*own.get_legend_handles_labels())]
+    known = {label: handle for handle, label in both}
+    names = sorted(known, key=lambda name: not name.startswith("finite"))
+    return [known[name] for name in names], names

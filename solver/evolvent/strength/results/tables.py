@@ -1,0 +1,164 @@
+"""Root stress of both gears by each way side by side, and over the rotation of a tooth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, difference
+from evolvent.results.tables.tables import csv_text
+from evolvent.strength.root_passage import GearRoots, RootPeak
+from evolvent.strength.standard.factors import Edition
+from evolvent.strength.standard.root_stress import (
+    PointStress,
+    RootLoad,
+    boundary_stresses,
+    largest_stress,
+    standard_stress,
+)
+from evolvent_meshes.gears.member import Member
+
+STRENGTH, ROOT_STRESS = "strength.csv", "root_stress.csv"
+UNKNOWN = math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionRoots:
+    """Roots of both gears at one friction coefficient."""
+
+    friction: float
+    """μ."""
+    gears: tuple[GearRoots, GearRoots]
+    """Pinion and wheel."""
+    coarse: tuple[GearRoots, GearRoots] | None
+    """The same on elements of twice the size; None where they are not known."""
+    order: int
+    """Of the cells."""
+
+
+@dataclass(frozen=True)
+class StrengthRow:
+    """A line of strength.csv: a stress of a gear's root, found in one way. Without load factors."""
+
+    gear: str
+    """pinion or wheel."""
+    method: str
+    """The standard with its edition, a formula with its point of load, or finite elements."""
+    friction: float
+    """Friction coefficient of finite elements; NaN for formulas, which have none."""
+    stress_MPa: float
+    """Nominal stress of the formula; largest principal stress of the loaded side, or smallest of the back side."""
+    stress_MPa_error: float
+    """Its estimated error by the mesh; NaN for formulas, and without a coarse companion (`output.error_bars`)."""
+    tooth_rotation_deg: float
+    """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
+    mid-face section. NaN for the standard's virtual gear of helical ones."""
+    radius_mm: float
+    """Of the place; of formulas that of the critical section."""
+    height_mm: float
+    """Axial position of the place, 0 at mid-face."""
+    tangent_angle_deg: float
+    """Of the profile there to the tooth's centre line; 30 for formulas."""
+    load_share: float
+    """Part of the load on the tooth that a formula takes; NaN for finite elements."""
+    form_factor: float
+    """Y_F, in the edition of 2019 with f_ε; NaN for finite elements."""
+    stress_correction_factor: float
+    """Y_S; NaN for finite elements."""
+    mean_MPa: float
+    """Mean of largest and smallest stress there over a passage, in the direction of this one; NaN for formulas."""
+    amplitude_MPa: float
+    """Half of their difference, likewise."""
+
+
+@dataclass(frozen=True)
+class RootStressRow:
+    """A line of root_stress.csv: a tooth of a gear at a rotation."""
+
+    gear: str
+    """pinion or wheel."""
+    friction: float
+    """Friction coefficient."""
+    tooth_rotation_deg: float
+    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
+    tension_MPa: float
+    """Largest principal stress at the root of the loaded side."""
+    compression_MPa: float
+    """Smallest principal stress at the root of the back side."""
+
+
+def strength_rows(
+    load: RootLoad, found: Sequence[FrictionRoots], editions: Sequence[Edition], tolerance_class: int
+) -> Iterator[StrengthRow]:
+    """Of one gear, formulas first. editions: of the standard. tolerance_class: by ISO 1328-1, for Y_DT."""
+    yield from formula_rows(load, editions, tolerance_class)
+    for each in found:
+        own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
+        factor = STIFFNESS_FACTOR[each.order]
+        errors = [UNKNOWN] * 2 if coarse is None else [
+            factor * difference(lambda values: float(np.max(values)), tension_curve(own), tension_curve(coarse)),
+            factor * difference(lambda values: float(np.min(values)), pressure_curve(own), pressure_curve(coarse)),
+        ]  # fmt: skip
+        peaks = own.loaded_side.tension, own.back_side.compression
+        for name, peak, error in zip(("tension", "compression"), peaks, errors):
+            yield _of_peak(load, f"finite elements, {name}", each.friction, peak, error)
+
+
+def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: int) -> Iterator[StrengthRow]:
+    """By the standard, in each edition; of spur gears also at the points where pairs begin or end to share the load,
+    and largest over the path of contact."""
+    for edition in editions:
+        found = standard_stress(load, edition, tolerance_class)
+        point = PointStress("", load.contact_ratio - 1.0, 1.0, found.stress, found.form)
+        yield _of_point(load, f"ISO 6336-3:{edition}", point, found.form_factor)
+    if load.pair.pinion.helix_angle_deg == 0.0:
+        for point in boundary_stresses(load):
+            yield _of_point(load, f"equal shares, {point.name}", point)
+        yield _of_point(load, "Pedrero's shares, largest over the path", largest_stress(load))
+
+
+def _of_point(load: RootLoad, method: str, point: PointStress, form_factor: float | None = None) -> StrengthRow:
+    section = point.form.section
+    return StrengthRow(
+        load.member.label, method, UNKNOWN, point.stress, UNKNOWN, math.degrees(load.tooth_rotation(point.below_tip)),
+        math.hypot(section.height, 0.5 * section.chord), 0.0, 30.0, point.share,
+        point.form.form_factor if form_factor is None else form_factor, point.form.stress_correction_factor, UNKNOWN,
+        UNKNOWN,
+    )  # fmt: skip
+
+
+def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error: float) -> StrengthRow:
+    return StrengthRow(
+        load.member.label, method, friction, peak.stress, error, math.degrees(peak.angle), peak.radius, peak.height,
+        math.degrees(peak.tangent_angle), UNKNOWN, UNKNOWN, UNKNOWN, peak.mean, peak.amplitude,
+    )  # fmt: skip
+
+
+def tension_curve(roots: GearRoots) -> Curve:
+    """Largest principal stress of the loaded side over the rotation."""
+    return Curve(roots.loaded_side.angles, roots.loaded_side.principal[..., 2].max(axis=1))
+
+
+def pressure_curve(roots: GearRoots) -> Curve:
+    """Smallest principal stress of the back side over the rotation."""
+    return Curve(roots.back_side.angles, roots.back_side.principal[..., 0].min(axis=1))
+
+
+def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:
+    """Of both gears at all coefficients."""
+    for each in found:
+        for member, own in zip(Member, each.gears):
+            tension, pressure = tension_curve(own), pressure_curve(own)
+            for angle, most, least in zip(tension.angle, tension.values, pressure.values):
+                yield RootStressRow(member.label, each.friction, math.degrees(angle), float(most), float(least))
+
+
+def write_strength(folder: RunFolder, rows: Sequence[StrengthRow], over_rotation: Sequence[RootStressRow]) -> None:
+    """Writes both tables. Raises WriteError, FolderError."""
+    folder.write_text(STRENGTH, csv_text([asdict(row) for row in rows]))
+    folder.write_text(ROOT_STRESS, csv_text([asdict(row) for row in over_rotation]))
+

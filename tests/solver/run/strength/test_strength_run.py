@@ -1,0 +1,134 @@
+"""`evolvent strength` on Zhang's pair in plane strain: its tables, picture, refusals and ranks."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evolvent.cli import main
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.strength import strength_run
+from evolvent.run.strength.strength_run import run_strength
+from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent_meshes.mesh.mesh_data import MeshError
+from tests.support.checkout import ROOT
+from tests.support.running.processes import Run, on_ranks
+
+SETTINGS = "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=6", "output.animation=false"
+
+
+def scene(*settings: str) -> Scene:
+    return load_scene(ROOT / "demos/zhang2023.toml", [*SETTINGS, *settings])
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With error bars."""
+    folder = tmp_path_factory.mktemp("strength")
+    assert run_strength(scene(), folder, quiet=True) == []
+    return folder
+
+
+@pytest.mark.parametrize(("gear", "paper", "b"), [("pinion", 490.6, 530.1), ("wheel", 487.01, 546.5)])
+def test_all_ways_stand_side_by_side(out: Path, gear: str, paper: float, b: float) -> None:
+    """Both editions, six points of load, the largest over the path, tension and compression: the paper's point b to
+    0.1 %; tension within 10 % of the paper's finite elements, with an error bar below 2 %."""
+    own = {row["method"]: row for row in rows(out / "strength.csv") if row["gear"] == gear}
+    assert len(own) == 2 + 6 + 1 + 2
+    assert float(own["equal shares, outer point of double contact (b)"]["stress_MPa"]) == pytest.approx(b, rel=1e-3)
+    tension = own["finite elements, tension"]
+    assert float(tension["stress_MPa"]) == pytest.approx(paper, rel=0.1)
+    assert 0.0 < float(tension["stress_MPa_error"]) < 0.02 * float(tension["stress_MPa"])
+    assert float(own["finite elements, compression"]["stress_MPa"]) < -float(tension["stress_MPa"])
+
+
+def test_table_over_the_rotation_has_the_peaks(out: Path) -> None:
+    """The largest tension and the smallest pressure of root_stress.csv are those of strength.csv, at their rotations;
+    rotations rise."""
+    for gear in ("pinion", "wheel"):
+        own = [row for row in rows(out / "root_stress.csv") if row["gear"] == gear]
+        angles = np.array([float(row["tooth_rotation_deg"]) for row in own])
+        assert (np.diff(angles) > 0.0).all()
+        peaks = {row["method"]: row for row in rows(out / "strength.csv") if row["gear"] == gear}
+        for name, best in (("tension", np.argmax), ("compression", np.argmin)):
+            values = np.array([float(row[f"{name}_MPa"]) for row in own])
+            peak, k = peaks[f"finite elements, {name}"], int(best(values))
+            assert float(peak["stress_MPa"]) == pytest.approx(values[k], rel=1e-8)
+            assert float(peak["tooth_rotation_deg"]) == pytest.approx(angles[k], abs=1e-7)
+    assert (out / "pictures/root_stress.png").stat().st_size > 20_000
+
+
+def test_editions_and_tolerance_class_are_the_scenes(tmp_path: Path) -> None:
+    """One edition, of 2006, with a tolerance class of 4: twice the 328.0 MPa of equal shares at d, times Y_DT; without
+    error bars these are unknown."""
+    one = scene("strength.editions=[2006]", "strength.tolerance_class=4", "output.error_bars=false")
+    run_strength(one, tmp_path, quiet=True)
+    found = rows(tmp_path / "strength.csv")
+    assert [row["method"] for row in found if row["method"].startswith("ISO")] == ["ISO 6336-3:2006"] * 2
+    assert float(found[0]["stress_MPa"]) == pytest.approx(656.0 * (2.366 - 0.666 * 2.14131), rel=3e-4)
+    assert {row["stress_MPa_error"] for row in found} == {"nan"}
+
+
+def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables as without, and a sentence with the reason."""
+
+    def refuse(*_: object) -> None:
+        raise MeshError("too coarse")
+
+    monkeypatch.setattr(strength_run, "coarse_root_mesh", refuse)
+    (said,) = run_strength(scene(), tmp_path, quiet=True)
+    assert said == "Error bars: their coarse companion could not be solved: too coarse"
+
+
+def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:
+    """A second call is refused and says what to do; a file that no call has written stays, also with --overwrite."""
+    with pytest.raises(FolderError, match="--overwrite computes it anew"):
+        run_strength(scene(), out, quiet=True)
+    (tmp_path / "strength.csv").write_text("mine")
+    with pytest.raises(FolderError, match=r"strength\.csv"):
+        run_strength(scene(), tmp_path, overwrite=True, quiet=True)
+    assert (tmp_path / "strength.csv").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "setting",
+    ["strength.editions=[]", "strength.editions=[2006,2006]", "strength.editions=[2012]", "strength.tolerance_class=0"],
+)
+def test_wrong_keys_are_named(setting: str) -> None:
+    with pytest.raises(SceneError, match=setting.split("=")[0]):
+        scene(setting)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", on_ranks(2))
+def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+    """Two ranks divide the positions: the same stresses to 1e-6, and one line at the end."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = ["strength", "demos/zhang2023.toml", "--out", str(tmp_path / "out")]
+    for setting in SETTINGS:
+        arguments += ["--set", setting]
+    done = run_script("-c", code, *arguments, ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("done: ") == 1
+    folders = out, tmp_path / "out"
+    one, two = (np.array([float(row["stress_MPa"]) for row in rows(each / "strength.csv")]) for each in folders)
+    assert two == pytest.approx(one, rel=1e-6)
+
+
+def test_command_line(tmp_path: Path) -> None:
+    """A narrow helical pair: the standard's virtual gears without a rotation, and no other formulas."""
+    words = ["--set", "sweep.positions=2", "--set", "output.error_bars=false", "--set", "output.pictures=false"]
+    pair = str(ROOT / "evidence/benchmarks/accuracy/scenes/narrow_helical.toml")
+    more = ["--set", "mesh.elements_per_contact_width=0.5", "--set", "contact.friction=0"]
+    assert main(["strength", pair, "--out", str(tmp_path), "--quiet", *words, *more]) == 0
+    found = rows(tmp_path / "strength.csv")
+    assert len(found) == 2 * (2 + 2)
+    assert {row["tooth_rotation_deg"] for row in found if row["method"].startswith("ISO")} == {"nan"}

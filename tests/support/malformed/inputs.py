@@ -110,10 +110,10 @@ SCENE = "{scene}"
 
 # arguments of the command line; key, what was found and a part of what is allowed or of the remedy
 OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
-    "unknown command": (["walk"], "command", '"walk"', "run, loads, excitation, dynamics, check, mesh"),
+    "unknown command": (["walk"], "command", '"walk"', "run, loads, excitation, dynamics, strength, check, mesh"),
     "misspelled command": (["chekc", SCENE], "command", '"chekc"', "did you mean check?"),
-    "command in capitals": (["RUN", SCENE], "command", '"RUN"', "run, loads, excitation, dynamics, check, mesh"),
-    "scene for a command": ([SCENE], "command", "scene.toml", "run, loads, excitation, dynamics, check, mesh"),
+    "command in capitals": (["RUN", SCENE], "command", '"RUN"', "run, loads, excitation, dynamics, strength, check, mesh"),
+    "scene for a command": ([SCENE], "command", "scene.toml", "run, loads, excitation, dynamics, strength, check, mesh"),
     "option for a command": (["--levle"], "--levle", "an unknown option", "--help"),
     # run
     "run: no scene": (["run"], "SCENE.toml", "nothing", "the scene file"),

@@ -192,7 +192,7 @@ def dynamics(
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.vibration import run_dynamics
 
-        require_room(loaded.model_copy(update={"wear": None}), "run", force, MPI.COMM_WORLD)
+        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_dynamics(loaded, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
@@ -220,10 +220,15 @@ def strength(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.strength.strength_run import run_strength
 
-        require_room(loaded.model_copy(update={"wear": None}), "run", force, MPI.COMM_WORLD)
+        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_strength(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             typer.echo(f"done: {out / 'strength.csv'}, {out / 'root_stress.csv'}, {out / 'pictures/root_stress.png'}")
+
+
+def _unworn(scene: Scene) -> Scene:
+    """The scene without [wear], as these commands solve it: the gears as they are."""
+    return scene.model_copy(update={"wear": None})
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

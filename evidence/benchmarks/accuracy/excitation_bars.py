@@ -21,7 +21,7 @@ from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.run.dynamics.excitation import loaded_pitch
-from evolvent.run.dynamics.scene_torques import scene_torques
+from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
 from evolvent.run.progress import Progress
 from evolvent.scene.scene import Scene, scene_from_text
 from evolvent_meshes.arrays import Floats
@@ -63,14 +63,13 @@ class ExcitationRow:
 def measure_bars(problem: BarProblem, percents: Sequence[float] = PERCENTS) -> Iterator[ExcitationRow]:
     """Four rows a case, torque and quantity. problem: of a pair without flank modifications, so that there is no
     unloaded transmission error."""
-    at = _with_positions(problem.with_mesh(problem.reference))
-    best, second = (_excitation(at, percents, reference_mesh(problem, problem.halvings - last)) for last in (0, 1))
+    at = scene_torques(_with_positions(problem.with_mesh(problem.reference)), percents)
+    best, second = (_excitation(at, reference_mesh(problem, problem.halvings - last)) for last in (0, 1))
     exact, nearly = (list(pitch_curves(each, CoarseExcitation(None))) for each in (best, second))
     for case in problem.cases:
-        scene = problem.with_mesh(case)
-        elements = scene_torques(scene, percents).elements
-        coarse = CoarseExcitation(_excitation(scene, percents, companion_mesh), scene.mesh.order, elements)
-        tried = pitch_curves(_excitation(scene, percents, run_mesh), coarse)
+        loads = scene_torques(problem.with_mesh(case), percents)
+        coarse = CoarseExcitation(_excitation(loads, companion_mesh), loads.scene.mesh.order, loads.elements)
+        tried = pitch_curves(_excitation(loads, run_mesh), coarse)
         mesh = ", ".join(setting.split("=")[1] for setting in case)
         for percent, *curves in zip(sorted(percents), tried, exact, nearly):
             yield from _rows(problem.name, mesh, percent, *curves)
@@ -122,10 +121,9 @@ def _with_positions(scene: Scene) -> Scene:
     return scene_from_text(scene.resolved_toml(), [f"sweep.positions={FINER * scene.sweep.positions}"])
 
 
-def _excitation(scene: Scene, percents: Sequence[float], mesh: Mesher) -> MeshExcitation:
+def _excitation(loads: SceneTorques, mesh: Mesher) -> MeshExcitation:
     """On this rank alone."""
-    loads = scene_torques(scene, percents)
-    angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, scene.sweep.positions).angles)
+    angles = np.array(uniform_pitch(loads.problem.pair.pinion.z, loads.scene.sweep.positions).angles)
     with Progress(hidden=True) as progress:
         loaded = loaded_pitch(loads, angles, mesh, MPI.COMM_SELF, progress)
     return MeshExcitation(np.zeros(len(angles)), loaded)

@@ -12,7 +12,7 @@ from evidence.benchmarks.accuracy.error_bars import BarRow, hit_rate
 from evidence.benchmarks.accuracy.excitation_bars import ExcitationRow
 from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.pages.section import PageSection, verdict
-from evidence.tables import Column, Table, markdown
+from evidence.tables import Column, Row, Table, markdown
 
 
 def _times(rows: Sequence[BarRow]) -> float:
@@ -62,10 +62,7 @@ LEVELS = Table(
 
 
 def _hits(rows: Sequence[BarRow]) -> list[str]:
-    groups: dict[str, list[BarRow]] = {}
-    for row in rows:
-        groups.setdefault(row.figure, []).append(row)
-    return [HITS.markdown(groups.values())]
+    return [HITS.markdown(_grouped(rows, lambda row: row.figure))]
 
 
 def _bars_said(rows: Sequence[BarRow]) -> list[str]:
@@ -89,9 +86,9 @@ def _excitation_said(rows: Sequence[ExcitationRow]) -> list[str]:
     ]
 
 
-def _grouped(rows: Iterable[ExcitationRow], key: Callable[[ExcitationRow], str]) -> list[list[ExcitationRow]]:
+def _grouped(rows: Iterable[Row], key: Callable[[Row], str]) -> list[list[Row]]:
     """Rows with the same key together, in their order."""
-    groups: dict[str, list[ExcitationRow]] = {}
+    groups: dict[str, list[Row]] = {}
     for row in rows:
         groups.setdefault(key(row), []).append(row)
     return list(groups.values())

@@ -109,6 +109,11 @@ class GearGeometry:
         return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
 
     @property
+    def virtual_teeth(self) -> float:
+        """z_n = z / (cos² β_b cos β), teeth of the spur gear in the normal section, which ISO 6336 takes for its form."""
+        return self.z / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
+
+    @property
     def transverse_base_pitch(self) -> float:
         """p_bt = π m_t cos α_t [4.4.5]."""
         return math.pi * self.base_diameter / self.z

@@ -30,14 +30,9 @@ def flexibility(pair: GearPair) -> float:
     """q' [mm µm/N], least flexibility of a tooth pair: a polynomial of profile shifts and virtual numbers of teeth."""
     total = CONSTANT
     for i, gear in enumerate(by_size(pair)):
-        x, z_n = gear.profile_shift, virtual_teeth(gear)
+        x, z_n = gear.profile_shift, gear.virtual_teeth
         total += PER_TOOTH[i] / z_n + PER_SHIFT[i] * x + PER_SHIFT_AND_TOOTH[i] * x / z_n + PER_SHIFT_SQUARED[i] * x * x
     return total
-
-
-def virtual_teeth(gear: GearParameters) -> float:
-    """z_n = z/(cos² β_b cos β)."""
-    return float(gear.z / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle)))
 
 
 def rack_factor(gear: GearParameters) -> float:

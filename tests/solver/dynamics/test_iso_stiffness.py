@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from evolvent.dynamics.iso_stiffness import flexibility, mesh_stiffness, outside_range, single_stiffness, virtual_teeth
+from evolvent.dynamics.iso_stiffness import flexibility, mesh_stiffness, outside_range, single_stiffness
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 
@@ -47,7 +47,7 @@ def test_helical_example_of_the_standard() -> None:
     """ISO/TR 6336-30:2017, example 1: z_n = 18.905 and 114.543, 1/q' = 17.85584, c' = 12.37047 N/(mm µm), to their last
     digits; c_γα = 17.46485 to 2e-4, as its tip diameters are rounded."""
     pair = example_pair()
-    assert [virtual_teeth(each) for each in pair.gears] == pytest.approx([18.905, 114.543], abs=1e-3)
+    assert [each.virtual_teeth for each in pair.gears] == pytest.approx([18.905, 114.543], abs=1e-3)
     assert 1.0 / flexibility(pair) == pytest.approx(17.85584, abs=1e-5)
     single = single_stiffness(pair, HEAVY)
     assert single == pytest.approx(12.37047, abs=1e-5)

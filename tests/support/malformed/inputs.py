@@ -107,13 +107,14 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
 
 TEST = ["--force-N", "500", "--pin-diameter-mm", "6"]
 SCENE = "{scene}"
+COMMANDS = "run, loads, excitation, dynamics, strength, check, mesh"
 
 # arguments of the command line; key, what was found and a part of what is allowed or of the remedy
 OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
-    "unknown command": (["walk"], "command", '"walk"', "run, loads, excitation, dynamics, strength, check, mesh"),
+    "unknown command": (["walk"], "command", '"walk"', COMMANDS),
     "misspelled command": (["chekc", SCENE], "command", '"chekc"', "did you mean check?"),
-    "command in capitals": (["RUN", SCENE], "command", '"RUN"', "run, loads, excitation, dynamics, strength, check, mesh"),
-    "scene for a command": ([SCENE], "command", "scene.toml", "run, loads, excitation, dynamics, strength, check, mesh"),
+    "command in capitals": (["RUN", SCENE], "command", '"RUN"', COMMANDS),
+    "scene for a command": ([SCENE], "command", "scene.toml", COMMANDS),
     "option for a command": (["--levle"], "--levle", "an unknown option", "--help"),
     # run
     "run: no scene": (["run"], "SCENE.toml", "nothing", "the scene file"),

@@ -80,7 +80,7 @@ def scene_torques(scene: Scene, percents: Sequence[float]) -> SceneTorques:
     """
     ascending = sorted(percents)
     torques = [scene.load.torque_Nm * percent / 100.0 for percent in ascending]
-    for torque in torques:
+    for torque in (torques[0], torques[-1]):  # the limits of a torque are those of a range
         _under(scene, torque)
     if scene.load.mesh_torques_Nm is None:
         scene = _under(scene, min(max(scene.load.torque_Nm, torques[0]), torques[-1]))

@@ -100,8 +100,8 @@ def strength_rows(
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
         factor = STIFFNESS_FACTOR[each.order]
         errors = [UNKNOWN] * 2 if coarse is None else [
-            factor * difference(lambda values: float(np.max(values)), tension_curve(own), tension_curve(coarse)),
-            factor * difference(lambda values: float(np.min(values)), pressure_curve(own), pressure_curve(coarse)),
+            factor * difference(np.max, tension_curve(own), tension_curve(coarse)),
+            factor * difference(np.min, pressure_curve(own), pressure_curve(coarse)),
         ]  # fmt: skip
         peaks = own.loaded_side.tension, own.back_side.compression
         for name, peak, error in zip(("tension", "compression"), peaks, errors):

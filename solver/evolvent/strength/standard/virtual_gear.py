@@ -58,10 +58,9 @@ class VirtualGear:
 
 
 def virtual_gear(gear: GearParameters) -> VirtualGear:
-    """z_n = z/(cos² β_b cos β), d_an = d_n + d_a − d."""
-    teeth = gear.z / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle))
-    tip = teeth * gear.normal_module + gear.tip_diameter - gear.reference_diameter
-    return VirtualGear(teeth, gear.normal_module, gear.normal_pressure_angle, gear.profile_shift, tip)
+    """z_n teeth, d_an = d_n + d_a − d."""
+    tip = gear.virtual_teeth * gear.normal_module + gear.tip_diameter - gear.reference_diameter
+    return VirtualGear(gear.virtual_teeth, gear.normal_module, gear.normal_pressure_angle, gear.profile_shift, tip)
 
 
 def virtual_contact_ratio(pair: GearPair) -> float:

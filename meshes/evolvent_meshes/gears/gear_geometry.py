@@ -110,7 +110,7 @@ class GearGeometry:
 
     @property
     def virtual_teeth(self) -> float:
-        """z_n = z / (cos² β_b cos β), teeth of the spur gear in the normal section, which ISO 6336 takes for its form."""
+        """z_n = z / (cos² β_b cos β), teeth of the spur gear in the normal section, as ISO 6336 takes it."""
         return self.z / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
     @property

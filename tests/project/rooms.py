@@ -73,7 +73,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "meshes.gears", "fem.*", "scene", "gears.ring", "gears.two_level", "gears",
         "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
-    "strength": ("meshes", "meshes.mesh", "meshes.gears", "fem", "gears", "gears.sweep", "results.fields"),
+    "strength": (
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "gears.meshing", "gears.ring", "gears.two_level", "gears",
+        "gears.sweep",
+    ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
         "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",

@@ -12,7 +12,13 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from evolvent.contact.nitsche.flux_recovery import SAFETY, NitscheTraction, nitsche_traction, trace_functionals
+from evolvent.contact.nitsche.flux_recovery import (
+    SAFETY,
+    NitscheTraction,
+    nitsche_traction,
+    node_functionals,
+    trace_functionals,
+)
 from evolvent.fem.body import Body, Fixed, assemble
 from evolvent.fem.condensation.schur_complement import SectorCondensation, SectorSystem
 from evolvent.fem.material import Material
@@ -21,6 +27,7 @@ from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.full_gear import WholeSystem, whole_mesh, whole_system
 from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing.flank_levels import FlankLevel
+from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance, ChainSettings, Compliance
 from evolvent_meshes.arrays import Bools, Floats, Ints
 from evolvent_meshes.gears.gear import GearParameters
@@ -102,6 +109,7 @@ def condensed_gear(
     threads: Threads = nullcontext,
 ) -> GearBody:
     """Assembles and condenses one sector of a gear held at its bore, and closes the ring of its z sectors.
+    Displacements of `root_nodes` are condensed, too, where the mesh has them.
 
     teeth: tooth pairs that may touch. safety: factor on the stabilisation of Nitsche's method. whole: assemble and
     condense all sectors instead of one. threads: context in which the largest matrix products run.
@@ -137,8 +145,11 @@ def _sector_system(
     body: Body, flank: Surface, traction: NitscheTraction | None, pitch: float
 ) -> SectorSystem:
     """Separate from its caller so that the full matrices are freed when the elimination starts."""
-    parts = sector_parts(body, flank, traction, pitch)
-    return SectorSystem.of(parts.stiffness, parts.functionals, parts.low, parts.high, parts.graph, parts.free)
+    parts, nodes = sector_parts(body, flank, traction, pitch), root_nodes(body.mesh)
+    observed = node_functionals(nodes, body.mesh.dimension, parts.stiffness.shape[0]) if len(nodes) else None
+    return SectorSystem.of(
+        parts.stiffness, parts.functionals, parts.low, parts.high, parts.graph, parts.free, observed=observed
+    )
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Root stress of a tooth from before it takes up load until after it has shed it, from the positions of one pitch.
 
-All teeth are alike: tooth pair i at pinion rotation φ is one tooth at φ + 2πi/z_1 (`results.engagement`). Its sector's
-displacements follow from the forces on all teeth (`results.fields.deformation`), the stress at its root from those of
-the root's nodes (`fem.surface_stress`).
+All teeth are alike: tooth pair i at pinion rotation φ is one tooth at φ + 2πi/z_1 (`results.engagement`). The
+displacements of its root's nodes, which are condensed with the flank, follow from the forces on all teeth; the stress
+there from these displacements alone (`fem.surface_stress`).
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ import numpy as np
 
 from evolvent.fem.surface_stress import surface_stress
 from evolvent.gears.condensed_gear import GearBody
+from evolvent.gears.meshing.root_meshes import root_nodes
+from evolvent.gears.ring.ring_compliance import ChainedCompliance
+from evolvent.gears.sweep.nodal_forces import nodal_forces
 from evolvent.gears.sweep.position_result import PositionResult
-from evolvent.results.fields.deformation import GearField
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.strength.root_surface import RootSurface, compression_side, tension_side
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.member import Member
 
 
 @dataclass(frozen=True)
@@ -92,26 +94,19 @@ class GearRoots:
 def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoots:
     """Of one gear under the results of a pitch at one friction coefficient.
 
-    body: as it was condensed for them.
-
-    Raises NotPositiveDefinite, OutOfMemory.
+    body: as it was condensed for them, from a mesh of `root_meshes`.
     """
-    roots = tension_side(body.mesh, body.gear), compression_side(body.mesh, body.gear)
-    pinion = body.member is Member.PINION
-    rows = [each.pinion_rows if pinion else each.wheel_rows for each in results]
-    forces = [each.pinion_forces if pinion else each.wheel_forces for each in results]
-    field = GearField(body, rows, forces)
-    numbers = sorted({number for k in range(len(results)) for number in field.teeth(k)})
-    pitch = 2.0 * np.pi / results[0].stand.pair.pinion.z
-    angles, stresses = [], [list[Floats](), list[Floats]()]
-    for k, result in enumerate(results):
-        for number in numbers:
-            u = field.displacement(k, number)
-            angles.append(result.stand.angle + body.member.sign * number * pitch)
-            for root, found in zip(roots, stresses):
-                found.append(surface_stress(root.surface, body.material, u[root.surface.nodes]))
-    order = np.argsort(angles)
-    loaded, back = (
-        RootPassage(root, np.array(angles)[order], np.array(found)[order]) for root, found in zip(roots, stresses)
-    )
-    return GearRoots(loaded, back)
+    loads, pitch = nodal_forces(results, body.member), 2.0 * np.pi / results[0].stand.pair.pinion.z
+    assert isinstance(body.chain, ChainedCompliance | TwoLevelRing)
+    moved = body.chain.observed_displacements(loads.rows, loads.forces)
+    stands = np.array([each.stand.angle for each in results])
+    angles = np.concatenate([stands + body.member.sign * i * pitch for i in moved])
+    order, u = np.argsort(angles), np.concatenate(list(moved.values()))
+    every = root_nodes(body.mesh)
+
+    def passage(root: RootSurface) -> RootPassage:
+        own = u[order][:, np.searchsorted(every, root.surface.nodes)]
+        stress = np.array([surface_stress(root.surface, body.material, each) for each in own])
+        return RootPassage(root, angles[order], stress)
+
+    return GearRoots(passage(tension_side(body.mesh, body.gear)), passage(compression_side(body.mesh, body.gear)))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from evolvent.fem.surface import Surface, surface_of
-from evolvent_meshes.arrays import Bools, Floats
+from evolvent.gears.meshing.root_meshes import BACK_ROOT, LOADED_ROOT
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -45,22 +46,10 @@ class RootSurface:
 
 
 def tension_side(mesh: MeshData, gear: GearParameters) -> RootSurface:
-    """The root below the loaded flank, which bending pulls. mesh: a sector."""
-    return RootSurface(gear, surface_of(mesh, "fillet"))
+    """The root below the loaded flank, which bending pulls. mesh: of `root_meshes`."""
+    return RootSurface(gear, surface_of(mesh, LOADED_ROOT))
 
 
 def compression_side(mesh: MeshData, gear: GearParameters) -> RootSurface:
-    """The root of the back, up to the same radius, which bending presses. mesh: a sector."""
-    top = tension_side(mesh, gear).radii.max()
-    back = RootSurface(gear, surface_of(mesh, "back"))
-    return RootSurface(gear, _part(back.surface, back.radii <= top * (1.0 + 1e-9)))
-
-
-def _part(surface: Surface, kept: Bools) -> Surface:
-    """The facets all of whose nodes are kept, with these nodes alone. kept: (n,) bool."""
-    facets = surface.facets[kept[surface.facets].all(axis=1)]
-    used, number = np.unique(facets, return_inverse=True)
-    return replace(
-        surface, points=surface.points[used], normals=surface.normals[used], nodes=surface.nodes[used],
-        facets=number.reshape(facets.shape),
-    )  # fmt: skip
+    """The root of the back, up to the same radius, which bending presses. mesh: of `root_meshes`."""
+    return RootSurface(gear, surface_of(mesh, BACK_ROOT))

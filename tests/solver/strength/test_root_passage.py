@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -11,11 +11,10 @@ from mpi4py import MPI
 
 from evolvent.fem.material import Material
 from evolvent.gears.gear_model import Mesher, prepare_model
-from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.meshing.root_meshes import adapted_root_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
 from evolvent.strength.root_passage import GearRoots, root_passages
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.mesh.mesh_data import MeshData
 from tests.support.gear_cases import swept
 from tests.support.paper_pairs import zhang
 
@@ -23,13 +22,13 @@ STEEL = Material(212e3, 0.289)
 TORQUE, POSITIONS = 500e3, 12
 
 
-def finer_fillets(problem: GearProblem, member: Member) -> MeshData:
-    """Four times the elements in the root."""
-    return gear_mesh(
-        problem, member,
+def fillets(factor: int) -> Mesher:
+    """So many times the elements of a run in the root."""
+    return partial(
+        adapted_root_mesh,
         adapted=lambda root: replace(
-            root, fillet_elements=4 * root.fillet_elements, back_elements=4 * root.back_elements,
-            neck_elements=4 * root.neck_elements,
+            root, fillet_elements=factor * root.fillet_elements, back_elements=factor * root.back_elements,
+            neck_elements=factor * root.neck_elements,
         ),
     )  # fmt: skip
 
@@ -40,8 +39,7 @@ def roots(fine: bool = False) -> tuple[GearRoots, GearRoots]:
     pair = zhang()
     pair = replace(pair, pinion=replace(pair.pinion, face_width=pair.wheel.face_width))
     problem = GearProblem(pair, torque=TORQUE, materials=(STEEL, STEEL), mesh=MeshSettings("quick"))
-    mesh: Mesher = finer_fillets if fine else gear_mesh
-    model = prepare_model(problem, MPI.COMM_SELF, mesh).model
+    model = prepare_model(problem, MPI.COMM_SELF, fillets(4 if fine else 1)).model
     (curves,) = swept(model, np.degrees(2.0 * np.pi / pair.pinion.z * np.arange(POSITIONS) / POSITIONS), [0.05])
     pinion, wheel = (root_passages(body, curves.results) for body in model.bodies)
     return pinion, wheel

@@ -95,8 +95,12 @@ def _harmonic(surface: Surface, stabiliser: Floats) -> Floats:
 
 def trace_functionals(surface: Surface, columns: int) -> sp.csr_matrix:
     """Selection (n·d, columns) of the displacements of the surface's nodes; columns = N·d."""
-    d = surface.points.shape[1]
-    dofs = (d * surface.nodes[:, None] + np.arange(d)).ravel()
+    return node_functionals(surface.nodes, surface.points.shape[1], columns)
+
+
+def node_functionals(nodes: Ints, d: int, columns: int) -> sp.csr_matrix:
+    """Selection (n·d, columns) of the displacements of nodes (n,) with d components; columns = N·d."""
+    dofs = (d * nodes[:, None] + np.arange(d)).ravel()
     return sp.csr_matrix((np.ones(len(dofs)), (np.arange(len(dofs)), dofs)), (len(dofs), columns))
 
 

@@ -28,6 +28,7 @@ from evolvent_meshes.arrays import Floats, Ints
 __all__ = [
     "Factor",
     "NotPositiveDefinite",
+    "ObservedResponse",
     "OutOfMemory",
     "SectorCondensation",
     "SectorRecovery",
@@ -103,6 +104,18 @@ def compliance_by_columns(
 
 
 @dataclass(frozen=True)
+class ObservedResponse:
+    """Functionals w (o) of a sector on which no forces act: w = C_o f + T_o u_c, see `SectorCondensation`.
+
+    compliance: C_o (o × m) [mm/N].
+    transfer: T_o (o × 2c).
+    """
+
+    compliance: Floats
+    transfer: Floats
+
+
+@dataclass(frozen=True)
 class SectorCondensation:
     """A sector condensed onto its two cut faces and its functionals, in the sector's frame.
 
@@ -112,11 +125,13 @@ class SectorCondensation:
     stiffness: S (2c × 2c) [N/mm].
     transfer: T (m × 2c).
     compliance: C (m × m), both cut faces clamped [mm/N].
+    observed: further functionals.
     """
 
     stiffness: Floats
     transfer: Floats
     compliance: Floats
+    observed: ObservedResponse | None = None
 
 
 @dataclass(frozen=True)
@@ -125,17 +140,20 @@ class SectorSystem:
 
     matrix: the interior rows are eliminated, the others retained.
     cut: 2c, degrees of freedom of both cut faces.
-    surface: m, functionals.
+    surface: m, functionals on which forces act.
+    observed: o, further functionals, retained after them.
     """
 
     matrix: OrderedMatrix
     cut: int
     surface: int
+    observed: int
 
     @staticmethod
     def of(
         stiffness: sp.spmatrix, functionals: sp.spmatrix, low: Ints, high: Ints, graph: sp.spmatrix | None = None,
         free: Ints | None = None, settings: DissectionSettings = DEFAULT_DISSECTION,
+        observed: sp.spmatrix | None = None,
     ) -> SectorSystem:  # fmt: skip
         """The system of a sector.
 
@@ -144,13 +162,15 @@ class SectorSystem:
         low, high: (c,) degrees of freedom of the cut faces in matching order, none of them fixed.
         graph: (n × n) the pattern that nested dissection divides (default: K's).
         free: degrees of freedom that are not fixed (default: all).
+        observed: further functionals (o × n) on which no forces act (default: none).
         Raises ValueError where the faces do not match.
         """
         interior, cut = _split(stiffness.shape[0], low, high, free)
-        across = functionals.tocsc()[:, cut]
+        every = functionals if observed is None else sp.vstack([functionals, observed])
+        across = every.tocsc()[:, cut]
         corner = sp.bmat([[_restricted(stiffness, cut, cut), across.T], [across, None]], format="coo")
-        matrix = _ordered(stiffness, functionals, interior, cut, corner, settings, graph)
-        return SectorSystem(matrix, len(cut), functionals.shape[0])
+        matrix = _ordered(stiffness, every, interior, cut, corner, settings, graph)
+        return SectorSystem(matrix, len(cut), functionals.shape[0], every.shape[0] - functionals.shape[0])
 
     def condensed(self, threads: Threads = nullcontext) -> SectorCondensation:
         """The sector condensed onto cut faces and functionals. Raises NotPositiveDefinite and OutOfMemory.
@@ -158,8 +178,12 @@ class SectorSystem:
         threads: makes the context in which separators are eliminated.
         """
         schur = self.matrix.schur_complement(threads)
-        faces, surface = slice(0, self.cut), slice(self.cut, None)
-        return SectorCondensation(schur[faces, faces].copy(), schur[surface, faces].copy(), -schur[surface, surface])
+        faces, surface = slice(0, self.cut), slice(self.cut, self.cut + self.surface)
+        rest = slice(surface.stop, None)
+        observed = ObservedResponse(-schur[rest, surface], schur[rest, faces].copy()) if self.observed else None
+        return SectorCondensation(
+            schur[faces, faces].copy(), schur[surface, faces].copy(), -schur[surface, surface], observed
+        )
 
 
 class SectorRecovery:

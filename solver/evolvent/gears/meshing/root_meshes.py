@@ -1,45 +1,80 @@
-"""Sector meshes with finer roots, where the stress there is wanted: contact and deflection need less."""
+"""Sector meshes with finer roots, where the stress there is wanted: contact and deflection need less.
+
+Displacements of the roots' nodes are condensed with the flank (`condensed_gear`).
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
+
+import numpy as np
 
 from evolvent.gears.meshing.companion_meshes import coarser
 from evolvent.gears.meshing.flank_levels import LevelledSector
 from evolvent.gears.meshing.levelled_meshes import SectorMesh, is_two_level, levelled_mesh
 from evolvent.gears.meshing.sector_meshes import Adaption, gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
+LOADED_ROOT = "fillet"
+"""Facet group from the start of the loaded flank's mesh to the middle of the space."""
+BACK_ROOT = "back_root"
+"""Facet group of the back up to the same radius; only meshes for root stress have it."""
 FINER = 2
 """Elements around a fillet over those of a run, which has six. Largest tension of Zhang's pair in plane strain, over
 the limit of finer ones: 1.020 with six elements, 1.005 with twelve, 1.001 with 24."""
 
 
 def finer_roots(sector: SectorResolution) -> SectorResolution:
-    """`FINER` times the elements around both fillets."""
+    """`FINER` times the elements around both fillets and across the tooth's core.
+
+    With the run's two columns of core the pressure of He's pair's back was 0.9 % too low, with four 0.2 %.
+    """
     return replace(
         sector, fillet_elements=FINER * sector.fillet_elements, back_elements=FINER * sector.back_elements,
-        neck_elements=FINER * sector.neck_elements,
+        neck_elements=FINER * sector.neck_elements, core_elements=FINER * sector.core_elements,
     )  # fmt: skip
 
 
 def root_mesh(problem: GearProblem, member: Member) -> SectorMesh:
-    """The mesh of a run with finer roots. Raises MeshError, TooMuchRelief."""
-    return _adapted(problem, member, finer_roots)
+    """The mesh of a run with finer roots, and with `BACK_ROOT`. Raises MeshError, TooMuchRelief."""
+    return adapted_root_mesh(problem, member, finer_roots)
 
 
 def coarse_root_mesh(problem: GearProblem, member: Member) -> SectorMesh:
     """The same with elements of twice the size, for error bars. Raises MeshError."""
-    return _adapted(problem, member, lambda sector: coarser(finer_roots(sector)))
+    return adapted_root_mesh(problem, member, lambda sector: coarser(finer_roots(sector)))
 
 
-def _adapted(problem: GearProblem, member: Member, adapted: Adaption) -> SectorMesh:
+def adapted_root_mesh(problem: GearProblem, member: Member, adapted: Adaption) -> SectorMesh:
+    """The mesh of a run, its sector's resolution changed by `adapted`, with `BACK_ROOT`. Raises MeshError,
+    TooMuchRelief."""
     if not is_two_level(problem):
-        return gear_mesh(problem, member, adapted)
+        return with_back_root(gear_mesh(problem, member, adapted))
 
     def of_coarse(levels: LevelledSector) -> LevelledSector:
         return replace(levels, coarse=adapted(levels.coarse))
 
-    return levelled_mesh(problem, member, of_coarse)
+    levelled = levelled_mesh(problem, member, of_coarse)
+    return replace(levelled, mesh=with_back_root(levelled.mesh))
+
+
+def with_back_root(mesh: MeshData) -> MeshData:
+    """A sector with the further group `BACK_ROOT`."""
+    back, top = mesh.facets["back"], _radii(mesh, mesh.facets[LOADED_ROOT]).max()
+    low = (_radii(mesh, back) <= top * (1.0 + 1e-9)).all(axis=1)
+    return replace(mesh, facets=mesh.facets | {BACK_ROOT: back[low]})
+
+
+def _radii(mesh: MeshData, facets: Ints) -> Floats:
+    return np.asarray(np.hypot(*mesh.points[facets][..., :2].transpose(2, 0, 1)))
+
+
+def root_nodes(mesh: MeshData) -> Ints:
+    """Nodes (k,) of both roots, ascending; none where the mesh was not made for root stress."""
+    if BACK_ROOT not in mesh.facets:
+        return np.empty(0, dtype=np.int64)
+    return np.unique(np.concatenate([mesh.facets[name].ravel() for name in (LOADED_ROOT, BACK_ROOT)]))

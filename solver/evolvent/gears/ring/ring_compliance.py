@@ -177,6 +177,22 @@ class ChainedCompliance:
         # a closed ring has more sectors than the named teeth
         return {tooth: (self._frames @ np.concatenate(low_faces[i : i + 2])).T for i, tooth in enumerate(self.teeth)}
 
+    def observed_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
+        """Displacements (n, k, d; sector's own frame; mm) of the k observed nodes of each tooth under `forces`
+        (n, k_in, d; N). Exact, whatever the tolerance. Raises ValueError where none were condensed."""
+        response = self._sector.observed
+        if response is None:
+            raise ValueError("ring of sectors: wanted observed nodes, found none; condense them with the flank")
+        loaded = self._loads(rows_in, forces)
+        result = {}
+        for tooth, cut in self.cut_displacements(rows_in, forces).items():
+            moved = cut @ response.transfer.T
+            if tooth in loaded:
+                dofs, values, _ = loaded[tooth]
+                moved += values @ response.compliance[:, dofs].T
+            result[tooth] = moved.reshape(len(forces), -1, self.dimension)
+        return result
+
     def _joined(self, stiffness: Floats) -> JoinedSectors:
         settings = self._settings
         if settings.ends == "closed":

@@ -60,6 +60,25 @@ class TwoLevelRing:
             u[:] = np.einsum("nab,nb->na", turns, moved)[to]
         return result.reshape(*forces.shape[:-2], len(rows_out), 3)
 
+    def observed_displacements(self, rows_in: Ints, forces: Floats) -> dict[int, Floats]:
+        """See `ChainedCompliance.observed_displacements`; forces act on the sector through its coarse flank."""
+        return self.coarse.observed_displacements(*self.on_coarse_nodes(rows_in, forces))
+
+    def on_coarse_nodes(self, rows: Ints, forces: Floats) -> tuple[Ints, Floats]:
+        """Rows (c, 2) of the coarse flank's nodes and the forces (n, c, 3) there that do the same work as `forces`
+        (n, k, 3) on rows (k, 2) of the finest flank."""
+        parts = []
+        for tooth in np.unique(rows[:, 0]):
+            here = rows[:, 0] == tooth
+            load = np.zeros((self.size, 3 * len(forces)))
+            load[rows[here, 1]] = np.moveaxis(forces[:, here], 0, 1).reshape(-1, load.shape[1])
+            for level in reversed(self.levels):
+                load = level.transfer.T @ load
+            nodes = np.flatnonzero(load.any(axis=1))
+            parts.append((np.column_stack([np.full(len(nodes), tooth), nodes]), load[nodes]))
+        coarse = np.concatenate([load for _, load in parts]).reshape(-1, len(forces), 3)
+        return np.concatenate([own for own, _ in parts]), np.moveaxis(coarse, 0, 1)
+
     @property
     def size(self) -> int:
         """Nodes of the finest flank."""

@@ -131,10 +131,10 @@ def difference(figure: Reduction, first: Curve, second: Curve) -> float:
     """Difference D of a figure between two curves: the larger of |Q_1 − Q_2| and of |Q_1| times the relative root mean
     square difference of the curves where both are known; NaN where no rotation is common to both."""
     value = float(figure(first.values))
-    return max(abs(value - float(figure(second.values))), abs(value) * _relative(first, second))
+    return max(abs(value - float(figure(second.values))), abs(value) * relative_difference(first, second))
 
 
-def _relative(first: Curve, second: Curve) -> float:
+def relative_difference(first: Curve, second: Curve) -> float:
     """Root mean square difference of two curves over that of the first, at their common rotations; NaN without any."""
     _, i, j = np.intersect1d(np.round(first.angle, 9), np.round(second.angle, 9), return_indices=True)
     one, other = first.values[i], second.values[j]

@@ -23,12 +23,13 @@ from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
+from evolvent.gears.sweep.nodal_forces import NodalForces, nodal_forces
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
@@ -53,21 +54,17 @@ class GearField:
     """Displacements of one gear under the contact forces of several positions.
 
     body: the condensed gear.
-    rows: for each position (m, 2), tooth and flank node under load.
-    forces: for each position (m, d), the forces on them in the gear's frame [N; N/mm in 2D].
+    loads: the forces on its flanks.
     """
 
-    def __init__(self, body: GearBody, rows: Sequence[Ints], forces: Sequence[Floats]) -> None:
+    def __init__(self, body: GearBody, loads: NodalForces) -> None:
+        self._rows, self._forces = loads.rows, loads.forces
         if isinstance(body.chain, TwoLevelRing):
-            body, rows, forces = _on_the_sector(body, body.chain, rows, forces)
-        self.body, self._rows, self._forces = body, rows, forces
-        self._pitch = 2.0 * np.pi / body.gear.z
-        every, place = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
-        loads = np.zeros((len(rows), len(every), body.d))
-        position = np.repeat(np.arange(len(rows)), [len(each) for each in rows])
-        loads[position, place.ravel()] = np.concatenate(forces)
+            self._rows, self._forces = body.chain.on_coarse_nodes(loads.rows, loads.forces)
+            body = replace(body, flank=body.chain.flank, traction=None, chain=body.chain.coarse, levels=())
         assert isinstance(body.chain, ChainedCompliance)
-        self._cuts = body.chain.cut_displacements(every, loads)
+        self.body, self._pitch = body, 2.0 * np.pi / body.gear.z
+        self._cuts = body.chain.cut_displacements(self._rows, self._forces)
         parts = sector_parts(sector_body(body.mesh, body.material, body.member), body.flank, body.traction, self._pitch)
         self._free, number = parts.free, np.full(parts.stiffness.shape[0], -1)
         number[self._free] = np.arange(len(self._free))
@@ -76,40 +73,16 @@ class GearField:
 
     def teeth(self, k: int) -> list[int]:
         """Numbers of the gear's loaded teeth at position k."""
-        return np.unique(self._rows[k][:, 0]).tolist()
+        return np.unique(self._rows[self._forces[k].any(axis=1), 0]).tolist()
 
     def displacement(self, k: int, number: int) -> Floats:
         """Displacement (N, d) [mm] of a tooth's sector at position k, in the sector's own frame."""
-        d, here = self.body.d, self._rows[k][:, 0] == number
+        d, here = self.body.d, self._rows[:, 0] == number
         forces = np.zeros((len(self.body.flank.points), d))
-        forces[self._rows[k][here, 1]] = self._forces[k][here] @ turn(number * self._pitch, d)
+        forces[self._rows[here, 1]] = self._forces[k, here] @ turn(number * self._pitch, d)
         field = np.zeros(len(self.body.mesh.points) * d)
         field[self._free] = self._recovery.displacement(forces.ravel(), self._cuts[number][k])
         return field.reshape(-1, d)
-
-
-def _on_the_sector(
-    body: GearBody, ring: TwoLevelRing, rows: Sequence[Ints], forces: Sequence[Floats]
-) -> tuple[GearBody, list[Ints], list[Floats]]:
-    """The gear without the levels of its flank, and for each position the forces on the nodes of its coarse flank that
-    do the same work (`GearField`)."""
-    moved = [_to_coarse_nodes(ring, *each) for each in zip(rows, forces)]
-    plain = replace(body, flank=ring.flank, traction=None, chain=ring.coarse, levels=())
-    return plain, [own for own, _ in moved], [force for _, force in moved]
-
-
-def _to_coarse_nodes(ring: TwoLevelRing, rows: Ints, forces: Floats) -> tuple[Ints, Floats]:
-    """Rows (c, 2) and forces (c, 3) of the coarse flank's nodes from those of the finest flank's."""
-    parts = []
-    for tooth in np.unique(rows[:, 0]):
-        here = rows[:, 0] == tooth
-        load = np.zeros((ring.size, 3))
-        load[rows[here, 1]] = forces[here]
-        for level in reversed(ring.levels):
-            load = level.transfer.T @ load
-        nodes = np.flatnonzero(load.any(axis=1))
-        parts.append((np.column_stack([np.full(len(nodes), tooth), nodes]), load[nodes]))
-    return np.concatenate([own for own, _ in parts]), np.concatenate([force for _, force in parts])
 
 
 @dataclass(frozen=True)
@@ -122,8 +95,7 @@ class Deformation:
     @staticmethod
     def of(bodies: tuple[GearBody, GearBody], results: Sequence[PositionResult]) -> Deformation:
         """The deformation of two condensed gears under the results of the positions."""
-        pinion = GearField(bodies[0], [r.pinion_rows for r in results], [r.pinion_forces for r in results])
-        wheel = GearField(bodies[1], [r.wheel_rows for r in results], [r.wheel_forces for r in results])
+        pinion, wheel = (GearField(body, nodal_forces(results, body.member)) for body in bodies)
         return Deformation((pinion, wheel))
 
     def teeth(self, k: int) -> list[DeformedTooth]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mpi4py import MPI
@@ -56,11 +57,11 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
     on_first(comm, lambda: _check(out, overwrite))
     dolfinx_compat.silence_logs()
     with Progress(hidden=hidden) as progress:
-        fine = _roots(scene, root_mesh, comm, progress, POSITIONS)
+        fine = pitch_roots(scene, root_mesh, comm, progress, POSITIONS)
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:
-                coarse = _roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS)
+                coarse = pitch_roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS)
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
@@ -77,12 +78,19 @@ def _check(out: Path, overwrite: bool) -> None:
         )
 
 
-def _roots(
-    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str
+def pitch_roots(
+    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS
 ) -> list[tuple[GearRoots, GearRoots]]:
-    """Of both gears at each friction coefficient; on rank 0, none on the others. Collective."""
+    """Of both gears at each friction coefficient; on rank 0, none on the others. Collective.
+
+    mesh: of `root_meshes`. stage: of the progress, for the positions.
+
+    Raises MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance.
+    """
     progress.stage(MESHING)
-    model = prepare_model(gear_problem(scene), comm, mesh, lambda: progress.stage(CONDENSING)).model
+    problem = gear_problem(scene)
+    one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
+    model = prepare_model(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
     pitch, frictions = pitch_of(scene), scene.contact.friction
     progress.stage(stage, len(pitch.angles))
     swept = []

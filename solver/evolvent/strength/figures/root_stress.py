@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.style import INK, foot, friction_colours, png, sheet, styled
-from evolvent.strength.results.tables import FrictionRoots, StrengthRow, pressure_curve, tension_curve
+from evolvent.strength.results.root_curves import pressure_curve, tension_curve
+from evolvent.strength.results.tables import FrictionRoots, StrengthRow
 from evolvent_meshes.gears.member import Member
 
 MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}

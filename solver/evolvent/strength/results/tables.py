@@ -6,11 +6,9 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
-import numpy as np
-
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, difference
 from evolvent.results.tables.tables import csv_text
+from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
 from evolvent.strength.root_passage import GearRoots, RootPeak
 from evolvent.strength.standard.factors import Edition
 from evolvent.strength.standard.root_stress import (
@@ -53,7 +51,8 @@ class StrengthRow:
     stress_MPa: float
     """Nominal stress of the formula; largest principal stress of the loaded side, or smallest of the back side."""
     stress_MPa_error: float
-    """Its estimated error by the mesh; NaN for formulas, and without a coarse companion (`output.error_bars`)."""
+    """Its estimated error by the mesh and the spacing of positions; NaN for formulas, and without a coarse companion
+    (`output.error_bars`)."""
     tooth_rotation_deg: float
     """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
     mid-face section. NaN for the standard's virtual gear of helical ones."""
@@ -87,8 +86,12 @@ class RootStressRow:
     """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
     tension_MPa: float
     """Largest principal stress at the root of the loaded side."""
+    tension_MPa_error: float
+    """Its estimated error by the mesh; NaN without a coarse companion."""
     compression_MPa: float
     """Smallest principal stress at the root of the back side."""
+    compression_MPa_error: float
+    """Its estimated error by the mesh; NaN without a coarse companion."""
 
 
 def strength_rows(
@@ -98,11 +101,9 @@ def strength_rows(
     yield from formula_rows(load, editions, tolerance_class)
     for each in found:
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
-        factor = STIFFNESS_FACTOR[each.order]
-        errors = [UNKNOWN] * 2 if coarse is None else [
-            factor * difference(np.max, tension_curve(own), tension_curve(coarse)),
-            factor * difference(np.min, pressure_curve(own), pressure_curve(coarse)),
-        ]  # fmt: skip
+        errors = [
+            curve_errors(curve, own, coarse, each.order).peak for curve in (tension_curve, pressure_curve)
+        ]
         peaks = own.loaded_side.tension, own.back_side.compression
         for name, peak, error in zip(("tension", "compression"), peaks, errors):
             yield _of_peak(load, f"finite elements, {name}", each.friction, peak, error)
@@ -138,23 +139,18 @@ def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error
     )  # fmt: skip
 
 
-def tension_curve(roots: GearRoots) -> Curve:
-    """Largest principal stress of the loaded side over the rotation."""
-    return Curve(roots.loaded_side.angles, roots.loaded_side.principal[..., 2].max(axis=1))
-
-
-def pressure_curve(roots: GearRoots) -> Curve:
-    """Smallest principal stress of the back side over the rotation."""
-    return Curve(roots.back_side.angles, roots.back_side.principal[..., 0].min(axis=1))
-
-
 def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:
     """Of both gears at all coefficients."""
     for each in found:
         for member, own in zip(Member, each.gears):
-            tension, pressure = tension_curve(own), pressure_curve(own)
-            for angle, most, least in zip(tension.angle, tension.values, pressure.values):
-                yield RootStressRow(member.label, each.friction, math.degrees(angle), float(most), float(least))
+            coarse, angles = None if each.coarse is None else each.coarse[member], own.loaded_side.angles
+            columns = [
+                values
+                for curve in (tension_curve, pressure_curve)
+                for values in (curve(own).values, curve_errors(curve, own, coarse, each.order).values)
+            ]
+            for angle, *values in zip(angles, *columns):
+                yield RootStressRow(member.label, each.friction, math.degrees(angle), *map(float, values))
 
 
 def write_strength(folder: RunFolder, rows: Sequence[StrengthRow], over_rotation: Sequence[RootStressRow]) -> None:

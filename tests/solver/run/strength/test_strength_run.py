@@ -17,7 +17,7 @@ from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
 
-SETTINGS = "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=6", "output.animation=false"
+SETTINGS = "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=12", "output.animation=false"
 
 
 def scene(*settings: str) -> Scene:

@@ -1,0 +1,56 @@
+"""Root stress over the rotation of a tooth, and the error bars of its curves and of their largest values.
+
+The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`), from the same positions on
+elements of twice the size. A largest value may lie between two positions: by how much it falls where every other
+position is left out is added to its bar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, difference, relative_difference
+from evolvent.strength.root_passage import GearRoots
+from evolvent_meshes.arrays import Floats
+
+
+def tension_curve(roots: GearRoots) -> Curve:
+    """Largest principal stress of the loaded side over the rotation [MPa]."""
+    return Curve(roots.loaded_side.angles, roots.loaded_side.principal[..., 2].max(axis=1))
+
+
+def pressure_curve(roots: GearRoots) -> Curve:
+    """Smallest principal stress of the back side over the rotation [MPa]."""
+    return Curve(roots.back_side.angles, roots.back_side.principal[..., 0].min(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class CurveErrors:
+    """Error bars of a curve; NaN where there is no coarse companion."""
+
+    values: Floats
+    """(k,) of its values, by the mesh [MPa]."""
+    peak: float
+    """Of the largest value of its amount, by the mesh and the spacing of positions [MPa]."""
+
+
+def curve_errors(
+    curve: Callable[[GearRoots], Curve], own: GearRoots, coarse: GearRoots | None, order: int
+) -> CurveErrors:
+    """Of one of the curves above. coarse: the same on elements of twice the size. order: of the cells."""
+    fine = curve(own)
+    if coarse is None:
+        return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
+    rough, factor = curve(coarse), STIFFNESS_FACTOR[order]
+    amount, less = (replace(each, values=np.abs(each.values)) for each in (fine, rough))
+    of_values = np.maximum(np.abs(fine.values - rough.values), amount.values * relative_difference(fine, rough))
+    return CurveErrors(factor * of_values, factor * difference(np.max, amount, less) + _spacing_error(amount.values))
+
+
+def _spacing_error(values: Floats) -> float:
+    """By how much the largest of the values (k,) falls where every other one is left out; 0 of a single one."""
+    halves = [part.max() for part in (values[::2], values[1::2]) if len(part)]
+    return float(max(halves) - min(halves))

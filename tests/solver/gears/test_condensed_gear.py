@@ -1,0 +1,108 @@
+"""Displacements at the roots, condensed with the flanks, and what holds a gear, against the field of whole sectors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from mpi4py import MPI
+
+from evolvent.fem.body import assemble
+from evolvent.gears.condensed_gear import GearBody, condensed_gear, sector_body
+from evolvent.gears.gear_model import GearModel, prepare_model
+from evolvent.gears.kinematics import turn
+from evolvent.gears.meshing import levelled_meshes
+from evolvent.gears.meshing.root_meshes import root_mesh, root_nodes
+from evolvent.gears.ring.ring_compliance import ChainedCompliance
+from evolvent.gears.sweep.nodal_forces import NodalForces, nodal_forces
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.two_level.two_level_ring import TwoLevelRing
+from evolvent.results.fields.deformation import GearField
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_data import MeshData
+from tests.support.gear_cases import helical_scene, spur_scene
+
+POSITIONS = 2
+
+
+def loaded(scene: Scene) -> tuple[GearModel, list[NodalForces]]:
+    """Gears with the nodes of their roots, and the forces on each at two positions with friction."""
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, root_mesh).model
+    positions = sweep_pitch(model, uniform_pitch(scene.pinion.teeth, POSITIONS), [0.1], initial_state([0.1]))
+    results = [position.results[0] for position in positions]
+    return model, [nodal_forces(results, body.member) for body in model.bodies]
+
+
+def check_roots(body: GearBody, loads: NodalForces) -> None:
+    """Of every tooth, at both positions."""
+    ring = body.chain
+    assert isinstance(ring, ChainedCompliance | TwoLevelRing)
+    field, found = GearField(body, loads), ring.observed_displacements(loads.rows, loads.forces)
+    assert len(found) > len(np.unique(loads.rows[:, 0]))
+    for number, moved in found.items():
+        for k in range(POSITIONS):
+            wanted = field.displacement(k, number)[root_nodes(body.mesh)]
+            assert np.abs(moved[k] - wanted).max() < 1e-9 * np.abs(field.displacement(k, number)).max()
+
+
+@pytest.mark.parametrize("member", Member)
+@pytest.mark.parametrize("kind", ["spur", "helical"])
+def test_roots_move_as_the_whole_sector(kind: str, member: Member) -> None:
+    """Exact: both gears, with Nitsche's flux and without; teeth with a load and without."""
+    small = "contact.friction=0.1", "sweep.positions=2"
+    model, loads = loaded(spur_scene("mesh.level=quick", *small) if kind == "spur" else helical_scene(*small))
+    check_roots(model.bodies[member], loads[member])
+
+
+@pytest.mark.slow
+def test_roots_below_flanks_with_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Exact: forces act on the sector through its coarse flank, in the field and at the roots."""
+    monkeypatch.setattr(levelled_meshes, "MOST_DOFS", 0)
+    narrow = "mesh.order=2", "pinion.face_width_mm=4", "wheel.face_width_mm=4"
+    model, loads = loaded(helical_scene(*narrow, "contact.friction=0.1"))
+    for body, own in zip(model.bodies, loads):
+        assert isinstance(body.chain, TwoLevelRing)
+        check_roots(body, own)
+
+
+def test_meshes_of_a_run_observe_nothing() -> None:
+    """Only meshes with a `BACK_ROOT` have root nodes; without, displacements there are refused."""
+    model = prepare_model(gear_problem(spur_scene("mesh.level=quick")), MPI.COMM_SELF).model
+    chain = model.bodies[0].chain
+    assert len(root_nodes(model.bodies[0].mesh)) == 0
+    assert isinstance(chain, ChainedCompliance)
+    with pytest.raises(ValueError, match="wanted observed nodes, found none"):
+        chain.observed_displacements(np.array([[0, 0]]), np.ones((1, 1, 2)))
+
+
+@pytest.mark.parametrize("member", Member)
+def test_reactions_of_all_sectors_balance_the_forces(member: Member) -> None:
+    """Of He's pair, two teeth under random forces. Exact: what holds the bore of all z sectors, K u there, is the
+    negative of their sum, 1e-6, in moment, too."""
+    problem = gear_problem(spur_scene("mesh.level=quick"))
+    gear, mesh = problem.pair.gears[member], root_mesh(problem, member)
+    assert isinstance(mesh, MeshData)
+    body = condensed_gear(
+        gear, mesh, problem.materials[member], range(gear.z), member, carries_pressure=member is Member.PINION
+    )
+    random, nodes = np.random.default_rng(3), np.arange(len(body.flank.points))
+    rows = np.concatenate([np.column_stack([np.full(len(nodes), n), nodes]) for n in sorted([0, member.sign])])
+    loads = NodalForces(rows, random.normal(size=(1, len(rows), 2)))
+    field, held = GearField(body, loads), np.unique(mesh.facets["bore"])
+    K, total = sp.csr_matrix(assemble(sector_body(mesh, body.material, member)).stiffness), np.zeros(3)
+    for number in (member.sign * tooth for tooth in range(gear.z)):
+        R = turn(number * 2.0 * np.pi / gear.z, 2)
+        reaction = (K @ field.displacement(0, number).ravel()).reshape(-1, 2)[held]
+        total += resultant(mesh.points[held, :2] @ R.T, reaction @ R.T)
+    places = np.array([turn(number * 2.0 * np.pi / gear.z, 2) @ body.flank.points[node] for number, node in rows])
+    error = np.abs(total + resultant(places, loads.forces[0]))
+    assert (error < 1e-6 * np.abs(loads.forces).sum() * np.array([1.0, 1.0, gear.tip_diameter])).all()
+
+
+def resultant(places: Floats, forces: Floats) -> Floats:
+    """Force (x, y) and moment about the axis."""
+    moment = np.sum(places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0])
+    return np.array([*forces.sum(axis=0), moment])

@@ -74,8 +74,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
     "strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "gears.meshing", "gears.ring", "gears.two_level", "gears",
-        "gears.sweep",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
+        "gears.two_level", "gears", "gears.sweep",
     ),
     "results.drawing": ("meshes", "scene", "results.archive", "results"),
     "results.figures": (
@@ -99,7 +99,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
     ),
     "strength.results": (
-        "meshes.gears", "results.archive", "results.error_bars", "results.tables", "strength.standard", "strength",
+        "meshes", "meshes.gears", "results.archive", "results.error_bars", "results.tables", "strength.standard", "strength",
     ),
     "strength.figures": ("meshes.gears", "results.drawing", "strength.results"),
     "run": (
@@ -107,7 +107,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep",
+        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
         "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing", "strength.standard",
         "strength", "strength.results", "strength.figures", "run",
     ),

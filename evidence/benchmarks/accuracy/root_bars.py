@@ -7,7 +7,7 @@ them. Its own error is estimated by the same mesh before the cells were halved f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -23,7 +23,7 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.error_bars.estimation import Curve
 from evolvent.run.progress import Progress
-from evolvent.run.strength.strength_run import pitch_roots
+from evolvent.run.strength.strength_run import PitchRoots, pitch_roots
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
 from evolvent.strength.root_passage import GearRoots
@@ -40,7 +40,6 @@ OUTLINE = 4
 FINER = 2
 """Positions of the reference over those of the cases."""
 CURVES: dict[str, Callable[[GearRoots], Curve]] = {"tension": tension_curve, "pressure": pressure_curve}
-Roots = tuple[GearRoots, GearRoots]
 
 
 @dataclass(frozen=True)
@@ -112,10 +111,11 @@ def measure_bars(problem: RootProblem) -> Iterator[RootBarRow]:
         scene = problem.bars.with_mesh(case)
         name = ", ".join(setting.split("=")[1] for setting in case)
         for fillet in problem.fillets:
-            own, coarse = (_roots(scene, mesh(fillet)) for mesh in (_fine, _coarse))
+            own = _roots(scene, _fine(fillet))
+            coarse = _roots(scene, _coarse(fillet), own.angles)
             for index, friction in enumerate(scene.contact.friction):
                 for member in Member:
-                    four = [each[index][member] for each in (own, coarse, best, second)]
+                    four = [each.roots[index][member] for each in (own, coarse, best, second)]
                     for side in CURVES:
                         head = problem.bars.name, name, fillet, friction, member.label, side
                         yield _row(head, scene.mesh.order, *four)
@@ -130,7 +130,7 @@ def _row(
     tried, exact, nearly = curve(own), curve(best), curve(second)
     peak, most, other = (float(np.abs(each.values).max()) for each in (tried, exact, nearly))
     at, nearly_at = _at(tried, exact), _at(tried, nearly)
-    counted = np.abs(at) > 0.1 * most
+    counted = np.abs(at) > 0.1 * most  # not where the reference has no value
     error, doubt, bar = (each[counted] for each in (np.abs(tried.values - at), np.abs(at - nearly_at), bars.values))
     inside, decided = error <= bar, np.abs(error - bar) > doubt
     counts = len(error), int(inside.sum()), int(decided.sum()), int((inside & decided).sum())
@@ -138,10 +138,9 @@ def _row(
 
 
 def _at(tried: Curve, exact: Curve) -> Floats:
-    """Values of a reference at the rotations that were tried, which are among its own."""
+    """Values of a reference at the rotations that were tried; NaN at those that are not among its own."""
     _, mine, its = np.intersect1d(np.round(tried.angle, 9), np.round(exact.angle, 9), return_indices=True)
-    assert len(mine) == len(tried.angle)
-    values = np.empty(len(mine))
+    values = np.full(len(tried.angle), np.nan)
     values[mine] = exact.values[its]
     return values
 
@@ -151,10 +150,10 @@ def _with_positions(scene: Scene) -> Scene:
     return scene_from_text(scene.resolved_toml(), [f"sweep.positions={FINER * scene.sweep.positions}"])
 
 
-def _roots(scene: Scene, mesh: Mesher) -> list[Roots]:
-    """At each friction coefficient, on this rank alone."""
+def _roots(scene: Scene, mesh: Mesher, angles: Sequence[float] | None = None) -> PitchRoots:
+    """At each friction coefficient, on this rank alone. angles: see `pitch_roots`."""
     with Progress(hidden=True) as progress:
-        return pitch_roots(scene, mesh, MPI.COMM_SELF, progress)
+        return pitch_roots(scene, mesh, MPI.COMM_SELF, progress, angles=angles)
 
 
 def _with_fillets(times: int, sector: SectorResolution) -> SectorResolution:

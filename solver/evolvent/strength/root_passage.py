@@ -61,6 +61,16 @@ class RootPassage:
         return np.asarray(np.linalg.eigvalsh(self.stress))
 
     @property
+    def largest(self) -> Floats:
+        """Largest principal stress (k,) of the nodes [MPa]."""
+        return np.asarray(self.principal[..., 2].max(axis=1))
+
+    @property
+    def smallest(self) -> Floats:
+        """Smallest principal stress (k,) of the nodes [MPa]."""
+        return np.asarray(self.principal[..., 0].min(axis=1))
+
+    @property
     def tension(self) -> RootPeak:
         """Where and when the largest principal stress is largest."""
         return self._peak(int(np.argmax(self.principal[..., 2])), 2)
@@ -69,6 +79,11 @@ class RootPassage:
     def compression(self) -> RootPeak:
         """Where and when the smallest principal stress is smallest."""
         return self._peak(int(np.argmin(self.principal[..., 0])), 0)
+
+    def tension_at(self, angle: float) -> RootPeak:
+        """Where the largest principal stress is largest at the rotation next to an angle [rad]."""
+        k = int(np.argmin(np.abs(self.angles - angle)))
+        return self._peak(k * len(self.root.radii) + int(np.argmax(self.principal[k, :, 2])), 2)
 
     def _peak(self, place: int, number: int) -> RootPeak:
         """place: of the (k, n) stresses. number: of the principal stress there."""

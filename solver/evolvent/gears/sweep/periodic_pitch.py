@@ -84,16 +84,23 @@ def never_periodic(errors: Sequence[Floats], pitch: Pitch) -> NotConverged:
 
 
 def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
-    """The positions of the pitch in order, each with the last result of each coefficient. swept: all of a
+    """The positions of the pitch in order, each with the last result and state of each coefficient. swept: all of a
     `sweep_until_periodic`."""
     whole = sum(not position.again for position in swept)
     latest = list(swept[:whole])
     for done, position in enumerate(swept[whole:]):
-        first = latest[done % whole]
-        renewed = {result.friction: result for result in position.results}
-        results = tuple(renewed.get(result.friction, result) for result in first.results)
-        latest[done % whole] = replace(position, results=results)
+        latest[done % whole] = _renewed(latest[done % whole], position)
     return latest
+
+
+def _renewed(first: SweptPosition, again: SweptPosition) -> SweptPosition:
+    """A position with what it has again, of some of its coefficients."""
+    known = {result.friction: each for result, *each in zip(again.results, again.results, again.state.histories)}
+    both = [
+        known.get(result.friction, [result, history]) for result, history in zip(first.results, first.state.histories)
+    ]
+    results, histories = zip(*both)
+    return replace(again, results=results, state=replace(again.state, histories=histories))
 
 
 def transmission_errors(position: SweptPosition, frictions: Sequence[float]) -> Floats:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import GearModel, Mesher, prepare_model
+from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.meshing.root_meshes import coarse_root_mesh, root_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state
+from evolvent.gears.sweep.pitch_sweep import initial_state
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
@@ -24,6 +26,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.skips import wanted_output
+from evolvent.strength.peak_positions import Roots, roots_of, with_angles, with_peaks
 from evolvent.strength.results.tables import (
     ROOT_STRESS,
     STRENGTH,
@@ -33,7 +36,6 @@ from evolvent.strength.results.tables import (
     strength_rows,
     write_strength,
 )
-from evolvent.strength.root_passage import GearRoots, root_passages
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent_meshes.errors import EvolventError
 from evolvent_meshes.gears.member import Member
@@ -61,11 +63,11 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:
-                coarse = pitch_roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS)
+                coarse = pitch_roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS, fine.angles)
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
-        said = on_first(comm, lambda: _written(scene, fine, coarse, out))
+        said = on_first(comm, lambda: _written(scene, fine.roots, None if coarse is None else coarse.roots, out))
     return [*said, *([failure] if failure else [])]
 
 
@@ -78,12 +80,24 @@ def _check(out: Path, overwrite: bool) -> None:
         )
 
 
-def pitch_roots(
-    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS
-) -> list[tuple[GearRoots, GearRoots]]:
-    """Of both gears at each friction coefficient; on rank 0, none on the others. Collective.
+@dataclass(frozen=True)
+class PitchRoots:
+    """Root stress of the positions of a pitch, of those around its largest values, and of those at which a tooth of a
+    spur gear is loaded at its outer point of single or double contact."""
 
-    mesh: of `root_meshes`. stage: of the progress, for the positions.
+    angles: tuple[float, ...]
+    """Pinion rotations beyond the uniform ones [rad]."""
+    roots: Roots
+
+
+def pitch_roots(
+    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
+    angles: Sequence[float] | None = None,
+) -> PitchRoots:  # fmt: skip
+    """Of both gears at each friction coefficient. Collective.
+
+    mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
+    `PitchRoots`.
 
     Raises MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance.
     """
@@ -98,23 +112,27 @@ def pitch_roots(
         certify(position.results)
         swept.append(position)
         progress.advance(more=not position.closes)
-    return on_first(comm, lambda: _stresses(model, one_pitch(swept), len(frictions)))
+    uniform = one_pitch(swept)
+    every = with_peaks(model, uniform, frictions, comm) if angles is None else uniform
+    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
+    for position in every:
+        certify(position.results)
+    further = sorted({each.angle for each in every} - {each.angle for each in uniform})
+    return PitchRoots(tuple(further), on_first(comm, lambda: roots_of(model, every)))
 
 
-def _stresses(
-    model: GearModel, positions: Sequence[SweptPosition], frictions: int
-) -> list[tuple[GearRoots, GearRoots]]:
-    found = []
-    for index in range(frictions):
-        pinion, wheel = (root_passages(body, [each.results[index] for each in positions]) for body in model.bodies)
-        found.append((pinion, wheel))
-    return found
+def _outer_points(problem: GearProblem) -> list[float]:
+    """Pinion rotations in [0, pitch) at which teeth of spur gears are loaded at `RootLoad.outer_point` [rad]."""
+    if problem.pair.pinion.helix_angle_deg > 0.0:
+        return []
+    loads = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
+    pitch = 2.0 * math.pi / problem.pair.pinion.z
+    return [load.tooth_rotation(load.outer_point.below_tip) % pitch for load in loads]
 
 
 def _written(
-    scene: Scene, fine: Sequence[tuple[GearRoots, GearRoots]], coarse: Sequence[tuple[GearRoots, GearRoots]] | None,
-    out: Path,
-) -> list[str]:  # fmt: skip
+    scene: Scene, fine: Roots, coarse: Roots | None, out: Path
+) -> list[str]:
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     section, problem = scene.strength or StrengthSection(), gear_problem(scene)
     found = [

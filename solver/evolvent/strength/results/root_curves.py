@@ -19,12 +19,12 @@ from evolvent_meshes.arrays import Floats
 
 def tension_curve(roots: GearRoots) -> Curve:
     """Largest principal stress of the loaded side over the rotation [MPa]."""
-    return Curve(roots.loaded_side.angles, roots.loaded_side.principal[..., 2].max(axis=1))
+    return Curve(roots.loaded_side.angles, roots.loaded_side.largest)
 
 
 def pressure_curve(roots: GearRoots) -> Curve:
     """Smallest principal stress of the back side over the rotation [MPa]."""
-    return Curve(roots.back_side.angles, roots.back_side.principal[..., 0].min(axis=1))
+    return Curve(roots.back_side.angles, roots.back_side.smallest)
 
 
 @dataclass(frozen=True, eq=False)

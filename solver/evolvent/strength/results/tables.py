@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
 from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
@@ -101,12 +103,15 @@ def strength_rows(
     yield from formula_rows(load, editions, tolerance_class)
     for each in found:
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
-        errors = [
-            curve_errors(curve, own, coarse, each.order).peak for curve in (tension_curve, pressure_curve)
-        ]
+        bars = [curve_errors(curve, own, coarse, each.order) for curve in (tension_curve, pressure_curve)]
         peaks = own.loaded_side.tension, own.back_side.compression
-        for name, peak, error in zip(("tension", "compression"), peaks, errors):
-            yield _of_peak(load, f"finite elements, {name}", each.friction, peak, error)
+        for name, peak, bar in zip(("tension", "compression"), peaks, bars):
+            yield _of_peak(load, f"finite elements, {name}", each.friction, peak, bar.peak)
+        if load.pair.pinion.helix_angle_deg == 0.0:
+            angle, name = load.tooth_rotation(load.outer_point.below_tip), load.outer_point.name
+            k = int(np.argmin(np.abs(own.loaded_side.angles - angle)))
+            peak = own.loaded_side.tension_at(angle)
+            yield _of_peak(load, f"finite elements, tension, {name}", each.friction, peak, float(bars[0].values[k]))
 
 
 def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: int) -> Iterator[StrengthRow]:

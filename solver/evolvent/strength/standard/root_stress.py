@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from evolvent.strength.standard.contact_points import contact_points
+from evolvent.strength.standard.contact_points import ContactPoint, contact_points
 from evolvent.strength.standard.critical_section import CriticalSection, root_section
 from evolvent.strength.standard.factors import (
     Edition,
@@ -91,6 +91,13 @@ class RootLoad:
     def face_stress(self) -> float:
         """F_t/(b m_n) [MPa]; b is the common face width."""
         return self.tangential_force / (self.pair.face_width * self.pair.pinion.normal_module)
+
+    @property
+    def outer_point(self) -> ContactPoint:
+        """Of the points with the fewest pairs in contact the one next to the tip: the outer point of single contact, or
+        b."""
+        points = contact_points(self.contact_ratio)
+        return min(points, key=lambda point: (point.pairs, point.below_tip))
 
     def tooth_rotation(self, below_tip: float) -> float:
         """Pinion rotation [rad] of a spur tooth that is loaded at a point, 0 at the pitch point; NaN for helical gears,

@@ -38,8 +38,8 @@ def test_curves_are_the_extreme_principal_stresses() -> None:
 
 @pytest.mark.parametrize(("order", "factor"), [(1, 2.0), (2, 0.5)])
 def test_bars_of_curves_that_differ_by_a_factor(order: int, factor: float) -> None:
-    """The companion has 0.9 of every stress: each bar is a tenth of its value by Richardson's factor. At even places the
-    largest tension is 60, at odd ones 50, so that the spacing adds 10, of pressure twice that."""
+    """The companion has 0.9 of every stress: each bar is a tenth of its value by Richardson's factor. The largest
+    tension is 60 at even places and 50 at odd ones, so that the spacing adds 10, of pressure twice that."""
     own, coarse = roots(TENSION, -2.0 * TENSION), roots(0.9 * TENSION, -1.8 * TENSION)
     for curve, times in ((tension_curve, 1.0), (pressure_curve, 2.0)):
         bars = curve_errors(curve, own, coarse, order)

@@ -99,7 +99,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
     ),
     "strength.results": (
-        "meshes", "meshes.gears", "results.archive", "results.error_bars", "results.tables", "strength.standard", "strength",
+        "meshes", "meshes.gears", "results.archive", "results.error_bars", "results.tables", "strength.standard",
+        "strength",
     ),
     "strength.figures": ("meshes.gears", "results.drawing", "strength.results"),
     "run": (
@@ -107,9 +108,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep",
-        "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing", "strength.standard",
-        "strength", "strength.results", "strength.figures", "run",
+        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
+        "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
+        "strength.standard", "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",

@@ -46,7 +46,8 @@ def curve_errors(
         return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
     rough, factor = curve(coarse), STIFFNESS_FACTOR[order]
     amount, less = (replace(each, values=np.abs(each.values)) for each in (fine, rough))
-    of_values = np.maximum(np.abs(fine.values - rough.values), amount.values * relative_difference(fine, rough))
+    least = amount.values.max() * relative_difference(fine, rough)  # curves cross, and errors do not scale with values
+    of_values = np.maximum(np.abs(fine.values - rough.values), least)
     return CurveErrors(factor * of_values, factor * difference(np.max, amount, less) + _spacing_error(amount.values))
 
 

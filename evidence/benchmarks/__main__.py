@@ -1,7 +1,7 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
-PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, excitation-bars, spacing, wear, dynamics,
-level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing. Tables are kept in
+PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, excitation-bars, root-bars, spacing, wear,
+dynamics, level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing. Tables are kept in
 docs/benchmark/, figures in docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from evidence.benchmarks.accuracy import error_bars, excitation_bars, spacing, two_level
+from evidence.benchmarks.accuracy import error_bars, excitation_bars, root_bars, spacing, two_level
 from evidence.benchmarks.comparison import work_precision
 from evidence.benchmarks.comparison.programs import PEERS, Program
 from evidence.benchmarks.gears import (
@@ -77,6 +77,10 @@ class Measurement:
         rows = (row for problem in self.bar_problems() for row in excitation_bars.measure_bars(problem))
         yield "excitation_bars", rows
 
+    def root_bars(self) -> Tables:
+        problems = root_bars.problems(self.small)
+        yield "root_bars", (row for problem in problems for row in root_bars.measure_bars(problem))
+
     def bar_problems(self) -> list[error_bars.BarProblem]:
         if self.small:
             return [error_bars.spur_problem((1.2, 1.7), 6, (0.0, 0.1))]
@@ -108,6 +112,7 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "spur": _table("spur", lambda given: plane_and_solid.rows()),
     "bars": Measurement.bars,
     "excitation-bars": Measurement.excitation_bars,
+    "root-bars": Measurement.root_bars,
     "spacing": Measurement.spacing,
     "wear": Measurement.wear,
     "dynamics": _table("dynamics", lambda given: dynamics.rows(given.size(dynamics))),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evidence.benchmarks.pages import accuracy, comparison, gear_pairs
+from evidence.benchmarks.pages import accuracy, comparison, gear_pairs, root_stress
 from evidence.benchmarks.pages.section import PICTURES
 from evidence.report import header, write
 
@@ -12,7 +12,8 @@ COMMAND = "python -m evidence.benchmarks all --peers"
 TERMS = """CPU seconds of the whole process with one thread, start of Python and its imports included, writing and
 reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
 Errors are relative to the overkill solution of the same problem."""
-SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *gear_pairs.WEAR, *gear_pairs.DYNAMICS)
+SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *root_stress.SECTIONS,
+    *gear_pairs.WEAR, *gear_pairs.DYNAMICS)
 
 
 def write_page(out: Path) -> Path:

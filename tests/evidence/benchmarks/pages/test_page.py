@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from evidence.benchmarks.accuracy.error_bars import BarRow
 from evidence.benchmarks.accuracy.excitation_bars import ExcitationRow
+from evidence.benchmarks.accuracy.root_bars import RootBarRow
 from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
 from evidence.benchmarks.gears.dynamics import DynamicsRow
@@ -53,6 +54,10 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
             ExcitationRow("a", "2, hexahedron, 3", 5.0, name, "positions", 20, 19, 12, 11, error, 0.03, 0.001)
             for name, error in (("transmission_error_um", 0.012), ("tangent_stiffness_N_per_um", 0.025))
         ],
+        "root_bars": [
+            RootBarRow("a", "2, hexahedron, 3", 2, 0.1, "pinion", side, 200.0, 3.0, error, 0.1, 50, 47, 40, 38)
+            for side, error in (("tension", 2.0), ("pressure", 4.0))
+        ],
         "dynamics": [DynamicsRow("speeds", 12.0, nan, 10.0), DynamicsRow("torques", 30.0, 20.0, 2.0)],
         "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
                       AccuracyRow("a", "mean", 0.001, nan)],
@@ -72,6 +77,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures",
                    "**38 of 40** figures", "| a, 5 % of the torque | 40 | 38 | 95 | 24 | 22 |",
                    "| a | 2, hexahedron, 3 | 1.20 (0.10) | 2.50 (0.10) |", "75.0", "14",
+                   "**1 of 2** largest tensions and pressures", "94 of 100 stresses",
+                   "| tension | 1 | 1 | 100 | 1 | 1 | 1.00 | 1.00 | 1.50 | 94 |",
                    "| speeds | 12 |  | **12** | at most 10 | MISSED |",
                    "| torques | 30 | 20 | **1.5** | at most 2 | met |",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",

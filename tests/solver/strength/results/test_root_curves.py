@@ -51,7 +51,7 @@ def test_bars_do_not_vanish_where_curves_cross() -> None:
     """The companion is right at the peak and wrong elsewhere: bars are at least the root mean square difference of the
     curves over that of the curve, times the peak, and at least the difference there."""
     less = TENSION - [5.0, 5.0, 0.0, 5.0, 5.0]
-    relative = 10.0 / np.linalg.norm(TENSION)
+    relative = 10.0 / float(np.linalg.norm(TENSION))
     bars = curve_errors(tension_curve, roots(TENSION, -TENSION), roots(less, -TENSION), 2)
     assert bars.values[2] == pytest.approx(0.5 * relative * 60.0, rel=1e-9)
     assert bars.values[0] == pytest.approx(0.5 * max(5.0, relative * 60.0), rel=1e-9)

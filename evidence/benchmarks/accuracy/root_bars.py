@@ -17,8 +17,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import SCENES, BarProblem, mesh_cases, spur_problem
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
-from evolvent.gears.meshing.companion_meshes import coarser
-from evolvent.gears.meshing.root_meshes import adapted_root_mesh, with_back_root
+from evolvent.gears.meshing.root_meshes import coarse_root_mesh, finer_roots, root_mesh, with_back_root
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.error_bars.estimation import Curve
@@ -31,7 +30,6 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import halved
-from evolvent_meshes.sector.section import SectorResolution
 
 FILLETS = 1, 2, 4
 """Elements around a fillet over those of a run; `evolvent strength` has twice as many."""
@@ -111,8 +109,8 @@ def measure_bars(problem: RootProblem) -> Iterator[RootBarRow]:
         scene = problem.bars.with_mesh(case)
         name = ", ".join(setting.split("=")[1] for setting in case)
         for fillet in problem.fillets:
-            own = _roots(scene, _fine(fillet))
-            coarse = _roots(scene, _coarse(fillet), own.angles)
+            own = _roots(scene, partial(root_mesh, times=fillet))
+            coarse = _roots(scene, partial(coarse_root_mesh, times=fillet), own.angles)
             for index, friction in enumerate(scene.contact.friction):
                 for member in Member:
                     four = [each.roots[index][member] for each in (own, coarse, best, second)]
@@ -156,28 +154,11 @@ def _roots(scene: Scene, mesh: Mesher, angles: Sequence[float] | None = None) ->
         return pitch_roots(scene, mesh, MPI.COMM_SELF, progress, angles=angles)
 
 
-def _with_fillets(times: int, sector: SectorResolution) -> SectorResolution:
-    """So many times the elements around both fillets and across the tooth's core."""
-    return replace(
-        sector, fillet_elements=times * sector.fillet_elements, back_elements=times * sector.back_elements,
-        neck_elements=times * sector.neck_elements, core_elements=times * sector.core_elements,
-    )  # fmt: skip
-
-
-def _fine(times: int) -> Mesher:
-    return partial(adapted_root_mesh, adapted=partial(_with_fillets, times))
-
-
-def _coarse(times: int) -> Mesher:
-    """The same with elements of twice the size."""
-    return partial(adapted_root_mesh, adapted=lambda sector: coarser(_with_fillets(times, sector)))
-
-
 def _reference(halvings: int) -> Mesher:
     """Cells halved of a mesh with so many elements around its fillets that their outline is exact."""
 
     def mesh(problem: GearProblem, member: Member) -> MeshData:
-        fine = gear_mesh(problem, member, partial(_with_fillets, OUTLINE))
+        fine = gear_mesh(problem, member, partial(finer_roots, times=OUTLINE))
         for _ in range(halvings):
             fine = halved(fine)
         return with_back_root(fine)

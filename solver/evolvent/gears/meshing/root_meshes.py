@@ -6,6 +6,7 @@ Displacements of the roots' nodes are condensed with the flank (`condensed_gear`
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -28,25 +29,28 @@ FINER = 2
 the limit of finer ones: 1.020 with six elements, 1.005 with twelve, 1.001 with 24."""
 
 
-def finer_roots(sector: SectorResolution) -> SectorResolution:
-    """`FINER` times the elements around both fillets and across the tooth's core.
+def finer_roots(sector: SectorResolution, times: int = FINER) -> SectorResolution:
+    """So many times the elements around both fillets and across the tooth's core.
 
     With the run's two columns of core the pressure of He's pair's back was 0.9 % too low, with four 0.2 %.
     """
     return replace(
-        sector, fillet_elements=FINER * sector.fillet_elements, back_elements=FINER * sector.back_elements,
-        neck_elements=FINER * sector.neck_elements, core_elements=FINER * sector.core_elements,
+        sector, fillet_elements=times * sector.fillet_elements, back_elements=times * sector.back_elements,
+        neck_elements=times * sector.neck_elements, core_elements=times * sector.core_elements,
     )  # fmt: skip
 
 
-def root_mesh(problem: GearProblem, member: Member) -> SectorMesh:
-    """The mesh of a run with finer roots, and with `BACK_ROOT`. Raises MeshError, TooMuchRelief."""
-    return adapted_root_mesh(problem, member, finer_roots)
+def root_mesh(problem: GearProblem, member: Member, times: int = FINER) -> SectorMesh:
+    """The mesh of a run with finer roots, and with `BACK_ROOT`. times: see `finer_roots`.
+
+    Raises MeshError, TooMuchRelief.
+    """
+    return adapted_root_mesh(problem, member, partial(finer_roots, times=times))
 
 
-def coarse_root_mesh(problem: GearProblem, member: Member) -> SectorMesh:
+def coarse_root_mesh(problem: GearProblem, member: Member, times: int = FINER) -> SectorMesh:
     """The same with elements of twice the size, for error bars. Raises MeshError."""
-    return adapted_root_mesh(problem, member, lambda sector: coarser(finer_roots(sector)))
+    return adapted_root_mesh(problem, member, lambda sector: coarser(finer_roots(sector, times)))
 
 
 def adapted_root_mesh(problem: GearProblem, member: Member, adapted: Adaption) -> SectorMesh:

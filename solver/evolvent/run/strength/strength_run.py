@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from mpi4py import MPI
@@ -56,14 +57,16 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
+    times = (scene.strength or StrengthSection()).root_refinement
     on_first(comm, lambda: _check(out, overwrite))
     dolfinx_compat.silence_logs()
     with Progress(hidden=hidden) as progress:
-        fine = pitch_roots(scene, root_mesh, comm, progress, POSITIONS)
+        fine = pitch_roots(scene, partial(root_mesh, times=times), comm, progress, POSITIONS)
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:
-                coarse = pitch_roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS, fine.angles)
+                mesh = partial(coarse_root_mesh, times=times)
+                coarse = pitch_roots(scene, mesh, comm, progress, ERROR_BARS, fine.angles)
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)

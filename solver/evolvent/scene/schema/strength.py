@@ -28,6 +28,13 @@ class StrengthSection(SceneSection):
         default=None, ge=1, le=12,
     )  # fmt: skip
 
+    root_refinement: int = key(
+        "elements around the fillets and across the core of a tooth over those of a run, which has six around a fillet",
+        "a whole number from 1 to 8",
+        "raise it where the error bar of the stress is too wide",
+        default=2, ge=1, le=8,
+    )  # fmt: skip
+
     @field_validator("editions")
     @classmethod
     def _different(cls, editions: tuple[Edition, ...]) -> tuple[Edition, ...]:

@@ -28,6 +28,7 @@ from evolvent.results.shaft_forces import ShaftForces
 from evolvent.results.tables.load_table import ERROR, LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
 from evolvent.scene.skips import Skipped
+from evolvent.strength.results.gauge_table import GaugeRow
 from evolvent.strength.results.tables import RootStressRow, StrengthRow
 from evolvent.wear.gears.gear_study import BlockRow
 from evolvent.wear.results.report import GearReport, PairReport, WearReport
@@ -79,6 +80,7 @@ FILES = (
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
+    ("gauges.csv", "`evolvent strength` with `strength.gauges`: a line per strain gauge, coefficient and rotation"),
     ("pictures/loads.png", "`evolvent loads`: transmission error, largest pressure and mesh stiffness over the torque"),
 )
 ARRAYS = (
@@ -130,6 +132,7 @@ SECTIONS = (
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
+    ("`gauges.csv`", GaugeRow, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),
     ("`wear.csv`", BlockRow, ""),
     ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
     ("`wear.json`", WearReport, ""),

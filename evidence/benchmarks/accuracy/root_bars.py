@@ -22,7 +22,7 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.error_bars.estimation import Curve
 from evolvent.run.progress import Progress
-from evolvent.run.strength.strength_run import PitchRoots, pitch_roots
+from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
 from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
 from evolvent.strength.root_passage import GearRoots

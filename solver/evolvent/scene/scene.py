@@ -209,7 +209,11 @@ def _toml_lines(section: BaseModel, derived: Mapping[str, Any], name: str = "") 
 def _not_given(section: type[BaseModel], name: str) -> Iterator[str]:
     """The lines of an optional section that the scene does not have."""
     yield f"\n# [{name}]: not given"
-    yield from (f"# {key_name}: not given  # {field.description}" for key_name, field in section.model_fields.items())
+    for key_name, field in section.model_fields.items():
+        if inner := section_of(field):
+            yield from _not_given(inner, f"{name}.{key_name}")
+        else:
+            yield f"# {key_name}: not given  # {field.description}"
 
 
 def _toml_value(value: object) -> str:

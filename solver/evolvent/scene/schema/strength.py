@@ -2,15 +2,55 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, field_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 EDITIONS = "a list of 2006, 2019 or both"
 Edition = Literal[2006, 2019]
+MOST_GAUGES = 100
+Angle = Annotated[float, Field(ge=0, le=90)]
+Height = Annotated[float, Field(ge=-500, le=500)]
+Length = Annotated[float, Field(gt=0, le=100)]
+
+
+class GaugesSection(SceneSection):
+    """[strength.gauges]: strain gauges along the profile of roots, one for each place of its lists."""
+
+    gear: Annotated[tuple[Literal["pinion", "wheel"], ...], BeforeValidator(as_tuple)] = key(
+        "gear of each gauge", 'a list of "pinion" and "wheel"', min_length=1, max_length=MOST_GAUGES
+    )
+    side: Annotated[tuple[Literal["loaded", "back"], ...], BeforeValidator(as_tuple)] = key(
+        "root below the loaded flank, or below the back", 'a list of "loaded" and "back", as long as gear', min_length=1
+    )
+    angle_deg: Annotated[tuple[Angle, ...], BeforeValidator(as_tuple)] = key(
+        "angle between the profile's tangent and the tooth's centre line at the middle of each gauge; 30 at the "
+        "standard's critical section",
+        "a list of numbers from 0 to 90, in degrees, as long as gear",
+        min_length=1,
+    )
+    height_mm: Annotated[tuple[Height, ...], BeforeValidator(as_tuple)] = key(
+        "axial position of each gauge, 0 at mid-face",
+        "a list of numbers from -500 to 500, in mm, as long as gear",
+        min_length=1,
+    )
+    length_mm: Annotated[tuple[Length, ...], BeforeValidator(as_tuple)] = key(
+        "length of each gauge along the profile",
+        "a list of numbers above 0 up to 100, in mm, as long as gear",
+        min_length=1,
+    )
+
+    @model_validator(mode="after")
+    def _equally_many(self) -> Self:
+        for name in ("side", "angle_deg", "height_mm", "length_mm"):
+            found = len(getattr(self, name))
+            if found != len(self.gear):
+                allowed = f"as many as gear has, {len(self.gear)}"
+                raise validation_error(InputProblem(name, f"{found} values", allowed, "give one for each gauge"))
+        return self
 
 
 class StrengthSection(SceneSection):
@@ -34,6 +74,8 @@ class StrengthSection(SceneSection):
         "raise it where the error bar of the stress is too wide",
         default=2, ge=1, le=8,
     )  # fmt: skip
+
+    gauges: GaugesSection | None = None
 
     @field_validator("editions")
     @classmethod

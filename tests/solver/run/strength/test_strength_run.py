@@ -13,10 +13,15 @@ from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.strength import strength_run
 from evolvent.run.strength.strength_run import run_strength
 from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent_meshes.errors import InputError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
 
+GAUGE = (
+    'strength.gauges.gear=["pinion"]', 'strength.gauges.side=["loaded"]', "strength.gauges.angle_deg=[45.0]",
+    "strength.gauges.height_mm=[0.0]", "strength.gauges.length_mm=[0.02]",
+)  # fmt: skip
 SETTINGS = "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=12", "output.animation=false"
 
 
@@ -82,10 +87,25 @@ def test_editions_and_tolerance_class_are_the_scenes(tmp_path: Path) -> None:
     assert {row["stress_MPa_error"] for row in found} == {"nan"}
 
 
+def test_a_short_gauge_finds_the_stress(tmp_path: Path) -> None:
+    """At 45° of the pinion's loaded side, where the tension is largest: E/(1 − ν²) times its largest strain is that
+    stress, 1 %, with an error bar; a gauge that is longer than the root is refused before anything is solved."""
+    run_strength(scene(*GAUGE), tmp_path, quiet=True)
+    tension = next(row for row in rows(tmp_path / "strength.csv") if row["method"] == "finite elements, tension")
+    strains = rows(tmp_path / "gauges.csv")
+    largest = max(strains, key=lambda row: float(row["strain_um_per_m"]))
+    stress = 212e3 / (1.0 - 0.289**2) * 1e-6 * float(largest["strain_um_per_m"])
+    assert stress == pytest.approx(float(tension["stress_MPa"]), rel=0.01)
+    assert 0.0 < float(largest["strain_um_per_m_error"]) < 0.03 * float(largest["strain_um_per_m"])
+    with pytest.raises(InputError, match="strain gauge"):
+        run_strength(scene(*GAUGE, "strength.gauges.length_mm=[30.0]"), tmp_path / "none", quiet=True)
+    assert not (tmp_path / "none").exists()
+
+
 def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Tables as without, and a sentence with the reason."""
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object, **__: object) -> None:
         raise MeshError("too coarse")
 
     monkeypatch.setattr(strength_run, "coarse_root_mesh", refuse)
@@ -105,11 +125,20 @@ def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "setting",
-    ["strength.editions=[]", "strength.editions=[2006,2006]", "strength.editions=[2012]", "strength.tolerance_class=0"],
+    [
+        "strength.editions=[]", "strength.editions=[2006,2006]", "strength.editions=[2012]",
+        "strength.tolerance_class=0", "strength.root_refinement=0",
+    ],
 )
 def test_wrong_keys_are_named(setting: str) -> None:
     with pytest.raises(SceneError, match=setting.split("=")[0]):
         scene(setting)
+
+
+def test_gauges_without_their_values_are_refused() -> None:
+    """Two lengths for one gauge."""
+    with pytest.raises(SceneError, match=r"strength\.gauges.*2 values"):
+        scene(*GAUGE, "strength.gauges.length_mm=[0.5,0.5]")
 
 
 @pytest.mark.mpi

@@ -1,0 +1,73 @@
+"""Root stress of both gears over a pitch of a scene, on meshes with finer roots."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from mpi4py import MPI
+
+from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.solution.certificates import certify
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.sweep.pitch_sweep import initial_state
+from evolvent.run.pitch_run import pitch_of
+from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
+from evolvent.strength.peak_positions import Roots, roots_of, with_angles, with_peaks
+from evolvent.strength.standard.root_stress import RootLoad
+from evolvent_meshes.gears.member import Member
+
+
+@dataclass(frozen=True)
+class PitchRoots:
+    """Root stress of the positions of a pitch, of those around its largest values, and of those at which a tooth of a
+    spur gear is loaded at its outer point of single or double contact."""
+
+    angles: tuple[float, ...]
+    """Pinion rotations beyond the uniform ones [rad]."""
+    roots: Roots
+
+
+def pitch_roots(
+    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
+    angles: Sequence[float] | None = None,
+) -> PitchRoots:  # fmt: skip
+    """Of both gears at each friction coefficient. Collective.
+
+    mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
+    `PitchRoots`.
+
+    Raises MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance.
+    """
+    progress.stage(MESHING)
+    problem = gear_problem(scene)
+    one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
+    model = prepare_model(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
+    pitch, frictions = pitch_of(scene), scene.contact.friction
+    progress.stage(stage, len(pitch.angles))
+    swept = []
+    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
+        certify(position.results)
+        swept.append(position)
+        progress.advance(more=not position.closes)
+    uniform = one_pitch(swept)
+    every = with_peaks(model, uniform, frictions, comm) if angles is None else uniform
+    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
+    for position in every:
+        certify(position.results)
+    further = sorted({each.angle for each in every} - {each.angle for each in uniform})
+    return PitchRoots(tuple(further), on_first(comm, lambda: roots_of(model, every)))
+
+
+def _outer_points(problem: GearProblem) -> list[float]:
+    """Pinion rotations in [0, pitch) at which teeth of spur gears are loaded at `RootLoad.outer_point` [rad]."""
+    if problem.pair.pinion.helix_angle_deg > 0.0:
+        return []
+    loads = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
+    pitch = 2.0 * math.pi / problem.pair.pinion.z
+    return [load.tooth_rotation(load.outer_point.below_tip) % pitch for load in loads]

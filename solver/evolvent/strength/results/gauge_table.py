@@ -1,0 +1,70 @@
+"""Strains of the gauges of a scene, over the rotation of the tooth that they are on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.fem.material import Material
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, relative_difference
+from evolvent.results.tables.tables import csv_text
+from evolvent.strength.results.tables import FrictionRoots
+from evolvent.strength.strain_gauges import Gauge, gauge_strain
+from evolvent_meshes.arrays import Floats
+
+GAUGES = "gauges.csv"
+
+
+@dataclass(frozen=True)
+class GaugeRow:
+    """A line of gauges.csv: a gauge at a rotation of its tooth."""
+
+    gauge: int
+    """Number of the gauge in the scene, from 1."""
+    gear: str
+    """pinion or wheel."""
+    side: str
+    """loaded or back."""
+    friction: float
+    """Friction coefficient."""
+    tooth_rotation_deg: float
+    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
+    strain_um_per_m: float
+    """Mean strain along the profile over the length of the gauge."""
+    strain_um_per_m_error: float
+    """Its estimated error by the mesh; NaN without a coarse companion."""
+
+
+def gauge_rows(
+    gauges: Sequence[Gauge], found: Sequence[FrictionRoots], materials: tuple[Material, Material]
+) -> Iterator[GaugeRow]:
+    """Of all gauges at all friction coefficients. Raises InputError where a gauge does not lie on a root."""
+    for number, gauge in enumerate(gauges, 1):
+        material, side = materials[gauge.member], "loaded" if gauge.loaded_side else "back"
+        for each in found:
+            roots = each.gears[gauge.member]
+            strain = 1e6 * gauge_strain(gauge, roots, material)
+            errors = _errors(gauge, each, strain, material)
+            for angle, value, error in zip(roots.loaded_side.angles, strain, errors):
+                at = math.degrees(angle)
+                yield GaugeRow(number, gauge.member.label, side, each.friction, at, float(value), float(error))
+
+
+def _errors(gauge: Gauge, roots: FrictionRoots, strain: Floats, material: Material) -> Floats:
+    """As those of root stress (`root_curves`)."""
+    if roots.coarse is None:
+        return np.full(len(strain), np.nan)
+    coarse = roots.coarse[gauge.member]
+    rough = 1e6 * gauge_strain(gauge, coarse, material)
+    curves = Curve(roots.gears[gauge.member].loaded_side.angles, strain), Curve(coarse.loaded_side.angles, rough)
+    least = np.abs(strain).max() * relative_difference(*curves)
+    return np.asarray(STIFFNESS_FACTOR[roots.order] * np.maximum(np.abs(strain - rough), least))
+
+
+def write_gauges(folder: RunFolder, rows: Sequence[GaugeRow]) -> None:
+    """Writes gauges.csv. Raises WriteError, FolderError."""
+    folder.write_text(GAUGES, csv_text([asdict(row) for row in rows]))

@@ -25,8 +25,8 @@ from evolvent.fem.material import contact_modulus
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.engagement import EngagementPeak
 from evolvent.results.run_data import RunData
-from evolvent_meshes.gears.flank import MICROMETRE
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.flank_depth import MICROMETRE
 from evolvent_meshes.gears.pair import GearPair
 
 

@@ -19,7 +19,7 @@ from evolvent_meshes.gears.flank import (
     separation,
 )
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
 from tests.support.paper_pairs import he, yang, zhang

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.profile import Profile
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import scaled_jacobians

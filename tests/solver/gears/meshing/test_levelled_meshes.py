@@ -22,8 +22,8 @@ from evolvent.gears.meshing.levelled_meshes import (
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 from tests.support.paper_pairs import yang

@@ -31,7 +31,7 @@ def test_flank_charts_are_reported(tmp_path: Path) -> None:
     path.write_text("diameter_mm,depth_um\n120,2.0\n150,7.5\n170,1.0\n", encoding="utf-8")
     text = overview(spur_scene(f"wheel.flank_csv={path}"))
     assert re.search(r"chart of the flank +none worn_after_a_million\.csv$", text, re.MULTILINE)
-    assert re.search(r"missing at most, beside C_αa and C_β +µm +– +7\.5$", text, re.MULTILINE)
+    assert re.search(r"missing at most, beside modifications +µm +– +7\.5$", text, re.MULTILINE)
     assert "chart" not in overview(spur_scene())
 
 

@@ -21,6 +21,20 @@ Curve = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
+class Kink:
+    """Where a linear relief begins: a convex kink of the profile.
+
+    relief: its term.
+    roll_length: ρ [mm].
+    turn: by how much the slope ∂c/∂ρ changes.
+    """
+
+    relief: str
+    roll_length: float
+    turn: float
+
+
+@dataclass(frozen=True)
 class FlankDepth:
     """Depth of a flank with modifications, defined beyond its edges too.
 
@@ -50,6 +64,19 @@ class FlankDepth:
         along_z = self._lead(z)[1] + twist * share / self.face_width
         return np.asarray(MICROMETRE * along_roll), np.asarray(MICROMETRE * along_z)
 
+    @property
+    def kinks(self) -> tuple[Kink, ...]:
+        """Kinks along the profile, where linear reliefs of tip and root begin. That of a linear end relief is none of
+        them: every contact line crosses it."""
+        given, found = self.given, []
+        if given.tip_relief_um and not given.tip_relief_parabolic:
+            at = self._roll(given.tip_relief_start_diameter)
+            found.append(Kink("tip relief", at, MICROMETRE * given.tip_relief_um / (self.tip - at)))
+        if given.root_relief_um and not given.root_relief_parabolic:
+            at = self._roll(given.root_relief_end_diameter)
+            found.append(Kink("root relief", at, MICROMETRE * given.root_relief_um / (at - self.start)))
+        return tuple(found)
+
     def _twisted(self, rho: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Distances from the middle of the evaluated profile, over its length, and from mid-face, over its width."""
         middle, length = 0.5 * (self.start + self.tip), self.tip - self.start
@@ -57,9 +84,8 @@ class FlankDepth:
 
     def _profile(self, rho: Floats) -> Curve:
         given, (low, high) = self.given, (self.start, self.tip)
-        relief = self._roll(given.tip_relief_start_diameter, high)
+        relief, end = self._roll(given.tip_relief_start_diameter), self._roll(given.root_relief_end_diameter)
         tip = _relief(given.tip_relief_um, rho - relief, high - relief, given.tip_relief_parabolic)
-        end = self._roll(given.root_relief_end_diameter, low)
         root = _relief(given.root_relief_um, end - rho, end - low, given.root_relief_parabolic)
         crowning = _crowning(given.profile_crowning_um, rho - 0.5 * (low + high), high - low)
         slope = _slope(given.profile_slope_um, rho - 0.5 * (low + high), high - low)
@@ -72,9 +98,9 @@ class FlankDepth:
         end = _relief(given.end_relief_um, np.abs(z) - (0.5 * width - length), length, given.end_relief_parabolic)
         return crowning[0] + slope[0] + end[0], crowning[1] + slope[1] + np.sign(z) * end[1]
 
-    def _roll(self, diameter: float | None, default: float) -> float:
-        """Roll length at a diameter [mm]."""
-        return default if diameter is None else math.sqrt(max(0.0, (0.5 * diameter) ** 2 - self.base_radius**2))
+    def _roll(self, diameter: float | None) -> float:
+        """Roll length at a diameter [mm]; 0 below the base circle, or where no relief begins."""
+        return 0.0 if diameter is None else math.sqrt(max(0.0, (0.5 * diameter) ** 2 - self.base_radius**2))
 
 
 def _relief(amount: float, distance: Floats, length: float, parabolic: bool) -> Curve:

@@ -100,10 +100,7 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
 
 def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
     """A sentence on gears whose tips nothing relieves: the next tooth meets the deflected ones with its tip's edge."""
-    plain = [
-        member for member, gear, chart in zip(Member, problem.pair.gears, problem.flanks)
-        if chart is None and not gear.modifications.tip_relief_um
-    ]  # fmt: skip
+    plain = [member for member in Member if not _has_relieved_tip(problem, member)]
     if not plain:
         return
     estimate, gears = problem.hertz_estimate, "" if len(plain) == len(Member) else f" on the {plain[0].label}"
@@ -113,6 +110,13 @@ def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
     yield (
         f"No tip relief{gears}: tip edges may bear, as teeth deflect by about {deflection:.2g} µm; see tip_relief_um."
     )
+
+
+def _has_relieved_tip(problem: GearProblem, member: Member) -> bool:
+    """Whether something keeps a gear's tip off its mate: on its own flank, or on the mate's where they meet."""
+    own, mate = (problem.pair.gears[each].modifications for each in (member, member.mate))
+    relieved = own.tip_relief_um or own.profile_crowning_um or mate.root_relief_um or mate.profile_crowning_um
+    return problem.flanks[member] is not None or bool(relieved)
 
 
 def folding_warnings(

@@ -7,7 +7,9 @@ modifications of the lead on z, and twist on their product.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -16,8 +18,8 @@ from evolvent_meshes.gears.modifications.modifications import Modifications
 
 MICROMETRE = 1e-3
 """[mm]."""
-Curve = tuple[Floats, Floats]
-"""A modification [µm] and its derivative [µm/mm]."""
+Order = Literal[0, 1]
+"""0: a modification [µm], 1: its derivative [µm/mm]."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +55,23 @@ class FlankDepth:
 
     def at(self, roll_length: Floats, z: Floats) -> Floats:
         """Material removed c (…) [mm], normal to the helicoid, at roll lengths and heights (…) [mm]."""
-        share, height = self._twisted(roll_length, z)
-        twist = self.given.twist_um * share * height + 0.25 * abs(self.given.twist_um)
-        return np.asarray(MICROMETRE * (self._profile(roll_length)[0] + self._lead(z)[0] + twist))
+        total = np.zeros(np.broadcast_shapes(np.shape(roll_length), np.shape(z)))
+        for each in (*self._profile(roll_length, 0), *self._lead(z, 0)):
+            total += each
+        if twist := self.given.twist_um:
+            total += twist * self._share(roll_length) * (z / self.face_width) + 0.25 * abs(twist)
+        return np.asarray(MICROMETRE * total)
 
     def slopes(self, roll_length: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Slopes (∂c/∂ρ, ∂c/∂z) (…) at roll lengths and heights (…) [mm]."""
-        (share, height), twist = self._twisted(roll_length, z), self.given.twist_um
-        along_roll = self._profile(roll_length)[1] + twist * height / (self.tip - self.start)
-        along_z = self._lead(z)[1] + twist * share / self.face_width
+        along_roll, along_z = np.zeros((2, *np.broadcast_shapes(np.shape(roll_length), np.shape(z))))
+        for each in self._profile(roll_length, 1):
+            along_roll += each
+        for each in self._lead(z, 1):
+            along_z += each
+        if twist := self.given.twist_um:
+            along_roll += twist / (self.tip - self.start) * (z / self.face_width)
+            along_z += twist / self.face_width * self._share(roll_length)
         return np.asarray(MICROMETRE * along_roll), np.asarray(MICROMETRE * along_z)
 
     @property
@@ -77,49 +87,54 @@ class FlankDepth:
             found.append(Kink("root relief", at, MICROMETRE * given.root_relief_um / (at - self.start)))
         return tuple(found)
 
-    def _twisted(self, rho: Floats, z: Floats) -> tuple[Floats, Floats]:
-        """Distances from the middle of the evaluated profile, over its length, and from mid-face, over its width."""
-        middle, length = 0.5 * (self.start + self.tip), self.tip - self.start
-        return (rho - middle) / length, z / self.face_width
+    def _share(self, rho: Floats) -> Floats:
+        """Distance from the middle of the evaluated profile, over its length."""
+        return (rho - 0.5 * (self.start + self.tip)) / (self.tip - self.start)
 
-    def _profile(self, rho: Floats) -> Curve:
-        given, (low, high) = self.given, (self.start, self.tip)
-        relief, end = self._roll(given.tip_relief_start_diameter), self._roll(given.root_relief_end_diameter)
-        tip = _relief(given.tip_relief_um, rho - relief, high - relief, given.tip_relief_parabolic)
-        root = _relief(given.root_relief_um, end - rho, end - low, given.root_relief_parabolic)
-        crowning = _crowning(given.profile_crowning_um, rho - 0.5 * (low + high), high - low)
-        slope = _slope(given.profile_slope_um, rho - 0.5 * (low + high), high - low)
-        return tip[0] + root[0] + crowning[0] + slope[0], tip[1] - root[1] + crowning[1] + slope[1]
+    def _profile(self, rho: Floats, order: Order) -> Iterator[Floats]:
+        """Modifications of the profile that there are."""
+        given, (low, high), length = self.given, (self.start, self.tip), self.tip - self.start
+        if given.tip_relief_um:
+            begin = self._roll(given.tip_relief_start_diameter)
+            yield _relief(given.tip_relief_um, rho - begin, high - begin, given.tip_relief_parabolic, order)
+        if given.root_relief_um:
+            end, sign = self._roll(given.root_relief_end_diameter), 1.0 - 2.0 * order
+            yield sign * _relief(given.root_relief_um, end - rho, end - low, given.root_relief_parabolic, order)
+        if given.profile_crowning_um:
+            yield _crowning(given.profile_crowning_um, self._share(rho), length, order)
+        if given.profile_slope_um:
+            yield _slope(given.profile_slope_um, self._share(rho), length, order)
 
-    def _lead(self, z: Floats) -> Curve:
+    def _lead(self, z: Floats, order: Order) -> Iterator[Floats]:
+        """Modifications of the lead that there are."""
         given, width = self.given, self.face_width
-        crowning, slope = _crowning(given.lead_crowning_um, z, width), _slope(given.helix_slope_um, z, width)
-        length = given.end_relief_length or 0.0
-        end = _relief(given.end_relief_um, np.abs(z) - (0.5 * width - length), length, given.end_relief_parabolic)
-        return crowning[0] + slope[0] + end[0], crowning[1] + slope[1] + np.sign(z) * end[1]
+        if given.lead_crowning_um:
+            yield _crowning(given.lead_crowning_um, z / width, width, order)
+        if given.helix_slope_um:
+            yield _slope(given.helix_slope_um, z / width, width, order)
+        if given.end_relief_um:
+            length = given.end_relief_length or 0.0
+            sign, distance = np.sign(z) ** order, np.abs(z) - (0.5 * width - length)
+            yield sign * _relief(given.end_relief_um, distance, length, given.end_relief_parabolic, order)
 
     def _roll(self, diameter: float | None) -> float:
         """Roll length at a diameter [mm]; 0 below the base circle, or where no relief begins."""
         return 0.0 if diameter is None else math.sqrt(max(0.0, (0.5 * diameter) ** 2 - self.base_radius**2))
 
 
-def _relief(amount: float, distance: Floats, length: float, parabolic: bool) -> Curve:
+def _relief(amount: float, distance: Floats, length: float, parabolic: bool, order: Order) -> Floats:
     """From 0 at a distance of 0 and before it to the amount at the length."""
-    if amount == 0.0:
-        return np.zeros_like(distance), np.zeros_like(distance)
     share = np.maximum(distance, 0.0) / length
-    if parabolic:
-        return amount * share**2, 2.0 * amount * share / length
-    return amount * share, np.where(share > 0.0, amount / length, 0.0)
+    if order:
+        return np.asarray(amount / length * (2.0 * share if parabolic else share > 0.0))
+    return np.asarray(amount * (share**2 if parabolic else share))
 
 
-def _crowning(amount: float, from_middle: Floats, length: float) -> Curve:
-    """A parabola from 0 in the middle to the amount at both ends of the length."""
-    share = 2.0 * from_middle / length
-    return amount * share**2, 4.0 * amount * share / length
+def _crowning(amount: float, share: Floats, length: float, order: Order) -> Floats:
+    """A parabola from 0 in the middle to the amount at both ends. share: distance from the middle over the length."""
+    return 8.0 * amount / length * share if order else 4.0 * amount * share**2
 
 
-def _slope(amount: float, from_middle: Floats, length: float) -> Curve:
+def _slope(amount: float, share: Floats, length: float, order: Order) -> Floats:
     """From 0 at the start of the length to the amount at its end; a negative one from its end to its start."""
-    share = from_middle / length
-    return amount * share + 0.5 * abs(amount), np.full_like(share, amount / length)
+    return np.full_like(share, amount / length) if order else amount * share + 0.5 * abs(amount)

@@ -35,6 +35,16 @@ def test_flank_charts_are_reported(tmp_path: Path) -> None:
     assert "chart" not in overview(spur_scene())
 
 
+def test_modifications_are_reported_where_there_are_any() -> None:
+    """Tip relief and lead crowning always, others where either gear has them; twist of the wheel alone: 0 and −4 µm."""
+    plain, text = overview(spur_scene()), overview(spur_scene("wheel.twist_um=-4", "pinion.root_relief_um=6.5"))
+    assert re.search(r"^  tip relief +C_αa +µm +0\.0 +0\.0$", plain, re.MULTILINE)
+    assert "root relief" not in plain and "twist" not in plain
+    assert re.search(r"^  root relief +C_αf +µm +6\.5 +0\.0$", text, re.MULTILINE)
+    assert re.search(r"^  twist +S_α +µm +0\.0 +-4\.0$", text, re.MULTILINE)
+    assert "profile crowning" not in text
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_report_columns_and_signs(name: str) -> None:
     """A skip's name ends before its sentence begins, and no zero has a sign, nor a backlash of rounded data: Yang's

@@ -5,7 +5,8 @@ from __future__ import annotations
 ROOMS: dict[str, tuple[str, ...]] = {
     "meshes": (),
     "meshes.mesh": ("meshes",),
-    "meshes.gears": ("meshes",),
+    "meshes.gears.modifications": ("meshes",),
+    "meshes.gears": ("meshes", "meshes.gears.modifications"),
     "meshes.sector": ("meshes", "meshes.mesh", "meshes.gears"),
     "meshes.shapes": ("meshes", "meshes.mesh"),
     "fem.parallel": ("meshes",),
@@ -25,7 +26,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
     ),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
-    "gears.meshing": ("meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "gears.problem"),
+    "gears.meshing": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.gears.modifications", "meshes.sector", "gears.problem",
+    ),
     "gears.ring": ("meshes", "fem.condensation", "contact.nitsche", "contact.newton"),
     "gears.two_level": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "contact.newton", "contact.two_level",
@@ -54,15 +57,20 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.oscillator",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
-    "scene.schema": ("meshes",),
-    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "dynamics", "scene.schema"),
+    "scene.schema.guesses": (),
+    "scene.schema": ("meshes", "scene.schema.guesses"),
+    "scene": (
+        "meshes", "meshes.gears", "meshes.gears.modifications", "fem", "gears.problem", "gears.meshing", "dynamics",
+        "scene.schema",
+    ),
     "scene.checking": (
-        "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure",
-        "dynamics", "dynamics.oscillator", "scene", "scene.schema",
+        "meshes.gears", "meshes.gears.modifications", "fem.parallel", "contact", "gears.problem", "gears.meshing",
+        "gears.pressure", "dynamics", "dynamics.oscillator", "scene", "scene.schema",
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
-        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
+        "meshes", "meshes.gears", "meshes.gears.modifications", "fem", "gears", "gears.sweep", "gears.pressure",
+        "scene", "results.archive",
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (

@@ -24,10 +24,8 @@ from numpy.typing import ArrayLike
 
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.modifications.flank_depth import MICROMETRE
 from evolvent_meshes.gears.pair import GearPair
-
-MICROMETRE = 1e-3
-"""[mm]."""
 
 
 def transverse_frame(angle: Floats) -> tuple[Floats, Floats]:
@@ -92,7 +90,7 @@ class Flank:
         """Outward unit normals (…, 3) of the modified flank, from its exact tangents along ρ and z."""
         rho, height, radial, tangent = self._broadcast(roll_length, z)
         helicoid = self.helicoid_normal(rho, height)
-        offset, (slope_roll, slope_z) = self.modification(rho, height), self._modification_slopes(rho, height)
+        offset, (slope_roll, slope_z) = self.modification(rho, height), self.gear.flank_depth.slopes(rho, height)
         base, cosine = self.gear.base_radius, math.cos(self.gear.base_helix_angle)
         remaining = rho - offset * cosine  # roll length of the modified point
         along_roll = (remaining / base)[..., None] * radial - slope_roll[..., None] * helicoid
@@ -110,29 +108,9 @@ class Flank:
         return np.zeros_like(rho), np.asarray(math.cos(self.gear.base_helix_angle) / rho)
 
     def modification(self, roll_length: ArrayLike, z: ArrayLike) -> Floats:
-        """Material removed along the normal, c(ρ, z) ≥ 0 (…) [mm]."""
+        """Material removed along the normal, c(ρ, z) (…) [mm]; not negative on the evaluated flank."""
         rho, height = np.broadcast_arrays(np.asarray(roll_length, dtype=float), np.asarray(z, dtype=float))
-        given = self.gear.modifications
-        relief, _ = self._relief(rho)
-        crowning = given.lead_crowning_um * MICROMETRE * (2.0 * height / self.gear.face_width) ** 2
-        return np.asarray(relief + crowning)
-
-    def _modification_slopes(self, rho: Floats, height: Floats) -> tuple[Floats, Floats]:
-        """Slopes (∂c/∂ρ, ∂c/∂z) of the modification."""
-        crowning = self.gear.modifications.lead_crowning_um * MICROMETRE
-        return self._relief(rho)[1], np.asarray(8.0 * crowning * height / self.gear.face_width**2)
-
-    def _relief(self, rho: Floats) -> tuple[Floats, Floats]:
-        """Tip relief [mm] and its derivative by ρ, continued beyond the tip circle."""
-        given = self.gear.modifications
-        if given.tip_relief_um == 0.0 or given.tip_relief_start_diameter is None:
-            return np.zeros_like(rho), np.zeros_like(rho)
-        start = self.gear.roll_length(given.tip_relief_start_diameter)
-        length, height = self.roll_lengths[1] - start, given.tip_relief_um * MICROMETRE
-        fraction = np.maximum(rho - start, 0.0) / length
-        if given.tip_relief_parabolic:
-            return np.asarray(height * fraction**2), np.asarray(2.0 * height * fraction / length)
-        return np.asarray(height * fraction), np.where(fraction > 0.0, height / length, 0.0)
+        return self.gear.flank_depth.at(rho, height)
 
     def project(self, points: Floats) -> tuple[Floats, Floats, Floats]:
         """Coordinates ρ and z (…) of the feet of points (…, 3) on the helicoid, and distances (…) from the flank [mm].

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
-from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.gears.gear_geometry import GearGeometry
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
+from evolvent_meshes.gears.modifications.modifications import Modifications
 
 RACK_TIP_RADIUS = 0.38
 """ρ_fP* of the basic rack of ISO 53, profile A."""

@@ -10,31 +10,13 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from evolvent_meshes.gears.modifications.flank_depth import FlankDepth
+from evolvent_meshes.gears.modifications.modifications import Modifications
+
 
 def involute_function(angle: float) -> float:
     """Involute function inv α = tan α − α [4.3.9], angle in rad."""
     return math.tan(angle) - angle
-
-
-@dataclass(frozen=True)
-class Modifications:
-    """Modifications of the loaded flank: material removed, measured normal to the exact involute helicoid.
-
-    tip_relief_um: tip relief at the tip circle [µm].
-    tip_relief_start_diameter: diameter at which the tip relief starts [mm]; None without tip relief.
-    tip_relief_parabolic: whether it grows with the square of the roll length from there, instead of linearly.
-    lead_crowning_um: crowning at both ends of the face width [µm], a parabola of z that is 0 at mid-face.
-    """
-
-    tip_relief_um: float = 0.0
-    tip_relief_start_diameter: float | None = None
-    tip_relief_parabolic: bool = False
-    lead_crowning_um: float = 0.0
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether the flank is the involute helicoid without modifications."""
-        return self.tip_relief_um == 0.0 and self.lead_crowning_um == 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,6 +144,13 @@ class GearGeometry:
     def roll_length(self, diameter: float) -> float:
         """ρ_y = √(d_y² − d_b²) / 2, roll length: transverse radius of curvature at a diameter d_y [4.3.8]."""
         return math.sqrt(max(0.0, diameter**2 - self.base_diameter**2)) / 2.0
+
+    @cached_property
+    def flank_depth(self) -> FlankDepth:
+        """Depth of the loaded flank's modifications."""
+        control, tip = self.modifications.profile_control_diameter, self.roll_length(self.tip_diameter)
+        start = self.rack_form_roll_length if control is None else self.roll_length(control)
+        return FlankDepth(self.modifications, self.base_radius, start, tip, self.face_width)
 
     @property
     def rack_form_roll_length(self) -> float:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from evolvent_meshes.gears.errors import require, require_instance, require_numbers
-from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.gears.errors import require, require_numbers
+from evolvent_meshes.gears.gear_geometry import GearGeometry
+from evolvent_meshes.gears.modification_limits import check_modification_types, check_modifications
 from evolvent_meshes.input_checks import is_index, shown
 
 SMALLEST_BORE = 0.01
@@ -42,16 +43,13 @@ def check_angles(pressure: float, helix: float) -> None:
 
 def check_types(gear: GearGeometry) -> None:
     """Numbers and modifications are such, and no texts. Raises GeometryError."""
-    given = gear.modifications
-    require_instance(given, Modifications, "modifications", "Write Modifications(tip_relief_um=...).")
+    check_modification_types(gear.modifications)
     require_numbers(
         normal_module=gear.normal_module, normal_pressure_angle_deg=gear.normal_pressure_angle_deg,
         helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
         tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
-        bore_diameter=gear.bore_diameter, tip_relief_um=given.tip_relief_um, lead_crowning_um=given.lead_crowning_um,
+        bore_diameter=gear.bore_diameter,
     )  # fmt: skip
-    if given.tip_relief_start_diameter is not None:
-        require_numbers(tip_relief_start_diameter=given.tip_relief_start_diameter)
 
 
 def check_numbers(gear: GearGeometry) -> None:
@@ -152,29 +150,3 @@ def check_rack(gear: GearGeometry) -> None:
         f"above the form circle, {form:.6g} mm",
         "Raise it: the involute begins above the tip.",
     )
-
-
-def check_modifications(gear: GearGeometry) -> None:
-    """Modifications: not negative, less than the tooth's thickness, starting on the involute. Raises GeometryError."""
-    given = gear.modifications
-    for key in ("tip_relief_um", "lead_crowning_um"):
-        value = getattr(given, key)
-        require(0.0 <= value <= 1000.0, key, value, "0 to 1000 µm", "It is the material taken off, in µm.")
-    taken, thickness = given.tip_relief_um + given.lead_crowning_um, 1e3 * gear.normal_thickness(gear.tip_diameter)
-    require(
-        taken < thickness,
-        "tip_relief_um" if given.tip_relief_um >= given.lead_crowning_um else "lead_crowning_um",
-        taken,
-        f"relief and crowning below the tooth's thickness at its tip, {thickness:.4g} µm, together",
-        "Lower them: at the ends of its tip nothing is left of the tooth.",
-    )
-    start = given.tip_relief_start_diameter
-    if given.tip_relief_um > 0.0:
-        low, high = gear.root_form_diameter, gear.tip_diameter
-        require(
-            start is not None and low <= start < high,
-            "tip_relief_start_diameter",
-            start,
-            f"{low:.6g} to below {high:.6g} mm",
-            "Say where on the involute the relief starts.",
-        )

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from evolvent_meshes.gears.errors import GeometryError as GeometryError
     from evolvent_meshes.gears.gear import GearParameters as GearParameters
     from evolvent_meshes.gears.gear_geometry import GearGeometry as GearGeometry
-    from evolvent_meshes.gears.gear_geometry import Modifications as Modifications
     from evolvent_meshes.gears.member import Member as Member
+    from evolvent_meshes.gears.modifications.modifications import Modifications as Modifications
     from evolvent_meshes.gears.pair import GearPair as GearPair
     from evolvent_meshes.gears.pair_geometry import PairGeometry as PairGeometry
 else:

@@ -1,4 +1,4 @@
-"""Pressure over the start of a linear tip relief, a kink of the flank at which it exceeds Hertz' pressure.
+"""Pressure where a linear tip or root relief begins, a kink of the flank at which it exceeds Hertz' pressure.
 
 The whole contact line of a spur pair passes the kink at once, possibly between two positions. The largest fitted peak
 (`contact_slices.fitted_peak`) during that passage is known in closed form. It occurs with the kink in the middle of the
@@ -25,15 +25,16 @@ from evolvent.fem.material import contact_modulus
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.engagement import EngagementPeak
 from evolvent.results.run_data import RunData
-from evolvent_meshes.gears.flank import MICROMETRE
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 
 @dataclass(frozen=True)
 class ReliefKink:
-    """Contact pressure at the start of a linear tip relief."""
+    """Contact pressure where a linear tip or root relief begins."""
 
+    relief: str
+    """Tip relief or root relief."""
     roll_distance: float
     """Roll distance ξ of the kink from the pitch point [mm]."""
     half_range: float
@@ -60,13 +61,13 @@ def relief_kinks(run: RunData, index: int) -> list[ReliefKink]:
     modulus = contact_modulus(*run.scene.materials())
     cut = Slices.joined([each[index].cut for each in run.positions])
     kinks = []
-    for ξ, angle, roll in _kinks(run.pair):
+    for relief, ξ, angle, roll in _kinks(run.pair):
         hertz = np.where(np.abs(cut.roll_distance - ξ) <= step, cut.hertz, 0.0)
         p0 = float(hertz.max(initial=0.0))
         if run.inner_path[0] < ξ < run.inner_path[1] and p0 > 0.0:
             radius = float(cut.radius[np.argmax(hertz)])
             half_range = roll * radius * (2.0 * p0 / modulus + angle)  # Hertz' half-width, and the turn of the normal
-            kinks.append(ReliefKink(ξ, half_range, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
+            kinks.append(ReliefKink(relief, ξ, half_range, p0, p0 * wedge_factor(angle * modulus / (pi * p0))))
     return kinks
 
 
@@ -81,15 +82,10 @@ def peak_over_kink(run: RunData, index: int, peak: EngagementPeak) -> ReliefKink
     return max(relevant, key=lambda kink: kink.pressure, default=None)
 
 
-def _kinks(pair: GearPair) -> Iterator[tuple[float, float, float]]:
-    """For each linear tip relief: roll distance ξ [mm], angle of the kink 2α [rad], derivative of ξ by the flank's arc
-    length."""
+def _kinks(pair: GearPair) -> Iterator[tuple[str, float, float, float]]:
+    """For each linear tip or root relief: its term, roll distance ξ [mm], angle of the kink 2α [rad], derivative of ξ
+    by the flank's arc length."""
     for member, gear, pitch_point in zip(Member, pair.gears, pair.pitch_point_roll_lengths):
-        relief = gear.modifications
-        start = relief.tip_relief_start_diameter
-        if start is None or relief.tip_relief_um == 0.0 or relief.tip_relief_parabolic:
-            continue
-        ρ = float(gear.roll_length(start))
-        roll = gear.base_radius / ρ  # an involute's arc is ρ²/2r_b
-        slope = MICROMETRE * relief.tip_relief_um / (float(gear.roll_length(gear.tip_diameter)) - ρ)
-        yield member.sign * (ρ - pitch_point), slope * roll, roll
+        for kink in gear.flank_depth.kinks:
+            roll = gear.base_radius / kink.roll_length  # an involute's arc is ρ²/2r_b
+            yield kink.relief, member.sign * (kink.roll_length - pitch_point), kink.turn * roll, roll

@@ -7,12 +7,14 @@ from dataclasses import replace
 
 from scipy.optimize import brentq
 
+from evolvent.scene.gear_modifications import modifications_of
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
-from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
+from evolvent_meshes.gears.gear_geometry import involute_function
+from evolvent_meshes.gears.modifications.modifications import AMOUNTS
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
 
@@ -39,9 +41,11 @@ GEAR_KEYS = {
     "root_diameter": "root_diameter_mm",
     "rack_tip_radius": "rack_tip_radius_mm",
     "bore_diameter": "bore_diameter_mm",
-    "tip_relief_um": "tip_relief_um",
+    **{amount: amount for amount in AMOUNTS},
     "tip_relief_start_diameter": "tip_relief_start_diameter_mm",
-    "lead_crowning_um": "lead_crowning_um",
+    "root_relief_end_diameter": "root_relief_end_diameter_mm",
+    "profile_control_diameter": "profile_control_diameter_mm",
+    "end_relief_length": "end_relief_length_mm",
 }
 """Quantity of a GeometryError -> key of [pinion] or [wheel]."""
 
@@ -55,17 +59,8 @@ class ImpossibleGears(InputError):
 
 
 def make_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> GearPair:
-    """The gear pair of a scene. Raises ImpossibleGears; of gears that jam, not what that does to their tip relief."""
-    try:
-        return _checked_pair(pair, pinion, wheel)
-    except ImpossibleGears as error:
-        if ".tip_relief_start" in error.problem.key and pair.centre_distance_mm is not None:
-            _checked_pair(pair, *(gear.model_copy(update={"tip_relief_um": 0.0}) for gear in (pinion, wheel)))
-        raise
-
-
-def _checked_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) -> GearPair:
-    """The gear pair of a scene. Raises ImpossibleGears for the first reason that is found."""
+    """The gear pair of a scene. Raises ImpossibleGears for the first reason that is found. Modifications come last, for
+    their defaults follow from the pair."""
     sections = {"pinion": pinion, "wheel": wheel}
     distance = centre_distance(pair, pinion, wheel)
     hand = HANDS[pinion.hand or "right"]
@@ -75,20 +70,32 @@ def _checked_pair(pair: PairSection, pinion: GearSection, wheel: GearSection) ->
         try:
             gears[name] = make_gear(pair, gear, turn, alteration)
         except GeometryError as error:
-            problem = _in_scene_keys(error, f"{name}.", pair, sections)
-            if error.key == "tip_relief_start_diameter" and gear.tip_diameter_mm is None:
-                tip = tip_diameter(pair, gear, alteration)
-                why = f"(the tip diameter {tip:.2f} follows from centre distance and profile shift)"
-                problem = replace(problem, allowed=f"{problem.allowed} {why}")
-            raise ImpossibleGears(problem) from error
+            raise ImpossibleGears(_in_scene_keys(error, f"{name}.", pair, sections)) from error
     try:
-        return GearPair(gears["pinion"], gears["wheel"], distance, pair.misalignment_um)
+        unmodified = GearPair(gears["pinion"], gears["wheel"], distance, pair.misalignment_um)
     except GeometryError as error:
         raise ImpossibleGears(_in_scene_keys(error, "wheel.", pair, sections)) from error
+    return _modified(unmodified, pair, sections)
+
+
+def _modified(unmodified: GearPair, pair: PairSection, sections: dict[str, GearSection]) -> GearPair:
+    """The pair with the modifications of its flanks. Raises ImpossibleGears."""
+    modified: list[GearParameters] = []
+    for name, gear, start in zip(sections, unmodified.gears, unmodified.active_start_diameters):
+        try:
+            modified.append(replace(gear, modifications=modifications_of(sections[name], gear, start)))
+        except GeometryError as error:
+            problem = _in_scene_keys(error, f"{name}.", pair, sections)
+            if error.key == "tip_relief_start_diameter" and sections[name].tip_diameter_mm is None:
+                why = f"(the tip diameter {gear.tip_diameter:.2f} follows from centre distance and profile shift)"
+                problem = replace(problem, allowed=f"{problem.allowed} {why}")
+            raise ImpossibleGears(problem) from error
+    pinion, wheel = modified
+    return replace(unmodified, pinion=pinion, wheel=wheel)
 
 
 def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float) -> GearParameters:
-    """One gear of a scene.
+    """One gear of a scene, without modifications.
 
     hand: +1 right, −1 left. alteration: tip alteration coefficient k ≤ 0. Raises GeometryError.
     """
@@ -109,12 +116,6 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         rack_tip_radius=_or(gear.rack_tip_radius_mm, _usual_rack_tip(pair, gear, (reference - root) / 2)),
         hand=hand,
         bore_diameter=_or(gear.bore_diameter_mm, root / 2),
-        modifications=Modifications(
-            tip_relief_um=gear.tip_relief_um,
-            tip_relief_start_diameter=_or(gear.tip_relief_start_diameter_mm, tip - module),
-            tip_relief_parabolic=gear.tip_relief_form == "parabolic",
-            lead_crowning_um=gear.lead_crowning_um,
-        ),
     )
 
 

@@ -181,6 +181,9 @@ def derived_values(scene: Scene) -> dict[str, Any]:
             f"{name}.hand": "right" if gear.hand > 0 else "left",
             f"{name}.bore_diameter_mm": gear.bore_diameter,
             f"{name}.tip_relief_start_diameter_mm": gear.modifications.tip_relief_start_diameter,
+            f"{name}.root_relief_end_diameter_mm": gear.modifications.root_relief_end_diameter,
+            f"{name}.profile_control_diameter_mm": gear.modifications.profile_control_diameter,
+            f"{name}.end_relief_length_mm": gear.modifications.end_relief_length,
             f"material.{name}.E_GPa": material.youngs_modulus / 1e3,
             f"material.{name}.nu": material.poissons_ratio,
         }

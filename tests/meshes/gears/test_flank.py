@@ -19,9 +19,10 @@ from evolvent_meshes.gears.flank import (
     separation,
 )
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
+from tests.support.modified_gears import fully_modified
 from tests.support.paper_pairs import he, yang, zhang
 
 RELIEF = Modifications(tip_relief_um=20.0, tip_relief_start_diameter=44.0, lead_crowning_um=8.0)
@@ -32,6 +33,7 @@ FLANKS = {
     "left hand": LEFT,
     "relieved": replace(LEFT, modifications=RELIEF),
     "parabolic relief": replace(yang().pinion, modifications=PARABOLA),
+    "every modification": fully_modified(LEFT, parabolic=True),
     "Yang wheel": yang().wheel,
     "He": he().pinion,
 }

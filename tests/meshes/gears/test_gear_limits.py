@@ -10,7 +10,7 @@ import pytest
 
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from tests.support.paper_pairs import he_gear
 
 GEAR_ERRORS: list[tuple[str, dict[str, Any], str]] = [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.sector.flank_points import on_flank
 from tests.support.meshes.sector_cases import gear_and_start, nodes_of, sector
 

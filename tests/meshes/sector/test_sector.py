@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.profile import Profile
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import scaled_jacobians
@@ -15,6 +15,7 @@ from evolvent_meshes.sector.section import SectorResolution, section_mesh
 from evolvent_meshes.sector.sector import layer_heights, sector_mesh
 from tests.support.meshes.mesh_measures import covers_boundary, measure
 from tests.support.meshes.sector_cases import COARSE, GEARS, gear_and_start, nodes_of, sector, turned
+from tests.support.modified_gears import fully_modified
 
 
 @pytest.mark.parametrize("name", GEARS)
@@ -116,6 +117,16 @@ def test_flank_nodes_follow_the_modifications(name: str) -> None:
     np.testing.assert_allclose(np.hypot(*mesh.points[:, :2].T), np.hypot(*plain.points[:, :2].T), rtol=1e-13)
     for group in ("back", "bore", "cut_low", "cut_high"):
         assert moved[np.unique(mesh.facets[group])].max() < 1e-12
+
+
+@pytest.mark.parametrize(("name", "shape"), product(("yang pinion", "yang wheel", "he"), ("hexahedron", "tetrahedron")))
+def test_flank_nodes_lie_on_a_flank_with_every_modification(name: str, shape: str) -> None:
+    """Reliefs of tip, root and ends, crownings, slopes and twist, spur and helical: 1e-6 mm."""
+    gear, start = gear_and_start(name)
+    changed = fully_modified(gear)
+    mesh = sector_mesh(changed, replace(COARSE, flank_start_diameter=start), shape)
+    assert abs(Flank(changed).distance(nodes_of(mesh, "flank"))).max() < 1e-6
+    assert abs(Flank(gear).distance(nodes_of(mesh, "flank"))).max() > 0.03
 
 
 def test_unknown_cell_shape_is_refused() -> None:

@@ -10,7 +10,7 @@ import pytest
 from evolvent.dynamics.gear_inertia import equivalent_mass
 from evolvent.dynamics.iso_dynamic_factor import Accuracy, MethodB, coefficients, method_b, running_in, worn_relief
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from tests.solver.dynamics.test_iso_stiffness import example_pair, he_pair
 

@@ -17,8 +17,8 @@ from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
 from evolvent.gears.two_level.flank_refinement import coarse_body
 from evolvent.gears.two_level_gear import two_level_gear
 from evolvent_meshes.arrays import Floats, Ints
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.mesh.splitting import split

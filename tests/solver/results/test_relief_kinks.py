@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from evolvent.fem.material import contact_modulus
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.pressure.contact_slices import fitted_peak
 from evolvent.results.error_bars.position_spacing import limited_on_kinks
@@ -109,9 +110,24 @@ def test_extrapolation_on_a_kink_is_limited_to_its_pressure(missed: RunData) -> 
     assert known[:3] == pytest.approx(relief_kinks(missed, 0)[1].pressure) and known[3] == 2e3
 
 
+def test_root_relief_begins_with_a_kink() -> None:
+    """Problem: root relief of the pinion instead of the wheel's tip relief, both of 20 µm. Exact: its kink lies at the
+    roll length where it ends; the flank turns there by 20 µm over the length of the relief times r_b/ρ."""
+    run = light("wheel.tip_relief_um=0", "pinion.root_relief_um=20", "sweep.positions=8")
+    (kink,) = [kink for kink in relief_kinks(run, 0) if kink.relief == "root relief"]
+    pinion, (start, _) = run.pair.pinion, run.pair.path_of_contact
+    end = pinion.roll_length(run.pair.active_start_diameters[0] + 1.5)
+    first = run.pair.pitch_point_roll_lengths[0]
+    assert kink.roll_distance == pytest.approx(end - first, abs=1e-9)
+    angle = 20e-3 / (end - first - start) * pinion.base_radius / end
+    modulus = contact_modulus(*run.scene.materials())
+    assert kink.pressure == pytest.approx(kink.hertz * wedge_factor(angle * modulus / (np.pi * kink.hertz)), rel=1e-9)
+
+
 def test_parabolic_relief_has_no_kink() -> None:
-    """Exact: parabolic relief begins without a kink."""
+    """Exact: parabolic relief begins without a kink, at the tip and at the root."""
     parabolic = [f'{gear}.tip_relief_form="parabolic"' for gear in ("pinion", "wheel")]
+    parabolic += ["pinion.root_relief_um=5", 'pinion.root_relief_form="parabolic"']
     smooth = light(*parabolic, "sweep.positions=8")
     assert relief_kinks(smooth, 0) == [] and not friction_rows(smooth)[0].max_pressure_at_relief_start
     assert not any(WORDS in sentence for sentence in warnings_of(smooth, GOOD))

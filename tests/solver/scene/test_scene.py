@@ -180,8 +180,13 @@ def test_elements_per_contact_width_replaces_that_of_the_level() -> None:
 
 
 def test_spur_pairs_are_plane_unless_the_lead_varies() -> None:
-    """He: 2D; with crowning, misalignment, a helix or unequal widths: 3D."""
+    """He: 2D, with modifications of the profile, too; with those of the lead, misalignment, a helix or unequal widths:
+    3D."""
     assert gear_problem(scene_from_text(HE)).is_plane
+    for amount in ("tip_relief_um=5", "root_relief_um=5", "profile_crowning_um=5", "profile_slope_um=-5"):
+        assert gear_problem(scene_from_text(HE, [f"pinion.{amount}"])).is_plane
+    for amount in ("helix_slope_um=-5", "end_relief_um=5", "twist_um=-5"):
+        assert not gear_problem(scene_from_text(HE, [f"pinion.{amount}"])).is_plane
     for override in ("wheel.lead_crowning_um=5", "pair.misalignment_um=-5", "wheel.face_width_mm=19"):
         assert not gear_problem(scene_from_text(HE, [override])).is_plane
     assert not gear_problem(scene_from_text(YANG)).is_plane

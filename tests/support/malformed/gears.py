@@ -74,6 +74,38 @@ IMPOSSIBLE_GEARS: dict[str, tuple[str, list[str], str, str, str]] = {
         "130",
         "where on the involute",
     ),
+    "root relief above the tip": (
+        YANG,
+        ["wheel.root_relief_um=5", "wheel.root_relief_end_diameter_mm=150"],
+        "wheel.root_relief_end_diameter_mm",
+        "150",
+        "where on the involute the relief ends",
+    ),
+    "root relief below the active profile": (
+        YANG,
+        ["pinion.root_relief_um=5", "pinion.root_relief_end_diameter_mm=36"],
+        "pinion.root_relief_end_diameter_mm",
+        "36",
+        "where on the involute the relief ends",
+    ),
+    "profile from the root circle on": (
+        YANG,
+        ["pinion.profile_slope_um=5", "pinion.profile_control_diameter_mm=36"],
+        "pinion.profile_control_diameter_mm",
+        "36",
+        "where the evaluated profile begins",
+    ),
+    "end relief beyond mid-face": (
+        YANG,
+        ["wheel.end_relief_um=5", "wheel.end_relief_length_mm=9"],
+        "wheel.end_relief_length_mm",
+        "9",
+        "either end of the face",
+    ),
+    "slope and relief of the whole tip": (
+        YANG, ["pinion.tip_relief_um=400", "pinion.helix_slope_um=-450"], "pinion.helix_slope_um", "-450 (so",
+        "lower them",
+    ),
     "relief of the whole tip": (
         YANG, ["pinion.tip_relief_um=400", "pinion.lead_crowning_um=300"], "pinion.tip_relief_um", "400 (so",
         "lower them",

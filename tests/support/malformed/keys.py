@@ -79,6 +79,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "chart with an endless name": (YANG, [f'pinion.flank_csv="{"a" * 5000}"'], "pinion.flank_csv", '"aaa', "delete"),
     "chart without end": (YANG, ['pinion.flank_csv="/dev/zero"'], "pinion.flank_csv", "a device", "to a file"),
     # not supported
+    "form deviation": (YANG, ["pinion.profile_form_um=3"], "pinion.profile_form_um", "3", "delete it"),
     "tip chamfer": (YANG, ["pinion.tip_chamfer_mm=0.2"], "pinion.tip_chamfer_mm", "0.2", "delete it"),
     "speed": (YANG, ["pinion.rpm=3000"], "pinion.rpm", "3000", "delete it"),
     "speed of the load": (YANG, ["load.speed_rpm=3000"], "load.speed_rpm", "3000", "delete it"),
@@ -96,6 +97,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""
 
 UNSUPPORTED: dict[str, str] = {
+    "form deviation": "a chart as pinion.flank_csv can have it",
     "tip chamfer": "tip chamfers and rounded tip edges are not supported",
     "speed": "there is no time and no speed",
     "speed of the load": "did you mean dynamics.speed_rpm",

@@ -75,6 +75,22 @@ WRONG_VALUES: dict[str, tuple[str, list[str], str, str, str]] = {
     "relief of a metre": (YANG, ["pinion.tip_relief_um=1e6"], "pinion.tip_relief_um", "1000000", "give a number from"),
     "relief that adds": (YANG, ["pinion.tip_relief_um=-5"], "pinion.tip_relief_um", "-5", "give a number from"),
     "hollow lead": (YANG, ["pinion.lead_crowning_um=-5"], "pinion.lead_crowning_um", "-5", "give a number from"),
+    "root relief that adds": (YANG, ["wheel.root_relief_um=-5"], "wheel.root_relief_um", "-5", "give a number from 0"),
+    "hollow profile": (YANG, ["pinion.profile_crowning_um=-5"], "pinion.profile_crowning_um", "-5", "give a number"),
+    "end relief in mm": (YANG, ["pinion.end_relief_um=5000"], "pinion.end_relief_um", "5000", "give a number from 0"),
+    "end relief of no length": (
+        YANG, ["pinion.end_relief_um=5", "pinion.end_relief_length_mm=0"], "pinion.end_relief_length_mm", "0",
+        "delete the key",
+    ),
+    "profile slope in mm": (YANG, ["wheel.profile_slope_um=1e3"], "wheel.profile_slope_um", "1000", "from -500 to 500"),
+    "helix slope in mm": (YANG, ["wheel.helix_slope_um=-1e3"], "wheel.helix_slope_um", "-1000", "from -500 to 500"),
+    "twist in words": (YANG, ['wheel.twist_um="5 µm"'], "wheel.twist_um", '"5 µm"', "write the number alone"),
+    "root relief of another form": (
+        YANG, ["pinion.root_relief_form=circular"], "pinion.root_relief_form", '"circular"', '"linear" or "parabolic"',
+    ),
+    "control diameter of nothing": (
+        YANG, ["pinion.profile_control_diameter_mm=0"], "pinion.profile_control_diameter_mm", "0", "delete the key",
+    ),
     "misalignment in mm": (YANG, ["pair.misalignment_um=1e4"], "pair.misalignment_um", "10000", "give a number from"),
     "too fine": (YANG, ["mesh.elements_per_contact_width=1e9"], "mesh.elements_per_contact_width", "1000000000", "own"),
     "a thousand coefficients": (

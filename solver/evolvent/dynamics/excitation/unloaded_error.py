@@ -50,7 +50,7 @@ class RigidFlanks:
     def varies_over_the_face(self) -> bool:
         """Whether transverse sections differ in more than rotation, or are rotated."""
         gears = self.pair.gears
-        designed = any(gear.helix_angle or gear.modifications.lead_crowning_um for gear in gears)
+        designed = any(gear.helix_angle or gear.modifications.varies_over_the_face for gear in gears)
         charted = any(chart is not None and chart.varies_over_the_face for chart in self.charts)
         return bool(designed or charted or self.pair.misalignment_um)
 

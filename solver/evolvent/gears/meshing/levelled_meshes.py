@@ -13,8 +13,8 @@ from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.meshing.sector_sizes import finest_cells, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.sector import sector_mesh
 

@@ -84,7 +84,8 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
     stiffness = force / (single * width)
     whole = bearing(estimate.pair, force, stiffness)
     alone = {key: bearing(_only(estimate.pair, key), force, stiffness).share for key in given}
-    idle = [key for key in given if key.endswith("tip_relief_um") and given[key] > MOST_RELIEF * single]
+    reliefs = [key for key in given if key.endswith(("tip_relief_um", "root_relief_um"))]
+    idle = [key for key in reliefs if given[key] > MOST_RELIEF * single]
     named = [key for key in given if alone[key] < LEAST_SHARE or key in idle]
     if not named and whole.share < LEAST_SHARE:
         named = list(given)
@@ -99,10 +100,7 @@ def modification_warnings(problem: GearProblem) -> Iterator[str]:
 
 def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
     """A sentence on gears whose tips nothing relieves: the next tooth meets the deflected ones with its tip's edge."""
-    plain = [
-        member for member, gear, chart in zip(Member, problem.pair.gears, problem.flanks)
-        if chart is None and not gear.modifications.tip_relief_um
-    ]  # fmt: skip
+    plain = [member for member in Member if not _has_relieved_tip(problem, member)]
     if not plain:
         return
     estimate, gears = problem.hertz_estimate, "" if len(plain) == len(Member) else f" on the {plain[0].label}"
@@ -112,6 +110,13 @@ def tip_edge_warnings(problem: GearProblem) -> Iterator[str]:
     yield (
         f"No tip relief{gears}: tip edges may bear, as teeth deflect by about {deflection:.2g} µm; see tip_relief_um."
     )
+
+
+def _has_relieved_tip(problem: GearProblem, member: Member) -> bool:
+    """Whether something keeps a gear's tip off its mate: on its own flank, or on the mate's where they meet."""
+    own, mate = (problem.pair.gears[each].modifications for each in (member, member.mate))
+    relieved = own.tip_relief_um or own.profile_crowning_um or mate.root_relief_um or mate.profile_crowning_um
+    return problem.flanks[member] is not None or bool(relieved)
 
 
 def folding_warnings(
@@ -124,16 +129,17 @@ def folding_warnings(
 
 
 def too_much_relief(problem: GearProblem, member: Member, resolution: SectorResolution) -> TooMuchRelief | None:
-    """The error where relief and crowning take most of the thin layers away that lie below the flank; else None."""
-    depth, flank = 1e3 * sum(resolution.layer_depths), problem.pair.gears[member].modifications
-    taken = flank.tip_relief_um + flank.lead_crowning_um
+    """The error where modifications take most of the thin layers away that lie below the flank; else None."""
+    gear, depth = problem.pair.gears[member], 1e3 * sum(resolution.layer_depths)
+    half, roll = 0.5 * gear.face_width, np.array([gear.flank_depth.start, gear.flank_depth.tip])
+    taken = 1e3 * float(gear.flank_depth.at(*np.meshgrid(roll, np.array([-half, half]))).max())  # largest in a corner
     if taken < FOLDING * depth:
         return None
-    key = "tip_relief_um" if flank.tip_relief_um >= flank.lead_crowning_um else "lead_crowning_um"
+    key = gear.modifications.largest
     return TooMuchRelief(
-        f"{member.label}.{key}: found {getattr(flank, key):g} (relief and crowning take {taken:.4g} µm off); allowed: "
-        f"less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine; remedy: "
-        "lower it, raise the torque, or take a chart as flank_csv"
+        f"{member.label}.{key}: found {getattr(gear.modifications, key):g} (modifications take {taken:.4g} µm off); "
+        f"allowed: less than {FOLDING * depth:.3g} µm together: the wider the contact, the deeper the mesh is fine; "
+        "remedy: lower it, raise the torque, or take a chart as flank_csv"
     )
 
 
@@ -141,8 +147,7 @@ def _given(pair: GearPair) -> Mapping[str, float]:
     """Key -> modification [mm], of those that are not 0."""
     found = {"pair.misalignment_um": pair.misalignment_um}
     for member, gear in zip(Member, pair.gears):
-        keys = "tip_relief_um", "lead_crowning_um"
-        found |= {f"{member.label}.{key}": getattr(gear.modifications, key) for key in keys}
+        found |= {f"{member.label}.{key}": amount for key, amount in gear.modifications.amounts.items()}
     return {key: 1e-3 * value for key, value in found.items() if value}
 
 
@@ -151,9 +156,7 @@ def _only(pair: GearPair, key: str) -> GearPair:
 
     def bare(member: Member) -> GearParameters:
         gear, own = pair.gears[member], pair.gears[member].modifications
-        relief = own.tip_relief_um if key == f"{member.label}.tip_relief_um" else 0.0
-        crowning = own.lead_crowning_um if key == f"{member.label}.lead_crowning_um" else 0.0
-        return replace(gear, modifications=replace(own, tip_relief_um=relief, lead_crowning_um=crowning))
+        return replace(gear, modifications=own.only(key.removeprefix(f"{member.label}.")))
 
     pinion, wheel = (bare(member) for member in Member)
     tilt = pair.misalignment_um if key == "pair.misalignment_um" else 0.0

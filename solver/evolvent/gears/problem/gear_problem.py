@@ -151,7 +151,7 @@ class GearProblem:
         gears = self.pair.gears
         varies = (
             self.pair.pinion.helix_angle_deg, self.pair.misalignment_um,
-            *(gear.modifications.lead_crowning_um for gear in gears),
+            *(gear.modifications.varies_over_the_face for gear in gears),
             *(chart is not None and chart.varies_over_the_face for chart in self.flanks),
         )  # fmt: skip
         return not any(varies) and gears[0].face_width == gears[1].face_width

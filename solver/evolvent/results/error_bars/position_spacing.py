@@ -16,8 +16,9 @@ larger of this estimate and of one of the following:
   independent.
 
 Three effects are added for the largest pressure. The curve of an engagement ends at the limits of the tip-edge zones:
-where it rises towards a limit, it may rise by one step's growth more. At the start of a linear tip relief the largest
-pressure is known in closed form (`relief_kinks`): the bar extends to it, and extrapolation there is limited to it.
+where it rises towards a limit, it may rise by one step's growth more. Where a linear tip or root relief begins the
+largest pressure is known in closed form (`relief_kinks`): the bar extends to it, and extrapolation there is limited to
+it.
 Fitted peaks scatter with the place of the contact in the cells: two standard deviations are allowed for the largest of
 many values exceeding the largest of few.
 

@@ -14,6 +14,7 @@ from evolvent.results.figures.drive import line_load, load_sharing, losses, tran
 from evolvent.results.figures.flank import pressure_map
 from evolvent.results.figures.hertz import hertz_comparison
 from evolvent.results.figures.lines import has_lines, has_path_points, line_pressure_over_z, points_over_friction
+from evolvent.results.figures.modified_flanks import has_modifications, modified_flanks
 from evolvent.results.figures.stress import engagement_stress, tooth_stress
 from evolvent.results.figures.trend import friction_trend
 from evolvent.results.run_data import RunData
@@ -52,6 +53,8 @@ def figures(run: RunData) -> Iterator[tuple[str, Draw]]:
     if any(run.frictions):
         yield "11_friction_loss", losses
     yield "12_line_load", line_load
+    if has_modifications(run):
+        yield "13_flank_modifications", modified_flanks
 
 
 def _flat(draw: Draw, run: RunData) -> bytes:

@@ -117,7 +117,7 @@ def _edge_share(solved: SolvedPosition) -> float:
 
 
 def _about_relief(run: RunData) -> Iterator[str]:
-    """Warning of a largest pressure at the start of a linear tip relief."""
+    """Warning of a largest pressure where a linear tip or root relief begins."""
     curves = [(k, curve) for k, curve in enumerate(engagements(run)) if np.isfinite(curve.max_pressure).any()]
     kinks = [kink for k, curve in curves if (kink := peak_over_kink(run, k, curve.peak)) is not None]
     if not kinks:
@@ -125,11 +125,11 @@ def _about_relief(run: RunData) -> Iterator[str]:
     kink = max(kinks, key=lambda kink: kink.pressure)
     step = run.pair.pinion.base_radius * run.pitch / len(run.positions)
     yield (
-        f"The largest pressure occurs, or may occur between positions, where a linear tip relief begins "
+        f"The largest pressure occurs, or may occur between positions, where a linear {kink.relief} begins "
         f"(ξ = {signed(kink.roll_distance, 2)} mm): over that kink of the flank Hertz' pressure rises from "
         f"{brief(kink.hertz)} to about {brief(kink.pressure)} MPa within {2.0 * kink.half_range:.2g} mm, positions are "
         f"{step:.2g} mm apart, and the rise depends on how sharp the kink is manufactured; take "
-        'tip_relief_form = "parabolic", or more positions (sweep.positions).'
+        f'{kink.relief.replace(" ", "_")}_form = "parabolic", or more positions (sweep.positions).'
     )
 
 

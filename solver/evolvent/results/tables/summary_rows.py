@@ -117,8 +117,8 @@ class FrictionRow:
     """Whether it lies at the limit of a tip-edge zone, so that its value depends on the place of that limit, and so on
     the mesh, which its error bar leaves out."""
     max_pressure_at_relief_start: bool
-    """Whether it lies, or may lie between two positions, at the start of a linear tip relief. Over that kink of the
-    flank its value depends on how sharp the kink is."""
+    """Whether it lies, or may lie between two positions, where a linear tip or root relief begins. Over that kink
+    of the flank its value depends on how sharp the kink is."""
     mean_pressure_MPa: float
     """Mean over the engagement of the peak pressure p0 across the contact, averaged along the line between the tip-edge
     zones."""

@@ -29,6 +29,7 @@ from evolvent.scene.schema.wear import WearSection
 from evolvent.scene.skips import one_mesh_reason, skipped, switched_off
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import AMOUNTS
 from evolvent_meshes.gears.pair import GearPair
 
 HANDS = {1: "right", -1: "left"}
@@ -107,8 +108,6 @@ def _gear_rows(pair: GearPair) -> list[Row]:
         return _both(name, symbol, unit, digits, (getattr(gear, attribute) for gear in gears))
 
     tips = [gear.normal_thickness(gear.tip_diameter) for gear in gears]
-    reliefs = [gear.modifications.tip_relief_um for gear in gears]
-    crownings = [gear.modifications.lead_crowning_um for gear in gears]
     return [
         Row("teeth", "z", "", tuple(str(gear.z) for gear in gears)),
         Row("hand", "", "", tuple(_hand(gear) for gear in gears)),
@@ -127,9 +126,18 @@ def _gear_rows(pair: GearPair) -> list[Row]:
         _both("tip clearance to the mate's root", "c", "mm", 3, pair.tip_clearances),
         each("face width", "b", "mm", 3, "face_width"),
         each("bore diameter, held rigidly", "d_i", "mm", 3, "bore_diameter"),
-        _both("tip relief", "C_αa", "µm", 1, reliefs),
-        _both("lead crowning", "C_β", "µm", 1, crownings),
+        *_modification_rows(pair),
     ]
+
+
+def _modification_rows(pair: GearPair) -> list[Row]:
+    """Tip relief and lead crowning, and what else the flank of either gear has."""
+    each = [gear.modifications for gear in pair.gears]
+    shown = {"tip_relief_um", "lead_crowning_um"}.union(*(given.amounts for given in each))
+    return [
+        _both(*named, "µm", 1, (getattr(given, amount) for given in each))
+        for amount, named in AMOUNTS.items() if amount in shown
+    ]  # fmt: skip
 
 
 def _chart_rows(scene: Scene) -> list[Row]:
@@ -141,7 +149,7 @@ def _chart_rows(scene: Scene) -> list[Row]:
     deepest = ["–" if chart is None else fixed(1e3 * float(chart.depth.max()), 1) for chart in charts]
     return [
         Row("chart of the flank", "", "", tuple(files)),
-        Row("  missing at most, beside C_αa and C_β", "", "µm", tuple(deepest)),
+        Row("  missing at most, beside modifications", "", "µm", tuple(deepest)),
     ]
 
 

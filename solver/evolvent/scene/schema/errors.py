@@ -13,8 +13,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from evolvent.scene.schema.meant_value import expected, meant_value
-from evolvent.scene.schema.nearest_key import nearest_key, unit_conversion
+from evolvent.scene.schema.guesses.meant_value import expected, meant_value
+from evolvent.scene.schema.guesses.nearest_key import nearest_key, unit_conversion
 from evolvent.scene.schema.not_supported import not_supported
 from evolvent_meshes.errors import InputError
 

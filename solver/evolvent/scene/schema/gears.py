@@ -7,13 +7,11 @@ from typing import Literal, Self
 from pydantic import field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.flank import LENGTH, LONGEST, FlankKeys
 from evolvent.scene.schema.section import SceneSection, key
 
-LONGEST = 1e6
-"""Largest diameter and distance [mm]: a gear with 1000 teeth of module 50 has 71 m."""
 LEAST_HELIX = 1e-3
 """Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
-LENGTH = "a number above 0 up to 1e6, in mm"
 
 
 class PairSection(SceneSection):
@@ -66,8 +64,8 @@ ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "
 """Key of a diameter -> key of the coefficient that may be given instead."""
 
 
-class GearSection(SceneSection):
-    """[pinion] and [wheel]: one gear."""
+class BodyKeys(SceneSection):
+    """Tooth form and body of one gear."""
 
     teeth: int = key(
         "number of teeth z",
@@ -126,41 +124,6 @@ class GearSection(SceneSection):
         gt=0,
         le=LONGEST,
     )
-    tip_relief_um: float = key(
-        "tip relief: material taken off the flank at the tip",
-        "a number from 0 to 500, in µm",
-        default=0.0,
-        ge=0,
-        le=500,
-    )
-    tip_relief_start_diameter_mm: float | None = key(
-        "diameter at which the tip relief starts; d_a − m_n by default",
-        LENGTH,
-        "delete the key for the default",
-        default=None,
-        gt=0,
-        le=LONGEST,
-    )
-    tip_relief_form: Literal["linear", "parabolic"] = key(
-        "how the tip relief grows with the roll distance", '"linear" or "parabolic"', default="linear"
-    )
-    lead_crowning_um: float = key(
-        "lead crowning: material taken off the flank at its ends",
-        "a number from 0 to 500, in µm",
-        default=0.0,
-        ge=0,
-        le=500,
-    )
-    flank_csv: str | None = key(
-        "chart of the loaded flank, measured or worn: material that is missing from the designed flank; a path "
-        "relative to the scene's folder, or, given by --set, to the current folder",
-        "the name of a CSV file with diameter_mm, depth_um and perhaps z_mm",
-        "delete the key for flanks as designed",
-        default=None,
-        min_length=1,
-        max_length=1000,
-    )
-
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         for first, second in ALTERNATIVES.items():
@@ -169,3 +132,7 @@ class GearSection(SceneSection):
                 found = f"{shown(one)} and also {second} = {shown(two)}"
                 raise validation_error(InputProblem(first, found, "one of the two", f"delete {first} or {second}"))
         return self
+
+
+class GearSection(FlankKeys, BodyKeys):
+    """[pinion] and [wheel]: one gear."""

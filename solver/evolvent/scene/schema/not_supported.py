@@ -6,7 +6,6 @@ import re
 
 NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"chamfer|edge_?break|tip_?round", "tip chamfers and rounded tip edges are not supported, tip_relief_um is"),
-    (r"root_?relief", "root relief is not supported as a key; a chart as pinion.flank_csv can have it"),
     (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics]: quasi-static"),
     (r"power|kw", "there is no power without a speed: give the torque, load.torque_Nm"),
     (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
@@ -25,8 +24,7 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"fatigue|life|pitting|safety|cycles_to|root_?stress|spalling|scuffing", "ratings and lives are not computed"),
     (r"rough|asperit|waviness|texture", "roughness is not supported: flanks are smooth"),
     (r"pitch_?error|index_?error|runout|eccentric", "all teeth are alike: pitch errors and runout are not supported"),
-    (r"profile_?crowning|barrelling|helix_?(slope|relief|correction)|lead_?(slope|angle)|end_?relief|bias",
-     "not supported as a key; a chart as pinion.flank_csv can have it"),
+    (r"(profile|helix|lead)_?form|topograph", "not supported as a key; a chart as pinion.flank_csv can have it"),
     (r"backlash", "backlash follows from pair.centre_distance_mm and the profile shifts"),
     (r"(pair|pinion|wheel)\.((gear|pair)_?)?(type|kind)|(gear|pair)_?(type|kind)", "spur and helical external pairs "
      "only, told apart by pair.helix_angle_deg"),

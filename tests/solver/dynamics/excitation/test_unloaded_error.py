@@ -15,8 +15,8 @@ from evolvent.gears.problem.flank_deviations import FlankChart
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 
 NANOMETRE = 1e-6

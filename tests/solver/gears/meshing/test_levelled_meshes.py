@@ -21,11 +21,13 @@ from evolvent.gears.meshing.levelled_meshes import (
 )
 from evolvent.gears.meshing.sector_sizes import levelled_sizes, one_mesh_sizes
 from evolvent.gears.problem.gear_problem import GearOptions, GearProblem, MeshSettings
+from evolvent_meshes.gears.flank import Flank
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.gear_geometry import Modifications
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
+from tests.support.modified_gears import fully_modified
 from tests.support.paper_pairs import yang
 
 RELIEVED = Modifications(tip_relief_um=10.0, tip_relief_start_diameter=46.0, lead_crowning_um=5.0)
@@ -112,6 +114,14 @@ def test_the_coarse_sector_has_no_modifications() -> None:
     assert np.array_equal(sector.mesh.points, levelled_mesh(bare, Member.PINION).mesh.points)
     moved = meshed_gear(narrow(), Member.PINION).flank.points - meshed_gear(bare, Member.PINION).flank.points
     assert 15e-3 < np.linalg.norm(moved, axis=1).max() < 25e-3
+
+
+def test_flanks_in_levels_have_every_modification() -> None:
+    """All nodes of the finest level lie on the modified flank: 1e-6 mm."""
+    pair = narrow().pair
+    gear = fully_modified(pair.pinion)
+    changed = replace(narrow(), pair=replace(pair, pinion=gear))
+    assert np.abs(Flank(gear).distance(meshed_gear(changed, Member.PINION).flank.points)).max() < 1e-6
 
 
 def test_one_mesh_is_its_own_flank() -> None:

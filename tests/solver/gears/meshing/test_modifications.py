@@ -83,6 +83,9 @@ def test_bearing_share_of_relieved_tips_at_a_light_load() -> None:
     (("pair.misalignment_um=1000",), "pair.misalignment_um = 1000", 10),
     (("pinion.lead_crowning_um=500",), "pinion.lead_crowning_um = 500", 23),
     (("load.torque_Nm=5", "wheel.tip_relief_um=50"), "wheel.tip_relief_um = 50", 76),
+    (("pinion.helix_slope_um=-500",), "pinion.helix_slope_um = -500", 13),
+    (("wheel.end_relief_um=400", "wheel.end_relief_length_mm=9"), "wheel.end_relief_um = 400", 17),
+    (("load.torque_Nm=5", "pinion.root_relief_um=50"), "pinion.root_relief_um = 50", 81),
     (("load.torque_Nm=5", "pair.misalignment_um=3", "wheel.lead_crowning_um=2"),
      "pair.misalignment_um = 3 and wheel.lead_crowning_um = 2", 48),
 ])  # fmt: skip
@@ -106,6 +109,10 @@ def test_usual_modifications_are_not_warned_of() -> None:
     ((), "No tip relief: tip edges may bear, as teeth deflect by about 8.5 µm; see tip_relief_um."),
     (("wheel.tip_relief_um=10",), "No tip relief on the pinion: tip edges may bear"),
     (("pinion.tip_relief_um=10", "wheel.tip_relief_um=10"), ""),
+    (("pinion.tip_relief_um=10", "pinion.root_relief_um=10"), ""),  # which the wheel's tip meets
+    (("wheel.root_relief_um=10",), "No tip relief on the wheel: tip edges may bear"),
+    (("wheel.profile_crowning_um=10",), ""),
+    (("wheel.profile_slope_um=10",), "No tip relief: tip edges may bear"),
 ])  # fmt: skip
 def test_missing_tip_relief_is_warned_of(settings: tuple[str, ...], words: str) -> None:
     """He's pair, whose transmission error in single contact is 8.50 µm (quick): `check` names what is not relieved."""

@@ -31,8 +31,18 @@ def test_flank_charts_are_reported(tmp_path: Path) -> None:
     path.write_text("diameter_mm,depth_um\n120,2.0\n150,7.5\n170,1.0\n", encoding="utf-8")
     text = overview(spur_scene(f"wheel.flank_csv={path}"))
     assert re.search(r"chart of the flank +none worn_after_a_million\.csv$", text, re.MULTILINE)
-    assert re.search(r"missing at most, beside C_αa and C_β +µm +– +7\.5$", text, re.MULTILINE)
+    assert re.search(r"missing at most, beside modifications +µm +– +7\.5$", text, re.MULTILINE)
     assert "chart" not in overview(spur_scene())
+
+
+def test_modifications_are_reported_where_there_are_any() -> None:
+    """Tip relief and lead crowning always, others where either gear has them; twist of the wheel alone: 0 and −4 µm."""
+    plain, text = overview(spur_scene()), overview(spur_scene("wheel.twist_um=-4", "pinion.root_relief_um=6.5"))
+    assert re.search(r"^  tip relief +C_αa +µm +0\.0 +0\.0$", plain, re.MULTILINE)
+    assert "root relief" not in plain and "twist" not in plain
+    assert re.search(r"^  root relief +C_αf +µm +6\.5 +0\.0$", text, re.MULTILINE)
+    assert re.search(r"^  twist +S_α +µm +0\.0 +-4\.0$", text, re.MULTILINE)
+    assert "profile crowning" not in text
 
 
 @pytest.mark.parametrize("name", SCENES)

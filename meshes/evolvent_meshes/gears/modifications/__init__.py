@@ -1,0 +1,1 @@
+"""Modifications of a flank: their amounts, and the depth that they have at a point."""

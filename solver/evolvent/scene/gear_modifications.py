@@ -1,0 +1,35 @@
+"""The flank modifications of a scene's gears, with the defaults that are derived from the pair."""
+
+from __future__ import annotations
+
+from evolvent.scene.schema.flank import FlankKeys
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.modifications.modifications import Modifications
+
+END_RELIEF_LENGTH = 0.1
+"""Of the face width, at either end."""
+
+
+def modifications_of(keys: FlankKeys, gear: GearParameters, active_start: float) -> Modifications:
+    """The modifications of a gear.
+
+    gear: as yet without them. active_start: diameter d_Nf at which its active profile begins [mm].
+    """
+    module, control = gear.normal_module, keys.profile_control_diameter_mm or max(active_start, gear.root_form_diameter)
+    return Modifications(
+        tip_relief_um=keys.tip_relief_um,
+        tip_relief_start_diameter=keys.tip_relief_start_diameter_mm or gear.tip_diameter - module,
+        tip_relief_parabolic=keys.tip_relief_form == "parabolic",
+        lead_crowning_um=keys.lead_crowning_um,
+        profile_crowning_um=keys.profile_crowning_um,
+        profile_slope_um=keys.profile_slope_um,
+        helix_slope_um=keys.helix_slope_um,
+        end_relief_um=keys.end_relief_um,
+        end_relief_length=keys.end_relief_length_mm or END_RELIEF_LENGTH * gear.face_width,
+        end_relief_parabolic=keys.end_relief_form == "parabolic",
+        root_relief_um=keys.root_relief_um,
+        root_relief_end_diameter=keys.root_relief_end_diameter_mm or control + 0.5 * module,
+        root_relief_parabolic=keys.root_relief_form == "parabolic",
+        twist_um=keys.twist_um,
+        profile_control_diameter=control,
+    )

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
-from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 
 RACK_TIP_RADIUS = 0.38
@@ -45,11 +45,12 @@ class GearParameters(GearGeometry):
         bore_diameter: float,
         helix_angle_deg: float = 0.0,
         profile_shift: float = 0.0,
+        tooth_thickness_allowance_um: float = 0.0,
         hand: int = 1,
         modifications: Modifications | None = None,
     ) -> GearParameters:
         """A gear from the coefficients of its basic rack, which are multiples of m_n: d_a = d + 2 m_n (h_aP* + x + k),
-        d_f = d − 2 m_n (h_fP* − x), ISO 21771:2007, 4.5.
+        d_f = d − 2 m_n (h_fP* − x_E), ISO 21771:2007, 4.5; x_E is x but for a tooth thickness allowance.
 
         addendum_coefficient: h_aP*.
         dedendum_coefficient: h_fP*.
@@ -69,7 +70,7 @@ class GearParameters(GearGeometry):
             normal_module=normal_module, normal_pressure_angle_deg=normal_pressure_angle_deg,
             addendum_coefficient=addendum_coefficient, dedendum_coefficient=dedendum_coefficient,
             tip_shortening_coefficient=tip_shortening_coefficient, helix_angle_deg=helix_angle_deg,
-            profile_shift=profile_shift,
+            profile_shift=profile_shift, tooth_thickness_allowance_um=tooth_thickness_allowance_um,
         )  # fmt: skip
         if rack_tip_radius_coefficient is not None:
             require_numbers(rack_tip_radius_coefficient=rack_tip_radius_coefficient)
@@ -82,15 +83,17 @@ class GearParameters(GearGeometry):
             if rack_tip_radius_coefficient is None
             else rack_tip_radius_coefficient * normal_module
         )
+        generating = profile_shift + thickness_shift(tooth_thickness_allowance_um, normal_module, angle)
         return cls(
             z=z,
             normal_module=normal_module,
             normal_pressure_angle_deg=normal_pressure_angle_deg,
             helix_angle_deg=helix_angle_deg,
             profile_shift=profile_shift,
+            tooth_thickness_allowance_um=tooth_thickness_allowance_um,
             face_width=face_width,
             tip_diameter=d + 2.0 * normal_module * addendum,
-            root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - profile_shift),
+            root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - generating),
             rack_tip_radius=rounded,
             hand=hand,
             bore_diameter=bore_diameter,

@@ -16,6 +16,11 @@ def involute_function(angle: float) -> float:
     return math.tan(angle) - angle
 
 
+def thickness_shift(allowance_um: float, normal_module: float, normal_pressure_angle: float) -> float:
+    """x_E − x = A_sn / (2 m_n tan α_n) of a tooth thickness allowance [µm]; m_n [mm], α_n [rad]."""
+    return 1e-3 * allowance_um / (2.0 * normal_module * math.tan(normal_pressure_angle))
+
+
 @dataclass(frozen=True)
 class Modifications:
     """Modifications of the loaded flank: material removed, measured normal to the exact involute helicoid.
@@ -46,6 +51,8 @@ class GearGeometry:
     normal_pressure_angle_deg: α_n [°].
     helix_angle_deg: β at the reference cylinder, not negative [°].
     profile_shift: coefficient x.
+    tooth_thickness_allowance_um: A_sn, normal tooth thickness at the reference circle less that of x, not positive;
+        either flank lies half of it deeper [µm].
     face_width: b [mm].
     tip_diameter: d_a [mm].
     root_diameter: d_f [mm].
@@ -60,6 +67,7 @@ class GearGeometry:
     normal_pressure_angle_deg: float
     helix_angle_deg: float = 0.0
     profile_shift: float = 0.0
+    tooth_thickness_allowance_um: float = 0.0
     face_width: float
     tip_diameter: float
     root_diameter: float
@@ -130,13 +138,20 @@ class GearGeometry:
 
     @property
     def dedendum_coefficient(self) -> float:
-        """h_fP* = (d − d_f) / 2m_n + x [4.5]."""
-        return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.profile_shift
+        """h_fP* = (d − d_f) / 2m_n + x_E [4.5]."""
+        return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.generating_shift
+
+    @property
+    def generating_shift(self) -> float:
+        """x_E = x + A_sn / (2 m_n tan α_n), generating profile shift coefficient: that of the rack which cuts the tooth
+        with its thickness allowance [7.5]."""
+        module, angle = self.normal_module, self.normal_pressure_angle
+        return self.profile_shift + thickness_shift(self.tooth_thickness_allowance_um, module, angle)
 
     @property
     def tooth_half_angle(self) -> float:
-        """ψ = (π + 4x tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
-        return (math.pi + 4.0 * self.profile_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
+        """ψ = (π + 4 x_E tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
+        return (math.pi + 4.0 * self.generating_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
 
     @cached_property
     def base_half_angle(self) -> float:
@@ -188,6 +203,6 @@ class GearGeometry:
         the rack, which is half a space width from the centre line of the rack tooth at the pitch line.
         """
         angle, radius = self.normal_pressure_angle, self.rack_tip_radius
-        half_space = self.normal_module * (math.pi / 4.0 - self.profile_shift * math.tan(angle))
+        half_space = self.normal_module * (math.pi / 4.0 - self.generating_shift * math.tan(angle))
         centre = radius - (self.reference_diameter - self.root_diameter) / 2.0
         return half_space + centre * math.tan(angle) - radius / math.cos(angle)

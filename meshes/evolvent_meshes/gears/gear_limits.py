@@ -15,6 +15,8 @@ FEWEST_TEETH = 5
 """Smallest number of teeth."""
 SMALLEST_RIM = 1.0
 """Smallest thickness of the rim between bore and root, in normal modules."""
+MOST_ALLOWANCE = 0.3
+"""Largest tooth thickness allowance, in normal modules."""
 
 
 def check_gear(gear: GearGeometry) -> None:
@@ -47,6 +49,7 @@ def check_types(gear: GearGeometry) -> None:
     require_numbers(
         normal_module=gear.normal_module, normal_pressure_angle_deg=gear.normal_pressure_angle_deg,
         helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
+        tooth_thickness_allowance_um=gear.tooth_thickness_allowance_um,
         tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
         bore_diameter=gear.bore_diameter, tip_relief_um=given.tip_relief_um, lead_crowning_um=given.lead_crowning_um,
     )  # fmt: skip
@@ -63,6 +66,9 @@ def check_numbers(gear: GearGeometry) -> None:
     check_angles(gear.normal_pressure_angle_deg, gear.helix_angle_deg)
     shift, radius = gear.profile_shift, gear.rack_tip_radius
     require(-3.0 <= shift <= 3.0, "profile_shift", shift, "-3 to 3", "Give the coefficient x, not x times the module.")
+    allowance, most = gear.tooth_thickness_allowance_um, 1e3 * MOST_ALLOWANCE * gear.normal_module
+    remedy = "It makes the tooth thinner: give it in µm and negative, for both flanks together."
+    require(-most <= allowance <= 0.0, "tooth_thickness_allowance_um", allowance, f"{-most:.6g} to 0 µm", remedy)
     require(0.0 <= radius < math.inf, "rack_tip_radius", radius, "a finite radius from 0 mm on", "Give it in mm.")
 
 

@@ -12,7 +12,7 @@ from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
-from evolvent_meshes.gears.gear_geometry import Modifications, involute_function
+from evolvent_meshes.gears.gear_geometry import Modifications, involute_function, thickness_shift
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
 
@@ -35,6 +35,7 @@ GEAR_KEYS = {
     "hand": "hand",
     "face_width": "face_width_mm",
     "profile_shift": "profile_shift",
+    "tooth_thickness_allowance_um": "tooth_thickness_allowance_um",
     "tip_diameter": "tip_diameter_mm",
     "root_diameter": "root_diameter_mm",
     "rack_tip_radius": "rack_tip_radius_mm",
@@ -94,7 +95,7 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
     """
     module = pair.normal_module_mm
     reference = _reference_diameter(pair, gear)
-    dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - gear.profile_shift
+    dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - _generating_shift(pair, gear)
     tip = tip_diameter(pair, gear, alteration)
     root = _or(gear.root_diameter_mm, reference - 2 * module * dedendum)
     return GearParameters(
@@ -103,6 +104,7 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         normal_pressure_angle_deg=pair.normal_pressure_angle_deg,
         helix_angle_deg=pair.helix_angle_deg,
         profile_shift=gear.profile_shift,
+        tooth_thickness_allowance_um=gear.tooth_thickness_allowance_um,
         face_width=gear.face_width_mm,
         tip_diameter=tip,
         root_diameter=root,
@@ -168,7 +170,13 @@ def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float
     depth: of the rack tooth below the pitch line [mm].
     """
     angle = math.radians(pair.normal_pressure_angle_deg)
-    return usual_rack_tip_radius(pair.normal_module_mm, angle, depth / pair.normal_module_mm + gear.profile_shift)
+    dedendum = depth / pair.normal_module_mm + _generating_shift(pair, gear)
+    return usual_rack_tip_radius(pair.normal_module_mm, angle, dedendum)
+
+
+def _generating_shift(pair: PairSection, gear: GearSection) -> float:
+    angle = math.radians(pair.normal_pressure_angle_deg)
+    return gear.profile_shift + thickness_shift(gear.tooth_thickness_allowance_um, pair.normal_module_mm, angle)
 
 
 def _reference_diameter(pair: PairSection, gear: GearSection) -> float:

@@ -82,6 +82,15 @@ class GearSection(SceneSection):
     profile_shift: float = key(
         "profile shift coefficient x, times m_n", "a number from -2 to 2", default=0.0, ge=-2, le=2
     )
+    tooth_thickness_allowance_um: float = key(
+        "tooth thickness allowance A_sn: normal tooth thickness at the reference circle less that of x; half of it is "
+        "taken off either flank, the rack cuts at x_E = x + A_sn / (2 m_n tan α_n)",
+        "a number from -15000 to 0, at most 0.3 m_n, in µm",
+        "give it negative, it makes the tooth thinner",
+        default=0.0,
+        ge=-15000,
+        le=0,
+    )
     tip_diameter_mm: float | None = key(
         "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
@@ -97,7 +106,7 @@ class GearSection(SceneSection):
         "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     dedendum_coefficient: float | None = key(
-        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x); 1.25 if there is no root_diameter_mm",
+        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x_E); 1.25 if there is no root_diameter_mm",
         "a number from 0.1 to 3, times m_n",
         default=None,
         ge=0.1,

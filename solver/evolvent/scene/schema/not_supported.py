@@ -27,7 +27,8 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"pitch_?error|index_?error|runout|eccentric", "all teeth are alike: pitch errors and runout are not supported"),
     (r"profile_?crowning|barrelling|helix_?(slope|relief|correction)|lead_?(slope|angle)|end_?relief|bias",
      "not supported as a key; a chart as pinion.flank_csv can have it"),
-    (r"backlash", "backlash follows from pair.centre_distance_mm and the profile shifts"),
+    (r"backlash", "backlash follows from pair.centre_distance_mm, the profile shifts and "
+     "tooth_thickness_allowance_um"),
     (r"(pair|pinion|wheel)\.((gear|pair)_?)?(type|kind)|(gear|pair)_?(type|kind)", "spur and helical external pairs "
      "only, told apart by pair.helix_angle_deg"),
     (r"web|rim|spoke", "the body is a full ring from bore_diameter_mm to the root"),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from evolvent_meshes.gears.errors import require_numbers
 from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
+from evolvent_meshes.gears.support import Support
 
 RACK_TIP_RADIUS = 0.38
 """ρ_fP* of the basic rack of ISO 53, profile A."""
@@ -43,6 +44,7 @@ class GearParameters(GearGeometry):
         tip_shortening_coefficient: float = 0.0,
         face_width: float,
         bore_diameter: float,
+        support: Support | None = None,
         helix_angle_deg: float = 0.0,
         profile_shift: float = 0.0,
         tooth_thickness_allowance_um: float = 0.0,
@@ -97,5 +99,6 @@ class GearParameters(GearGeometry):
             rack_tip_radius=rounded,
             hand=hand,
             bore_diameter=bore_diameter,
+            support=Support() if support is None else support,
             modifications=Modifications() if modifications is None else modifications,
         )

@@ -10,6 +10,8 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from evolvent_meshes.gears.support import Support
+
 
 def involute_function(angle: float) -> float:
     """Involute function inv α = tan α − α [4.3.9], angle in rad."""
@@ -59,6 +61,7 @@ class GearGeometry:
     rack_tip_radius: ρ_fP, root fillet radius of the basic rack: tip radius of the generating rack, normal section [mm].
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
+    support: how it is held there.
     modifications: of the loaded flank.
     """
 
@@ -74,6 +77,7 @@ class GearGeometry:
     rack_tip_radius: float
     hand: int = 1
     bore_diameter: float
+    support: Support = field(default_factory=Support)
     modifications: Modifications = field(default_factory=Modifications)
 
     @property
@@ -130,6 +134,11 @@ class GearGeometry:
     def twist(self) -> float:
         """Rotation of the transverse section about +z per mm of z [rad/mm], hand·tan β / (d/2) = hand·tan β_b / r_b."""
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
+
+    @property
+    def rim_thickness(self) -> float:
+        """s_R, from the bore to the root circle."""
+        return (self.root_diameter - self.bore_diameter) / 2.0
 
     @property
     def tip_coefficient(self) -> float:

@@ -7,6 +7,7 @@ from typing import Any
 
 from evolvent_meshes.gears.errors import require, require_instance, require_numbers
 from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
+from evolvent_meshes.gears.support import check_support
 from evolvent_meshes.input_checks import is_index, shown
 
 SMALLEST_BORE = 0.01
@@ -25,6 +26,7 @@ def check_gear(gear: GearGeometry) -> None:
     check_types(gear)
     check_numbers(gear)
     check_diameters(gear)
+    check_support(gear.support, gear.face_width)
     check_rack(gear)
     check_modifications(gear)
 

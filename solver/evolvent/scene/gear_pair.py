@@ -10,11 +10,12 @@ from scipy.optimize import brentq
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
-from evolvent_meshes.gears.errors import GeometryError
+from evolvent_meshes.gears.errors import GeometryError, require
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
 from evolvent_meshes.gears.gear_geometry import Modifications, involute_function, thickness_shift
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
+from evolvent_meshes.gears.support import Support
 
 ADDENDUM, DEDENDUM = 1.0, 1.25
 """Basic rack of ISO 53, profile A, in normal modules."""
@@ -40,6 +41,8 @@ GEAR_KEYS = {
     "root_diameter": "root_diameter_mm",
     "rack_tip_radius": "rack_tip_radius_mm",
     "bore_diameter": "bore_diameter_mm",
+    "support_width": "support_width_mm",
+    "support_offset": "support_offset_mm",
     "tip_relief_um": "tip_relief_um",
     "tip_relief_start_diameter": "tip_relief_start_diameter_mm",
     "lead_crowning_um": "lead_crowning_um",
@@ -110,7 +113,8 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         root_diameter=root,
         rack_tip_radius=_or(gear.rack_tip_radius_mm, _usual_rack_tip(pair, gear, (reference - root) / 2)),
         hand=hand,
-        bore_diameter=_or(gear.bore_diameter_mm, root / 2),
+        bore_diameter=_bore_diameter(gear, root),
+        support=Support(gear.support_width_mm, gear.support_offset_mm, gear.rim_thickness_mm is not None),
         modifications=Modifications(
             tip_relief_um=gear.tip_relief_um,
             tip_relief_start_diameter=_or(gear.tip_relief_start_diameter_mm, tip - module),
@@ -118,6 +122,16 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
             lead_crowning_um=gear.lead_crowning_um,
         ),
     )
+
+
+def _bore_diameter(gear: GearSection, root: float) -> float:
+    """Bore diameter [mm], a rim's inner one; root: diameter [mm]. Raises GeometryError for rims that fill the gear."""
+    rim = gear.rim_thickness_mm
+    if rim is None:
+        return _or(gear.bore_diameter_mm, root / 2)
+    allowed, remedy = f"below {root / 2:.6g} mm, half of the root diameter", "Give bore_diameter_mm for a thick body."
+    require(2 * rim < root, "bore_diameter", rim, allowed, remedy)
+    return root - 2 * rim
 
 
 def tip_diameter(pair: PairSection, gear: GearSection, alteration: float) -> float:

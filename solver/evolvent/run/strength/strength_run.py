@@ -28,6 +28,7 @@ from evolvent.strength.results.tables import (
     STRENGTH,
     FrictionRoots,
     StrengthRow,
+    formula_rows,
     root_stress_rows,
     strength_rows,
     write_strength,
@@ -49,10 +50,12 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
 
     scene: its wear is left out. overwrite: replace what an earlier call has written.
 
-    Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
+    Raises InputError where the standard does not cover the gears, before anything is computed; FolderError,
+    MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
+    _loads_of_standard(scene)
     on_first(comm, lambda: _check(out, overwrite))
     dolfinx_compat.silence_logs()
     with Progress(hidden=hidden) as progress:
@@ -66,6 +69,16 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
         progress.stage(OUTPUT)
         said = on_first(comm, lambda: _written(scene, fine, coarse, out))
     return [*said, *([failure] if failure else [])]
+
+
+def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
+    """What loads the roots of pinion and wheel. Raises InputError where the standard's formulas do not hold for them.
+    """
+    problem, section = gear_problem(scene), scene.strength or StrengthSection()
+    pinion, wheel = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
+    for load in (pinion, wheel):
+        tuple(formula_rows(load, section.editions, section.tolerance_class or NO_DEEP_TEETH))
+    return pinion, wheel
 
 
 def _check(out: Path, overwrite: bool) -> None:
@@ -108,15 +121,14 @@ def _written(
     out: Path,
 ) -> list[str]:  # fmt: skip
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
-    section, problem = scene.strength or StrengthSection(), gear_problem(scene)
+    section = scene.strength or StrengthSection()
     found = [
         FrictionRoots(friction, own, None if coarse is None else coarse[index], scene.mesh.order)
         for index, (friction, own) in enumerate(zip(scene.contact.friction, fine))
     ]
     tolerance = section.tolerance_class or NO_DEEP_TEETH
     rows: list[StrengthRow] = []
-    for member in Member:
-        load = RootLoad(problem.pair, member, problem.pinion_torque)
+    for load in _loads_of_standard(scene):
         rows += strength_rows(load, found, section.editions, tolerance)
 
     def drawn() -> bytes:

@@ -14,7 +14,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 def gear_lines(pair: GearPair) -> list[Line]:
     """Of each gear, where one of the two has the input from which they follow."""
-    return _thickness(pair)
+    return [*_thickness(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
@@ -34,6 +34,17 @@ def _thickness(pair: GearPair) -> list[Line]:
             pair, "normal tooth thickness", "s_n", "mm", 4, lambda gear: gear.normal_thickness(gear.reference_diameter)
         ),
     ]
+
+
+def _support(pair: GearPair) -> list[Line]:
+    lines = []
+    if any(gear.support.is_rim for gear in pair.gears):
+        rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
+        lines.append(("rim, held at its inside", "s_R", "mm", rims))
+    if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
+        low, high = (tuple(fixed(gear.support.ends(gear.face_width)[i], 3) for gear in pair.gears) for i in (0, 1))
+        lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
+    return lines
 
 
 def _each(

@@ -62,8 +62,12 @@ class PairSection(SceneSection):
         return value
 
 
-ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}
-"""Key of a diameter -> key of the coefficient that may be given instead."""
+ALTERNATIVES = {
+    "tip_diameter_mm": "addendum_coefficient",
+    "root_diameter_mm": "dedendum_coefficient",
+    "bore_diameter_mm": "rim_thickness_mm",
+}
+"""Key of a diameter -> key that may be given instead."""
 
 
 class GearSection(SceneSection):
@@ -134,6 +138,30 @@ class GearSection(SceneSection):
         default=None,
         gt=0,
         le=LONGEST,
+    )
+    rim_thickness_mm: float | None = key(
+        "in place of the bore: thickness s_R of a rim below the root circle; it is held rigidly at its inside, web and "
+        "hub are left out",
+        LENGTH,
+        "delete the key for a gear with a bore",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    support_width_mm: float | None = key(
+        "axial length over which the bore is held, for a shaft through a part of the face; by default the whole face",
+        LENGTH,
+        "delete the key for the default",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    support_offset_mm: float = key(
+        "axial position of the middle of that length, from mid-face towards z > 0",
+        "a number from -500 to 500, in mm",
+        default=0.0,
+        ge=-500,
+        le=500,
     )
     tip_relief_um: float = key(
         "tip relief: material taken off the flank at the tip",

@@ -58,6 +58,8 @@ class GearGeometry:
     face_width: b [mm].
     tip_diameter: d_a [mm].
     root_diameter: d_f [mm].
+    tip_chamfer_um: radial height of a chamfer between flank and tip circle, transverse section; 0: none [µm].
+    tip_rounding_um: radius of a rounding in its place; 0: none [µm].
     rack_tip_radius: ρ_fP, root fillet radius of the basic rack: tip radius of the generating rack, normal section [mm].
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
@@ -73,6 +75,8 @@ class GearGeometry:
     tooth_thickness_allowance_um: float = 0.0
     face_width: float
     tip_diameter: float
+    tip_chamfer_um: float = 0.0
+    tip_rounding_um: float = 0.0
     root_diameter: float
     rack_tip_radius: float
     hand: int = 1
@@ -134,6 +138,20 @@ class GearGeometry:
     def twist(self) -> float:
         """Rotation of the transverse section about +z per mm of z [rad/mm], hand·tan β / (d/2) = hand·tan β_b / r_b."""
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
+
+    @cached_property
+    def tip_form_diameter(self) -> float:
+        """d_Fa, tip form diameter, at which the involute ends: d_a, or where a chamfer or a rounding begins [4.5].
+
+        A rounding of radius R touches the tip circle from within and the involute at its roll length ρ_Fa: its centre
+        lies on the normal there, (ρ_Fa − R)² + r_b² = (r_a − R)². The base diameter where there is none.
+        """
+        if not self.tip_rounding_um:
+            return self.tip_diameter - 2e-3 * self.tip_chamfer_um
+        radius = 1e-3 * self.tip_rounding_um
+        centre = max(self.tip_diameter / 2.0 - radius, self.base_radius)
+        along = math.sqrt(centre**2 - self.base_radius**2)
+        return 2.0 * math.hypot(self.base_radius, radius + along) if along else self.base_diameter
 
     @property
     def rim_thickness(self) -> float:

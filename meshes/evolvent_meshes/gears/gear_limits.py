@@ -8,6 +8,7 @@ from typing import Any
 from evolvent_meshes.gears.errors import require, require_instance, require_numbers
 from evolvent_meshes.gears.gear_geometry import GearGeometry, Modifications
 from evolvent_meshes.gears.support import check_support
+from evolvent_meshes.gears.tip_edge import tip_edge
 from evolvent_meshes.input_checks import is_index, shown
 
 SMALLEST_BORE = 0.01
@@ -16,6 +17,12 @@ FEWEST_TEETH = 5
 """Smallest number of teeth."""
 SMALLEST_RIM = 1.0
 """Smallest thickness of the rim between bore and root, in normal modules."""
+LEAST_EDGE, MOST_EDGE = 0.03, 0.3
+"""Smallest and largest chamfer or rounding of a tip, in normal modules: beside smaller ones cells are too thin."""
+LEAST_LAND = 0.05
+"""Smallest width of the tip between them, in normal modules."""
+STEEPEST_FLANK = math.radians(42.0)
+"""Largest pressure angle at the tip form circle with a chamfer: at 45° both are one line."""
 MOST_ALLOWANCE = 0.3
 """Largest tooth thickness allowance, in normal modules."""
 
@@ -28,6 +35,7 @@ def check_gear(gear: GearGeometry) -> None:
     check_diameters(gear)
     check_support(gear.support, gear.face_width)
     check_rack(gear)
+    check_tip_edge(gear)
     check_modifications(gear)
 
 
@@ -53,6 +61,7 @@ def check_types(gear: GearGeometry) -> None:
         helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
         tooth_thickness_allowance_um=gear.tooth_thickness_allowance_um,
         tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
+        tip_chamfer_um=gear.tip_chamfer_um, tip_rounding_um=gear.tip_rounding_um,
         bore_diameter=gear.bore_diameter, tip_relief_um=given.tip_relief_um, lead_crowning_um=given.lead_crowning_um,
     )  # fmt: skip
     if given.tip_relief_start_diameter is not None:
@@ -162,6 +171,31 @@ def check_rack(gear: GearGeometry) -> None:
     )
 
 
+def check_tip_edge(gear: GearGeometry) -> None:
+    """Chamfer or rounding of the tip: one of the two, off the fillet, a tip land between. Raises GeometryError."""
+    chamfer, rounding, module = gear.tip_chamfer_um, gear.tip_rounding_um, 1e3 * gear.normal_module
+    least, most = LEAST_EDGE * module, MOST_EDGE * module
+    remedy = "It is a length in µm."
+    for key, value in (("tip_chamfer_um", chamfer), ("tip_rounding_um", rounding)):
+        require(value == 0.0 or least <= value <= most, key, value, f"0, or {least:.4g} to {most:.4g} µm", remedy)
+    require(not (chamfer and rounding), "tip_chamfer_um", chamfer, "one of chamfer and rounding", "Leave out one.")
+    if (edge := tip_edge(gear)) is None:
+        return
+    key, value = ("tip_chamfer_um", chamfer) if chamfer else ("tip_rounding_um", rounding)
+    land, form = 2.0 * gear.tip_diameter * edge.end[1] / 2.0, gear.tip_form_diameter
+    require(
+        form > gear.root_form_diameter and land >= LEAST_LAND * gear.normal_module, key, value,
+        f"an edge that leaves an involute and a tip land of {LEAST_LAND * gear.normal_module:.4g} mm (it leaves "
+        f"{max(land, 0.0):.4g} mm)", "Make it smaller.",
+    )  # fmt: skip
+    steepest = math.acos(min(1.0, gear.base_diameter / form))
+    require(
+        not chamfer or steepest < STEEPEST_FLANK, key, value,
+        f"none where the flank leans {math.degrees(steepest):.3g}° at the tip: a chamfer of 45° cuts nothing there",
+        "Give a rounding instead.",
+    )  # fmt: skip
+
+
 def check_modifications(gear: GearGeometry) -> None:
     """Modifications: not negative, less than the tooth's thickness, starting on the involute. Raises GeometryError."""
     given = gear.modifications
@@ -178,7 +212,7 @@ def check_modifications(gear: GearGeometry) -> None:
     )
     start = given.tip_relief_start_diameter
     if given.tip_relief_um > 0.0:
-        low, high = gear.root_form_diameter, gear.tip_diameter
+        low, high = gear.root_form_diameter, gear.tip_form_diameter
         require(
             start is not None and low <= start < high,
             "tip_relief_start_diameter",

@@ -91,5 +91,5 @@ def _kinks(pair: GearPair) -> Iterator[tuple[float, float, float]]:
             continue
         ρ = float(gear.roll_length(start))
         roll = gear.base_radius / ρ  # an involute's arc is ρ²/2r_b
-        slope = MICROMETRE * relief.tip_relief_um / (float(gear.roll_length(gear.tip_diameter)) - ρ)
+        slope = MICROMETRE * relief.tip_relief_um / (float(gear.roll_length(gear.tip_form_diameter)) - ρ)
         yield member.sign * (ρ - pitch_point), slope * roll, roll

@@ -147,7 +147,7 @@ class Scene(SceneSection):
         if given.flank_csv is None:
             return None
         pair, path, index = self.gear_pair(), Path(given.flank_csv), GEARS.index(name)
-        active = pair.active_start_diameters[index], pair.gears[index].tip_diameter
+        active = pair.active_start_diameters[index], pair.gears[index].tip_form_diameter
         return FlankChart.read(path).checked(path, pair.gears[index], active)
 
     def gear_pair(self) -> GearPair:

@@ -38,5 +38,18 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
     "line support": (YANG, ["wheel.support_width_mm=0.1"], "wheel.support_width_mm", "0.1", "leave it out"),
     "offset of the whole face": (YANG, ["wheel.support_offset_mm=2"], "wheel.support_offset_mm", "2", "leave the off"),
     "web": (YANG, ["wheel.web_thickness_mm=8"], "wheel.web_thickness_mm", "8", "delete it"),
+    "chamfer and rounding": (
+        YANG, ["pinion.tip_chamfer_um=100", "pinion.tip_rounding_um=100"], "pinion.tip_chamfer_um", "100",
+        "leave out one",
+    ),
+    "rounding as a burr": (YANG, ["pinion.tip_rounding_um=5"], "pinion.tip_rounding_um", "5", "in µm"),
+    "rounding without a tip": (
+        YANG, ["pinion.tip_rounding_um=600", "pinion.tip_diameter_mm=49"], "pinion.tip_rounding_um", "600", "make it sm",
+    ),
+    "negative chamfer": (YANG, ["wheel.tip_chamfer_um=-100"], "wheel.tip_chamfer_um", "-100", "give 0"),
+    "chamfer that loses contact": (
+        HE, ["pinion.tip_chamfer_um=900", "wheel.tip_chamfer_um=900", "pair.centre_distance_mm=151.4"],
+        "pair.centre_distance_mm", "151.4", "raise the tip diameters",
+    ),
 }  # fmt: skip
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

@@ -79,7 +79,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "chart with an endless name": (YANG, [f'pinion.flank_csv="{"a" * 5000}"'], "pinion.flank_csv", '"aaa', "delete"),
     "chart without end": (YANG, ['pinion.flank_csv="/dev/zero"'], "pinion.flank_csv", "a device", "to a file"),
     # not supported
-    "tip chamfer": (YANG, ["pinion.tip_chamfer_mm=0.2"], "pinion.tip_chamfer_mm", "0.2", "delete it"),
+    "end chamfer": (YANG, ["pinion.end_chamfer_mm=0.2"], "pinion.end_chamfer_mm", "0.2", "delete it"),
     "speed": (YANG, ["pinion.rpm=3000"], "pinion.rpm", "3000", "delete it"),
     "speed of the load": (YANG, ["load.speed_rpm=3000"], "load.speed_rpm", "3000", "delete it"),
     "shaft": (YANG + "[shaft]\nd = 3\n", [], "shaft", "an unknown section", "delete it"),
@@ -96,7 +96,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""
 
 UNSUPPORTED: dict[str, str] = {
-    "tip chamfer": "tip chamfers and rounded tip edges are not supported",
+    "end chamfer": "chamfers of the teeth's ends are not supported",
     "speed": "there is no time and no speed",
     "speed of the load": "did you mean dynamics.speed_rpm",
     "shaft": "shafts are not modelled",

@@ -14,7 +14,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 def gear_lines(pair: GearPair) -> list[Line]:
     """Of each gear, where one of the two has the input from which they follow."""
-    return [*_thickness(pair), *_support(pair)]
+    return [*_tip_edge(pair), *_thickness(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
@@ -34,6 +34,19 @@ def _thickness(pair: GearPair) -> list[Line]:
             pair, "normal tooth thickness", "s_n", "mm", 4, lambda gear: gear.normal_thickness(gear.reference_diameter)
         ),
     ]
+
+
+def _tip_edge(pair: GearPair) -> list[Line]:
+    lines = [
+        _each(pair, name, symbol, "µm", 1, value)
+        for name, symbol, value in (
+            ("tip chamfer, radial", "h_K", lambda gear: gear.tip_chamfer_um),
+            ("radius of the tip rounding", "ρ_K", lambda gear: gear.tip_rounding_um),
+        )
+        if any(value(gear) for gear in pair.gears)
+    ]
+    form = _each(pair, "tip form diameter", "d_Fa", "mm", 3, lambda gear: gear.tip_form_diameter)
+    return [*lines, form] if lines else []
 
 
 def _support(pair: GearPair) -> list[Line]:

@@ -13,6 +13,7 @@ LONGEST = 1e6
 """Largest diameter and distance [mm]: a gear with 1000 teeth of module 50 has 71 m."""
 LEAST_HELIX = 1e-3
 """Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
+EDGE = "0, or a number from 0.03 to 0.3 m_n, in µm"
 LENGTH = "a number above 0 up to 1e6, in mm"
 
 
@@ -105,6 +106,22 @@ class GearSection(SceneSection):
         default=None,
         ge=0.1,
         le=3,
+    )
+    tip_chamfer_um: float = key(
+        "tip chamfer: its radial height h_K, d_Fa = d_a − 2 h_K is the tip form diameter; at 45° to the radius there, "
+        "in the transverse section",
+        EDGE,
+        default=0.0,
+        ge=0,
+        le=15000,
+    )
+    tip_rounding_um: float = key(
+        "tip rounding: radius of the arc between involute and tip circle in the transverse section; the involute ends "
+        "at the tip form diameter d_Fa where it begins",
+        EDGE,
+        default=0.0,
+        ge=0,
+        le=15000,
     )
     root_diameter_mm: float | None = key(
         "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
-    (r"chamfer|edge_?break|tip_?round", "tip chamfers and rounded tip edges are not supported, tip_relief_um is"),
+    (r"(end_?|face_?|side_?)chamfer|edge_?break", "chamfers of the teeth's ends are not supported; tip_chamfer_um and "
+     "tip_rounding_um are those of the tips"),
     (r"root_?relief", "root relief is not supported as a key; a chart as pinion.flank_csv can have it"),
     (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics]: quasi-static"),
     (r"power|kw", "there is no power without a speed: give the torque, load.torque_Nm"),

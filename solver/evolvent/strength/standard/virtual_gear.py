@@ -58,8 +58,8 @@ class VirtualGear:
 
 
 def virtual_gear(gear: GearParameters) -> VirtualGear:
-    """z_n teeth, d_an = d_n + d_a − d."""
-    tip = gear.virtual_teeth * gear.normal_module + gear.tip_diameter - gear.reference_diameter
+    """z_n teeth, d_an = d_n + d_Fa − d: loads act up to the tip form circle."""
+    tip = gear.virtual_teeth * gear.normal_module + gear.tip_form_diameter - gear.reference_diameter
     return VirtualGear(gear.virtual_teeth, gear.normal_module, gear.normal_pressure_angle, gear.generating_shift, tip)
 
 

@@ -69,8 +69,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
-        "meshes", "meshes.gears", "meshes.gears.modifications", "fem", "gears", "gears.sweep", "gears.pressure",
-        "scene", "results.archive",
+        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (
@@ -107,7 +106,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
     ),
     "strength.results": (
-        "meshes", "meshes.gears", "results.archive", "results.error_bars", "results.tables", "strength.standard",
+        "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
         "strength",
     ),
     "strength.figures": ("meshes.gears", "results.drawing", "strength.results"),
@@ -116,7 +115,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
         "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
         "strength.standard", "strength", "strength.results", "strength.figures", "run",
     ),

@@ -46,8 +46,8 @@ class Flank:
 
     @property
     def roll_lengths(self) -> tuple[float, float]:
-        """Roll lengths ρ at the root form circle and the tip circle, the range of the flank [mm]."""
-        return self.gear.rack_form_roll_length, self.gear.roll_length(self.gear.tip_diameter)
+        """Roll lengths ρ at the root form circle and the tip form circle, the range of the flank [mm]."""
+        return self.gear.rack_form_roll_length, self.gear.roll_length(self.gear.tip_form_diameter)
 
     def roll_length(self, radius: ArrayLike) -> Floats:
         """Roll lengths ρ (…) [mm] at radii (…) [mm]; 0 below the base circle."""

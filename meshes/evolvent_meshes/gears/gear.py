@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
-from evolvent_meshes.gears.gear_geometry import GearGeometry
+from evolvent_meshes.gears.gear_geometry import GearGeometry, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 from evolvent_meshes.gears.modifications.modifications import Modifications
+from evolvent_meshes.gears.modifications.support import Support
 
 RACK_TIP_RADIUS = 0.38
 """ρ_fP* of the basic rack of ISO 53, profile A."""
@@ -42,15 +43,19 @@ class GearParameters(GearGeometry):
         dedendum_coefficient: float = 1.25,
         rack_tip_radius_coefficient: float | None = None,
         tip_shortening_coefficient: float = 0.0,
+        tip_chamfer_um: float = 0.0,
+        tip_rounding_um: float = 0.0,
         face_width: float,
         bore_diameter: float,
+        support: Support | None = None,
         helix_angle_deg: float = 0.0,
         profile_shift: float = 0.0,
+        tooth_thickness_allowance_um: float = 0.0,
         hand: int = 1,
         modifications: Modifications | None = None,
     ) -> GearParameters:
         """A gear from the coefficients of its basic rack, which are multiples of m_n: d_a = d + 2 m_n (h_aP* + x + k),
-        d_f = d − 2 m_n (h_fP* − x), ISO 21771:2007, 4.5.
+        d_f = d − 2 m_n (h_fP* − x_E), ISO 21771:2007, 4.5; x_E is x but for a tooth thickness allowance.
 
         addendum_coefficient: h_aP*.
         dedendum_coefficient: h_fP*.
@@ -70,7 +75,7 @@ class GearParameters(GearGeometry):
             normal_module=normal_module, normal_pressure_angle_deg=normal_pressure_angle_deg,
             addendum_coefficient=addendum_coefficient, dedendum_coefficient=dedendum_coefficient,
             tip_shortening_coefficient=tip_shortening_coefficient, helix_angle_deg=helix_angle_deg,
-            profile_shift=profile_shift,
+            profile_shift=profile_shift, tooth_thickness_allowance_um=tooth_thickness_allowance_um,
         )  # fmt: skip
         if rack_tip_radius_coefficient is not None:
             require_numbers(rack_tip_radius_coefficient=rack_tip_radius_coefficient)
@@ -83,17 +88,22 @@ class GearParameters(GearGeometry):
             if rack_tip_radius_coefficient is None
             else rack_tip_radius_coefficient * normal_module
         )
+        generating = profile_shift + thickness_shift(tooth_thickness_allowance_um, normal_module, angle)
         return cls(
             z=z,
             normal_module=normal_module,
             normal_pressure_angle_deg=normal_pressure_angle_deg,
             helix_angle_deg=helix_angle_deg,
             profile_shift=profile_shift,
+            tooth_thickness_allowance_um=tooth_thickness_allowance_um,
             face_width=face_width,
             tip_diameter=d + 2.0 * normal_module * addendum,
-            root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - profile_shift),
+            tip_chamfer_um=tip_chamfer_um,
+            tip_rounding_um=tip_rounding_um,
+            root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - generating),
             rack_tip_radius=rounded,
             hand=hand,
             bore_diameter=bore_diameter,
+            support=Support() if support is None else support,
             modifications=Modifications() if modifications is None else modifications,
         )

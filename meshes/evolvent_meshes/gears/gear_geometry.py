@@ -12,11 +12,17 @@ from functools import cached_property
 
 from evolvent_meshes.gears.modifications.flank_depth import FlankDepth
 from evolvent_meshes.gears.modifications.modifications import Modifications
+from evolvent_meshes.gears.modifications.support import Support
 
 
 def involute_function(angle: float) -> float:
     """Involute function inv α = tan α − α [4.3.9], angle in rad."""
     return math.tan(angle) - angle
+
+
+def thickness_shift(allowance_um: float, normal_module: float, normal_pressure_angle: float) -> float:
+    """x_E − x = A_sn / (2 m_n tan α_n) of a tooth thickness allowance [µm]; m_n [mm], α_n [rad]."""
+    return 1e-3 * allowance_um / (2.0 * normal_module * math.tan(normal_pressure_angle))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,12 +34,17 @@ class GearGeometry:
     normal_pressure_angle_deg: α_n [°].
     helix_angle_deg: β at the reference cylinder, not negative [°].
     profile_shift: coefficient x.
+    tooth_thickness_allowance_um: A_sn, normal tooth thickness at the reference circle less that of x, not positive;
+        either flank lies half of it deeper [µm].
     face_width: b [mm].
     tip_diameter: d_a [mm].
     root_diameter: d_f [mm].
+    tip_chamfer_um: radial height of a chamfer between flank and tip circle, transverse section; 0: none [µm].
+    tip_rounding_um: radius of a rounding in its place; 0: none [µm].
     rack_tip_radius: ρ_fP, root fillet radius of the basic rack: tip radius of the generating rack, normal section [mm].
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
+    support: how it is held there.
     modifications: of the loaded flank.
     """
 
@@ -42,12 +53,16 @@ class GearGeometry:
     normal_pressure_angle_deg: float
     helix_angle_deg: float = 0.0
     profile_shift: float = 0.0
+    tooth_thickness_allowance_um: float = 0.0
     face_width: float
     tip_diameter: float
+    tip_chamfer_um: float = 0.0
+    tip_rounding_um: float = 0.0
     root_diameter: float
     rack_tip_radius: float
     hand: int = 1
     bore_diameter: float
+    support: Support = field(default_factory=Support)
     modifications: Modifications = field(default_factory=Modifications)
 
     @property
@@ -105,6 +120,25 @@ class GearGeometry:
         """Rotation of the transverse section about +z per mm of z [rad/mm], hand·tan β / (d/2) = hand·tan β_b / r_b."""
         return self.hand * math.tan(self.base_helix_angle) / self.base_radius
 
+    @cached_property
+    def tip_form_diameter(self) -> float:
+        """d_Fa, tip form diameter, at which the involute ends: d_a, or where a chamfer or a rounding begins [4.5].
+
+        A rounding of radius R touches the tip circle from within and the involute at its roll length ρ_Fa: its centre
+        lies on the normal there, (ρ_Fa − R)² + r_b² = (r_a − R)². The base diameter where there is none.
+        """
+        if not self.tip_rounding_um:
+            return self.tip_diameter - 2e-3 * self.tip_chamfer_um
+        radius = 1e-3 * self.tip_rounding_um
+        centre = max(self.tip_diameter / 2.0 - radius, self.base_radius)
+        along = math.sqrt(centre**2 - self.base_radius**2)
+        return 2.0 * math.hypot(self.base_radius, radius + along) if along else self.base_diameter
+
+    @property
+    def rim_thickness(self) -> float:
+        """s_R, from the bore to the root circle."""
+        return (self.root_diameter - self.bore_diameter) / 2.0
+
     @property
     def tip_coefficient(self) -> float:
         """h_aP* + k = (d_a − d) / 2m_n − x, addendum and tip alteration together; k is known in a pair [4.5.3]."""
@@ -112,13 +146,20 @@ class GearGeometry:
 
     @property
     def dedendum_coefficient(self) -> float:
-        """h_fP* = (d − d_f) / 2m_n + x [4.5]."""
-        return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.profile_shift
+        """h_fP* = (d − d_f) / 2m_n + x_E [4.5]."""
+        return (self.reference_diameter - self.root_diameter) / (2.0 * self.normal_module) + self.generating_shift
+
+    @property
+    def generating_shift(self) -> float:
+        """x_E = x + A_sn / (2 m_n tan α_n), generating profile shift coefficient: that of the rack which cuts the tooth
+        with its thickness allowance [7.5]."""
+        module, angle = self.normal_module, self.normal_pressure_angle
+        return self.profile_shift + thickness_shift(self.tooth_thickness_allowance_um, module, angle)
 
     @property
     def tooth_half_angle(self) -> float:
-        """ψ = (π + 4x tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
-        return (math.pi + 4.0 * self.profile_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
+        """ψ = (π + 4 x_E tan α_n) / 2z, tooth thickness half angle at the reference circle [4.7.2]."""
+        return (math.pi + 4.0 * self.generating_shift * math.tan(self.normal_pressure_angle)) / (2.0 * self.z)
 
     @cached_property
     def base_half_angle(self) -> float:
@@ -148,7 +189,7 @@ class GearGeometry:
     @cached_property
     def flank_depth(self) -> FlankDepth:
         """Depth of the loaded flank's modifications."""
-        control, tip = self.modifications.profile_control_diameter, self.roll_length(self.tip_diameter)
+        control, tip = self.modifications.profile_control_diameter, self.roll_length(self.tip_form_diameter)
         start = self.rack_form_roll_length if control is None else self.roll_length(control)
         return FlankDepth(self.modifications, self.base_radius, start, tip, self.face_width)
 
@@ -177,6 +218,6 @@ class GearGeometry:
         the rack, which is half a space width from the centre line of the rack tooth at the pitch line.
         """
         angle, radius = self.normal_pressure_angle, self.rack_tip_radius
-        half_space = self.normal_module * (math.pi / 4.0 - self.profile_shift * math.tan(angle))
+        half_space = self.normal_module * (math.pi / 4.0 - self.generating_shift * math.tan(angle))
         centre = radius - (self.reference_diameter - self.root_diameter) / 2.0
         return half_space + centre * math.tan(angle) - radius / math.cos(angle)

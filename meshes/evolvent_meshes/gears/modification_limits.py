@@ -36,7 +36,7 @@ def check_modifications(gear: GearGeometry) -> None:
 
 def _check_profile(gear: GearGeometry) -> None:
     """Where modifications of the profile begin and end."""
-    given, low, high = gear.modifications, gear.root_form_diameter, gear.tip_diameter
+    given, low, high = gear.modifications, gear.root_form_diameter, gear.tip_form_diameter
     if given.tip_relief_um:
         _check_between(
             "tip_relief_start_diameter", given.tip_relief_start_diameter, low, high,

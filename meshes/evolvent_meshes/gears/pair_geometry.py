@@ -100,8 +100,8 @@ class PairGeometry:
     def path_of_contact(self) -> tuple[float, float]:
         """Roll distances (ξ_A, ξ_E) at the start (wheel tip) and end (pinion tip) of the path of contact [5.4.5.2]."""
         pitch_1, pitch_2 = self.pitch_point_roll_lengths
-        start = pitch_2 - self.wheel.roll_length(self.wheel.tip_diameter)
-        return start, self.pinion.roll_length(self.pinion.tip_diameter) - pitch_1
+        start = pitch_2 - self.wheel.roll_length(self.wheel.tip_form_diameter)
+        return start, self.pinion.roll_length(self.pinion.tip_form_diameter) - pitch_1
 
     @property
     def transverse_contact_ratio(self) -> float:

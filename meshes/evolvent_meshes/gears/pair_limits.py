@@ -100,7 +100,8 @@ def check_root(
         f"below {tip + 2.0 * clearance:.6g} mm (it runs into the root of the {name})",
         "Lower the tip diameter, raise the centre distance or deepen the root.",
     )
-    largest = 2.0 * math.hypot(mate.base_radius, mate.roll_length(tip) + roll_length - form)
+    edge = mate.tip_form_diameter
+    largest = tip - edge + 2.0 * math.hypot(mate.base_radius, mate.roll_length(edge) + roll_length - form)
     require(
         roll_length >= form,
         key,

@@ -1,8 +1,8 @@
 """Exact transverse profile of one tooth sector at mid-face, in the gear's frame.
 
-The half profile at θ > 0 runs from the sector's cut at θ = π/z over root arc, fillet, involute and tip arc to the
-tooth's centre line θ = 0 (`SEGMENTS`, in this order); `mirror` gives the other half. The involute has no modifications;
-`evolvent_meshes.gears.flank` has them.
+The half profile at θ > 0 runs from the sector's cut at θ = π/z over root arc, fillet, involute, the edge of a chamfered
+or rounded tip (`tip_edge`) and tip arc to the tooth's centre line θ = 0 (`SEGMENTS`, in this order); `mirror` gives the
+other half. The involute has no modifications; `evolvent_meshes.gears.flank` has them.
 
 The fillet is the envelope of the generating rack's rounded tip. The transverse section of a helical gear is generated
 by the transverse section of the rack, in which the tip circle is an ellipse, stretched by 1/cos β along the pitch line.
@@ -21,8 +21,9 @@ from numpy.typing import ArrayLike
 
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.tip_edge import TipEdge, tip_edge
 
-SEGMENTS = ("root", "fillet", "involute", "tip")
+SEGMENTS = ("root", "fillet", "involute", "edge", "tip")
 FILLET_TABLE = 513
 """Points of the table of the fillet's arc length over its parameter; points of the fillet are exact."""
 
@@ -59,13 +60,23 @@ class Profile:
 
     @property
     def roll_lengths(self) -> tuple[float, float]:
-        """Roll lengths ρ at the root form circle and the tip circle [mm]."""
-        return self.gear.rack_form_roll_length, self.gear.roll_length(self.gear.tip_diameter)
+        """Roll lengths ρ at the root form circle and the tip form circle [mm]."""
+        return self.gear.rack_form_roll_length, self.gear.roll_length(self.gear.tip_form_diameter)
 
     @property
     def tip_angle(self) -> float:
-        """θ of the tip corner [rad]."""
-        return self.gear.half_angle(self.gear.tip_diameter)
+        """θ at which the tip circle begins [rad]."""
+        return self.gear.half_angle(self.gear.tip_diameter) if self.edge is None else self.edge.end[1]
+
+    @cached_property
+    def edge(self) -> TipEdge | None:
+        """Chamfer or rounding of the tip; None of a sharp one."""
+        return tip_edge(self.gear)
+
+    @property
+    def corner_radius(self) -> float:
+        """Radius at which the mesh of the flank ends [mm]: of the tip circle, or on a rounding."""
+        return self.gear.tip_diameter / 2.0 if self.edge is None else self.edge.corner[0]
 
     @property
     def root_angle(self) -> float:
@@ -73,8 +84,11 @@ class Profile:
         return float(self._generated(math.pi / 2.0)[1])
 
     def angle(self, radius: ArrayLike) -> Floats:
-        """θ(r) (…) [rad] of the involute at radii r ≥ r_b (…) [mm]."""
-        return np.asarray(self._involute_angle(self.roll_length(radius)))
+        """θ(r) (…) [rad] of involute, and chamfer or rounding of the tip, at radii r ≥ r_b (…) [mm]."""
+        involute = self._involute_angle(self.roll_length(radius))
+        if self.edge is None:
+            return np.asarray(involute)
+        return np.where(np.asarray(radius) > self.edge.form[0], self.edge.angle(radius), involute)
 
     def roll_length(self, radius: ArrayLike) -> Floats:
         """Roll lengths ρ(r) = √(r² − r_b²) (…) [mm] at radii (…) [mm]; 0 below the base circle."""
@@ -91,7 +105,7 @@ class Profile:
 
     def involute(self, radius: ArrayLike) -> Floats:
         """Points (…, 2) of the involute at radii (…) [mm]."""
-        return polar(radius, self.angle(radius))
+        return polar(radius, self._involute_angle(self.roll_length(radius)))
 
     def involute_at_roll(self, roll_length: ArrayLike) -> Floats:
         """Points (…, 2) of the involute at roll lengths ρ (…) [mm]."""
@@ -145,20 +159,32 @@ class Profile:
         return polar(np.full_like(angle, self.radii[0]), angle)
 
     def involute_arc(self, t: ArrayLike) -> Floats:
-        """Points (…, 2) of the involute at t ∈ [0, 1] (…), by arc length from the form circle to the tip corner."""
+        """Points (…, 2) of the involute at t ∈ [0, 1] (…), by arc length from root to tip form circle."""
         start, end = self.roll_lengths
         squares = start**2 + np.asarray(t, dtype=float) * (end**2 - start**2)  # arc length is ρ² / 2r_b
         return self.involute_at_roll(np.sqrt(squares))
 
+    def edge_line(self, t: ArrayLike) -> Floats:
+        """Points (…, 2) of chamfer or rounding with its chord at t ∈ [0, 1] (…), from the tip form circle to the tip
+        circle; of a sharp tip its corner."""
+        points = [polar(self.radii[2], self.tip_angle)] * 2
+        if self.edge is not None:
+            radii = self.edge.radii(FILLET_TABLE)
+            points = [*polar(radii, self.edge.angle(radii)), points[0]]
+        line = np.array(points)
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+        wanted = np.asarray(t, dtype=float) * length[-1]
+        return np.stack([np.interp(wanted, length, line[:, k]) for k in (0, 1)], axis=-1)
+
     def tip_arc(self, t: ArrayLike) -> Floats:
-        """Points (…, 2) of the tip circle at t ∈ [0, 1] (…), from the tip corner to the tooth's centre line."""
+        """Points (…, 2) of the tip circle at t ∈ [0, 1] (…), from where it begins to the tooth's centre line."""
         angle = self.tip_angle * (1.0 - np.asarray(t, dtype=float))
         return polar(np.full_like(angle, self.radii[2]), angle)
 
     def segment(self, name: str, t: ArrayLike) -> Floats:
         """Points (…, 2) of one of SEGMENTS at t ∈ [0, 1] (…), by arc length in the direction of the half profile."""
-        curves = dict(zip(SEGMENTS, (self.root_arc, self.fillet, self.involute_arc, self.tip_arc), strict=True))
-        return curves[name](t)
+        curves = self.root_arc, self.fillet, self.involute_arc, self.edge_line, self.tip_arc
+        return dict(zip(SEGMENTS, curves, strict=True))[name](t)
 
     @property
     def arc_lengths(self) -> dict[str, float]:
@@ -169,12 +195,14 @@ class Profile:
             "root": root * (self.sector_angle - self.root_angle),
             "fillet": float(self._fillet_table[0][-1]),
             "involute": (end**2 - start**2) / (2.0 * self.gear.base_radius),
+            "edge": 0.0 if self.edge is None else self.edge.length + self.edge.chord,
             "tip": tip * self.tip_angle,
         }
 
     def outline(self, points_per_segment: int = 33) -> Floats:
         """Points (n, 2) of the profile of the whole sector, θ from −π/z to π/z, for figures and area integrals."""
         t = np.linspace(0.0, 1.0, points_per_segment)
-        pieces = [self.segment(name, t)[int(i > 0) :] for i, name in enumerate(SEGMENTS)]
+        shown = [name for name in SEGMENTS if name != "edge" or self.edge is not None]
+        pieces = [self.segment(name, t)[int(i > 0) :] for i, name in enumerate(shown)]
         half = np.concatenate(pieces)
         return np.concatenate([mirror(half), half[-2::-1]])

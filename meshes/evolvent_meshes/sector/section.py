@@ -269,7 +269,7 @@ def _named_edges(profile: Profile, start: float, points: Floats, edges: Ints) ->
     radius, angle = _to_polar(points[edges[:, 2]])
     chosen = {
         "bore": abs(radius - profile.gear.bore_diameter / 2) < WELD,
-        "tip": abs(radius - profile.radii[2]) < WELD,
+        "tip": (abs(radius - profile.radii[2]) < WELD) | (radius > profile.corner_radius + WELD),
         "cut_low": abs(angle + profile.sector_angle) * radius < WELD,
         "cut_high": abs(angle - profile.sector_angle) * radius < WELD,
     }

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
@@ -23,6 +24,10 @@ Piece = tuple[Floats, Ints]
 
 TABLE = 801
 """Points of the tables by which nodes are distributed along an arc; the positions of the nodes are exact."""
+
+
+FEWEST_ON_EDGE = 1
+"""Cells along the part of a tip's chamfer or rounding that belongs to the flank."""
 
 
 def half_steps(start: float, end: float) -> Floats:
@@ -103,6 +108,20 @@ class ToothRows:
     columns: int
     fine_back: bool = False
 
+    @cached_property
+    def plateau(self) -> Floats:
+        """Radii (2 rows + 1,) of the rows apart from the flanks [mm]: rows beyond the tip form circle rise to the tip
+        circle evenly, while a rounded flank falls back."""
+        below, tip = self.below_edge, self.profile.gear.tip_diameter / 2
+        rising = np.linspace(self.radii[len(below) - 1], tip, len(self.radii) - len(below) + 1)
+        return np.concatenate([below, rising[1:]])
+
+    @property
+    def below_edge(self) -> Floats:
+        """The radii up to the tip form circle [mm]."""
+        form = self.profile.gear.tip_form_diameter / 2
+        return self.radii[self.radii <= form + 1e-9 * form]
+
     @property
     def start(self) -> float:
         """Flank start radius [mm]."""
@@ -130,8 +149,9 @@ class ToothRows:
         return _smaller(along_row, most)
 
     def transition_width(self, radius: Floats) -> Floats:
-        """Arc length [mm] of the 3:1 transitions along rows: the height of a coarse row, or less in a thin tooth."""
-        height = np.interp(radius, self.radii, 6 * np.gradient(self.radii))  # three fine rows: six nodes
+        """Arc length [mm] of the 3:1 transitions along rows: the height of a coarse row below a tip's chamfer or
+        rounding, or less in a thin tooth."""
+        height = np.interp(radius, self.below_edge, 6 * np.gradient(self.below_edge))  # three fine rows: six nodes
         rest = 2 * radius * self.profile.angle(radius) / self.sides - self.strip_width(radius)
         return _smaller(0.45 * rest, height)
 
@@ -143,33 +163,45 @@ class ToothRows:
 
     def points(self, row: Floats, column: Floats) -> Floats:
         """Points (..., 2) [mm] at rows and columns (...); rows are multiples of a half."""
-        radius = np.interp(row, np.arange(len(self.radii)) / 2, self.radii)
+        rows = np.arange(len(self.radii)) / 2
+        radius, inside = np.interp(row, rows, self.radii), np.interp(row, rows, self.plateau)
         arc = self.strip_width(radius) * np.clip(column, 0, 1)
         arc += self.transition_width(radius) * np.clip(column - 1, 0, 1)
         arc += self.column_width(radius) * np.clip(column - 2, 0, self.coarse)
         arc += self.transition_width(radius) * np.maximum(column - 2 - self.coarse, 0)
-        points = polar(radius, self.profile.angle(radius) - arc / radius)
+        flank = self.profile.angle(radius)
+        angle = flank - arc / radius
+        if self.profile.edge is not None:
+            radius = inside - (inside - radius) * self.profile.edge.drop(angle / flank)
+        points = polar(radius, angle)
         last = (np.asarray(column) == 1 + self.columns) & (not self.fine_back)
-        return np.where(last[..., None], polar(radius, -self.profile.angle(radius)), points)
+        return np.where(last[..., None], polar(radius, -flank), points)
 
 
 def row_radii(
     profile: Profile, start: float, n: int, size_at: Callable[[Floats], Floats] | None, graded_middles: bool = False
 ) -> Floats:
-    """Radii (2n + 1,) [mm] of the nodes of n cells along the involute, from radius `start` [mm] to the tip.
+    """Radii (2n + 1,) [mm] of the nodes of n cells along the flank, from radius `start` [mm] to the tip.
 
     size_at: relative length of the cells at radii [mm]; None: uniform.
     graded_middles: see `SectorResolution`.
+    On a chamfer or a rounding the cells are about as long as below it; at least `FEWEST_ON_EDGE`.
     """
-    base = profile.gear.base_radius
-    ends = profile.roll_length(np.array([start, profile.radii[2]])) ** 2 / (2 * base)
+    base, edge = profile.gear.base_radius, profile.edge
+    end = profile.gear.tip_form_diameter / 2
+    ends = profile.roll_length(np.array([start, end])) ** 2 / (2 * base)
     arc = np.linspace(ends[0], ends[1], TABLE)
     density = 1 / size_at(profile.radius(np.sqrt(2 * base * arc))) if size_at else np.ones(TABLE)
     count = np.concatenate([[0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
+    last = 0
+    if edge is not None:
+        share = edge.length * density[-1] / (count[-1] * (arc[1] - arc[0]))
+        last = min(max(FEWEST_ON_EDGE, round(n * share / (1 + share))), n - 1)
+        n -= last
     if graded_middles:
         nodes = np.interp(np.linspace(0, count[-1], 2 * n + 1), count, arc)
     else:
         nodes = subdivided(np.interp(np.linspace(0, count[-1], n + 1), count, arc), 2)
     radii = profile.radius(np.sqrt(2 * base * nodes))
-    radii[[0, -1]] = start, profile.radii[2]
-    return np.asarray(radii)
+    radii[[0, -1]] = start, end
+    return np.asarray(radii) if edge is None else np.concatenate([radii, edge.radii(2 * last)[1:]])

@@ -17,6 +17,7 @@ from evolvent_meshes.mesh.quality import check_quality
 from evolvent_meshes.mesh.reference_cells import node_positions
 from evolvent_meshes.mesh.structured_grid import split_to_simplices
 from evolvent_meshes.sector.flank_points import modification_angle
+from evolvent_meshes.sector.held_bore import node_heights, with_held_bore
 from evolvent_meshes.sector.section import Section, SectorResolution, section_mesh
 
 MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
@@ -30,7 +31,8 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
         or "triangle" for the mid-face section in plane strain.
 
     Volume group: tooth. Facet groups: flank (loaded, θ > 0, above the flank start), fillet (from there to the cut),
-    back (all of θ < 0), tip, bore, cut_low (θ = −π/z), cut_high (θ = π/z), in 3D face_low and face_high (ends of z).
+    back (all of θ < 0), tip, bore, cut_low (θ = −π/z), cut_high (θ = π/z), in 3D face_low and face_high (ends of z),
+    and bore_free where the gear is held on a part of its bore, which is then the group bore.
     The nodes of cut_high are those of cut_low turned by 2π/z.
 
     Raises MeshError for an unknown shape, a flank start off the involute, or cells of bad quality.
@@ -51,7 +53,7 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
         heights = layer_heights(gear.face_width, resolution)
         mesh = _swept(section, heights)
     points = _placed(gear, section, heights)
-    mesh = MeshData(points, mesh.shape, 2, mesh.cells, mesh.facets, mesh.volumes)
+    mesh = with_held_bore(gear, MeshData(points, mesh.shape, 2, mesh.cells, mesh.facets, mesh.volumes))
     if shape in ("triangle", "tetrahedron"):
         mesh = split_to_simplices(mesh, np.tile(_radius_rank(section), len(heights)))
     check_quality(mesh, MINIMUM_QUALITY[shape])
@@ -107,12 +109,13 @@ def _extruded(nodes: Ints, base: str, shape: str, level: int, layers: int) -> In
 def _placed(gear: GearParameters, section: Section, heights: Floats) -> Floats:
     """Points (levels · section nodes, 3) [mm]: the section at all heights, the flank with its modifications."""
     radius, angle = np.hypot(*section.points.T), np.arctan2(section.points[:, 1], section.points[:, 0])
-    turned = angle + gear.twist * heights[:, None]
+    z = node_heights(gear, heights, radius)
+    turned = angle + gear.twist * z
     if not gear.modifications.is_empty:
         moved = section.flank_weight > 0
         flank_radius = np.maximum(radius[moved], section.flank_start_radius)
         turned[:, moved] += section.flank_weight[moved] * modification_angle(gear, flank_radius, heights[:, None])
     points = np.empty((len(heights), len(radius), 3))
     points[..., :2] = polar(np.broadcast_to(radius, turned.shape), turned)
-    points[..., 2] = heights[:, None]
+    points[..., 2] = z
     return points.reshape(-1, 3)

@@ -22,7 +22,9 @@ def polar_moment(gear: GearParameters, density: float) -> float:
     density: [kg/m³]. ∫ρr² dV = ρ b ∮ r⁴/4 dθ along the section's rim. 1 kg·m² is 1000 t·mm².
     """
     profile, t = Profile(gear), np.linspace(0.0, 1.0, POINTS)
-    curves = profile.fillet(t), profile.involute_at_roll(np.linspace(*profile.roll_lengths, POINTS))
+    curves = [profile.fillet(t), profile.involute_at_roll(np.linspace(*profile.roll_lengths, POINTS))]
+    if profile.edge is not None:
+        curves.append(profile.edge_line(t))
     half = sum(_swept(points) for points in curves)
     root, _, tip = profile.radii
     half += root**4 * (profile.sector_angle - profile.root_angle) + tip**4 * profile.tip_angle

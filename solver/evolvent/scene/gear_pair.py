@@ -11,10 +11,11 @@ from evolvent.scene.gear_modifications import modifications_of
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
-from evolvent_meshes.gears.errors import GeometryError
+from evolvent_meshes.gears.errors import GeometryError, require
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
-from evolvent_meshes.gears.gear_geometry import involute_function
+from evolvent_meshes.gears.gear_geometry import involute_function, thickness_shift
 from evolvent_meshes.gears.modifications.modifications import AMOUNTS
+from evolvent_meshes.gears.modifications.support import Support
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
 
@@ -37,10 +38,15 @@ GEAR_KEYS = {
     "hand": "hand",
     "face_width": "face_width_mm",
     "profile_shift": "profile_shift",
+    "tooth_thickness_allowance_um": "tooth_thickness_allowance_um",
     "tip_diameter": "tip_diameter_mm",
+    "tip_chamfer_um": "tip_chamfer_um",
+    "tip_rounding_um": "tip_rounding_um",
     "root_diameter": "root_diameter_mm",
     "rack_tip_radius": "rack_tip_radius_mm",
     "bore_diameter": "bore_diameter_mm",
+    "support_width": "support_width_mm",
+    "support_offset": "support_offset_mm",
     **{amount: amount for amount in AMOUNTS},
     "tip_relief_start_diameter": "tip_relief_start_diameter_mm",
     "root_relief_end_diameter": "root_relief_end_diameter_mm",
@@ -101,7 +107,7 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
     """
     module = pair.normal_module_mm
     reference = _reference_diameter(pair, gear)
-    dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - gear.profile_shift
+    dedendum = _or(gear.dedendum_coefficient, DEDENDUM) - _generating_shift(pair, gear)
     tip = tip_diameter(pair, gear, alteration)
     root = _or(gear.root_diameter_mm, reference - 2 * module * dedendum)
     return GearParameters(
@@ -110,13 +116,27 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         normal_pressure_angle_deg=pair.normal_pressure_angle_deg,
         helix_angle_deg=pair.helix_angle_deg,
         profile_shift=gear.profile_shift,
+        tooth_thickness_allowance_um=gear.tooth_thickness_allowance_um,
         face_width=gear.face_width_mm,
         tip_diameter=tip,
+        tip_chamfer_um=gear.tip_chamfer_um,
+        tip_rounding_um=gear.tip_rounding_um,
         root_diameter=root,
         rack_tip_radius=_or(gear.rack_tip_radius_mm, _usual_rack_tip(pair, gear, (reference - root) / 2)),
         hand=hand,
-        bore_diameter=_or(gear.bore_diameter_mm, root / 2),
+        bore_diameter=_bore_diameter(gear, root),
+        support=Support(gear.support_width_mm, gear.support_offset_mm, gear.rim_thickness_mm is not None),
     )
+
+
+def _bore_diameter(gear: GearSection, root: float) -> float:
+    """Bore diameter [mm], a rim's inner one; root: diameter [mm]. Raises GeometryError for rims that fill the gear."""
+    rim = gear.rim_thickness_mm
+    if rim is None:
+        return _or(gear.bore_diameter_mm, root / 2)
+    allowed, remedy = f"below {root / 2:.6g} mm, half of the root diameter", "Give bore_diameter_mm for a thick body."
+    require(2 * rim < root, "bore_diameter", rim, allowed, remedy)
+    return root - 2 * rim
 
 
 def tip_diameter(pair: PairSection, gear: GearSection, alteration: float) -> float:
@@ -169,7 +189,13 @@ def _usual_rack_tip(pair: PairSection, gear: GearSection, depth: float) -> float
     depth: of the rack tooth below the pitch line [mm].
     """
     angle = math.radians(pair.normal_pressure_angle_deg)
-    return usual_rack_tip_radius(pair.normal_module_mm, angle, depth / pair.normal_module_mm + gear.profile_shift)
+    dedendum = depth / pair.normal_module_mm + _generating_shift(pair, gear)
+    return usual_rack_tip_radius(pair.normal_module_mm, angle, dedendum)
+
+
+def _generating_shift(pair: PairSection, gear: GearSection) -> float:
+    angle = math.radians(pair.normal_pressure_angle_deg)
+    return gear.profile_shift + thickness_shift(gear.tooth_thickness_allowance_um, pair.normal_module_mm, angle)
 
 
 def _reference_diameter(pair: PairSection, gear: GearSection) -> float:

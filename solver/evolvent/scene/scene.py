@@ -17,6 +17,7 @@ from evolvent.fem.material import Material
 from evolvent.gears.problem.flank_deviations import DEEPEST, FlankChart
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
 from evolvent.gears.problem.load_limits import NARROWEST_CONTACT, overload, rounded_down
+from evolvent.scene.backlash import backlash_conflict
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
@@ -72,6 +73,13 @@ class Scene(SceneSection):
             self.gear_pair()
         except ImpossibleGears as error:
             raise validation_error(error.problem) from error
+        return self
+
+    @model_validator(mode="after")
+    def _backlash_follows(self) -> Self:
+        given = None if self.dynamics is None else self.dynamics.backlash_um
+        if given is not None and (problem := backlash_conflict(self.gear_pair(), given)):
+            raise validation_error(problem)
         return self
 
     @model_validator(mode="after")
@@ -139,7 +147,7 @@ class Scene(SceneSection):
         if given.flank_csv is None:
             return None
         pair, path, index = self.gear_pair(), Path(given.flank_csv), GEARS.index(name)
-        active = pair.active_start_diameters[index], pair.gears[index].tip_diameter
+        active = pair.active_start_diameters[index], pair.gears[index].tip_form_diameter
         return FlankChart.read(path).checked(path, pair.gears[index], active)
 
     def gear_pair(self) -> GearPair:

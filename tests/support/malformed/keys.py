@@ -80,7 +80,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
     "chart without end": (YANG, ['pinion.flank_csv="/dev/zero"'], "pinion.flank_csv", "a device", "to a file"),
     # not supported
     "form deviation": (YANG, ["pinion.profile_form_um=3"], "pinion.profile_form_um", "3", "delete it"),
-    "tip chamfer": (YANG, ["pinion.tip_chamfer_mm=0.2"], "pinion.tip_chamfer_mm", "0.2", "delete it"),
+    "end chamfer": (YANG, ["pinion.end_chamfer_mm=0.2"], "pinion.end_chamfer_mm", "0.2", "delete it"),
     "speed": (YANG, ["pinion.rpm=3000"], "pinion.rpm", "3000", "delete it"),
     "speed of the load": (YANG, ["load.speed_rpm=3000"], "load.speed_rpm", "3000", "delete it"),
     "shaft": (YANG + "[shaft]\nd = 3\n", [], "shaft", "an unknown section", "delete it"),
@@ -98,7 +98,7 @@ WRONG_KEYS: dict[str, tuple[str, list[str], str, str, str]] = {
 
 UNSUPPORTED: dict[str, str] = {
     "form deviation": "a chart as pinion.flank_csv can have it",
-    "tip chamfer": "tip chamfers and rounded tip edges are not supported",
+    "end chamfer": "chamfers of the teeth's ends are not supported",
     "speed": "there is no time and no speed",
     "speed of the load": "did you mean dynamics.speed_rpm",
     "shaft": "shafts are not modelled",

@@ -142,16 +142,18 @@ class GearProblem:
     def _checked_flank(self, gear: Member) -> FlankChart | None:
         """The chart of a gear from the base circle on. Raises TableError where it does not fit the gear."""
         chart, geometry = self.flanks[gear], self.pair.gears[gear]
-        active = self.pair.active_start_diameters[gear], geometry.tip_diameter
+        active = self.pair.active_start_diameters[gear], geometry.tip_form_diameter
         return None if chart is None else chart.checked(f"flanks, {gear.label}", geometry, active)
 
     @cached_property
     def has_equal_sections(self) -> bool:
-        """Whether all transverse sections are alike: a spur pair of one face width without lead variation."""
+        """Whether all transverse sections are alike: a spur pair of one face width, without lead variation, whose
+        bores are held over it."""
         gears = self.pair.gears
         varies = (
             self.pair.pinion.helix_angle_deg, self.pair.misalignment_um,
             *(gear.modifications.varies_over_the_face for gear in gears),
+            *(gear.support.is_partial(gear.face_width) for gear in gears),
             *(chart is not None and chart.varies_over_the_face for chart in self.flanks),
         )  # fmt: skip
         return not any(varies) and gears[0].face_width == gears[1].face_width

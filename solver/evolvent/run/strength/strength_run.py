@@ -27,6 +27,7 @@ from evolvent.strength.results.tables import (
     STRENGTH,
     FrictionRoots,
     StrengthRow,
+    formula_rows,
     root_stress_rows,
     strength_rows,
     write_strength,
@@ -50,12 +51,13 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
 
     scene: its wear is left out. overwrite: replace what an earlier call has written.
 
-    Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError; InputError
-    where a strain gauge does not lie on a root.
+    Raises InputError where the standard does not cover the gears or a strain gauge does not lie on a root, before
+    anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
     times = (scene.strength or StrengthSection()).root_refinement
+    _loads_of_standard(scene)
     on_first(comm, lambda: _check(out, overwrite))
     on_first(comm, lambda: _check_gauges(scene, times))
     dolfinx_compat.silence_logs()
@@ -71,6 +73,16 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
         progress.stage(OUTPUT)
         said = on_first(comm, lambda: _written(scene, fine.roots, None if coarse is None else coarse.roots, out))
     return [*said, *([failure] if failure else [])]
+
+
+def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
+    """What loads the roots of pinion and wheel. Raises InputError where the standard's formulas do not hold for them.
+    """
+    problem, section = gear_problem(scene), scene.strength or StrengthSection()
+    pinion, wheel = (RootLoad(problem.pair, member, problem.pinion_torque) for member in Member)
+    for load in (pinion, wheel):
+        tuple(formula_rows(load, section.editions, section.tolerance_class or NO_DEEP_TEETH))
+    return pinion, wheel
 
 
 def _check(out: Path, overwrite: bool) -> None:
@@ -107,15 +119,14 @@ def _check_gauges(scene: Scene, times: int) -> None:
 
 def _written(scene: Scene, fine: Roots, coarse: Roots | None, out: Path) -> list[str]:
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
-    section, problem = scene.strength or StrengthSection(), gear_problem(scene)
+    section = scene.strength or StrengthSection()
     found = [
         FrictionRoots(friction, own, None if coarse is None else coarse[index], scene.mesh.order)
         for index, (friction, own) in enumerate(zip(scene.contact.friction, fine))
     ]
     tolerance = section.tolerance_class or NO_DEEP_TEETH
     rows: list[StrengthRow] = []
-    for member in Member:
-        load = RootLoad(problem.pair, member, problem.pinion_torque)
+    for load in _loads_of_standard(scene):
         rows += strength_rows(load, found, section.editions, tolerance)
 
     strains = list(gauge_rows(_scene_gauges(scene), found, scene.materials()))

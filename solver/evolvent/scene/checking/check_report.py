@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import starmap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.element_sizes import elements_per_contact_width
 from evolvent.gears.meshing.levelled_meshes import flank_cells, is_two_level
 from evolvent.gears.problem.hertz_estimate import HertzEstimate
+from evolvent.scene.checking.form_rows import gear_lines, pair_lines
 from evolvent.scene.checking.problem_size import (
     counted,
     flank_dofs,
@@ -49,8 +51,8 @@ def overview(scene: Scene) -> str:
     pair, estimate = scene.gear_pair(), scene.hertz_estimate()
     blocks = [
         scene.title,
-        table("Gears", [*_gear_rows(pair), *_chart_rows(scene)], GEARS),
-        table("Pair", _pair_rows(pair)),
+        table("Gears", [*_gear_rows(pair), *starmap(Row, gear_lines(pair)), *_chart_rows(scene)], GEARS),
+        table("Pair", [*_pair_rows(pair), *starmap(Row, pair_lines(pair))]),
         table("Load and Hertz estimate (rigid sharing, no friction)", _load_rows(scene, estimate)),
         *([table("Wear (line contact, rigid sharing)", _wear_rows(scene.wear, estimate), GEARS)] if scene.wear else []),
         *_vibration(scene),

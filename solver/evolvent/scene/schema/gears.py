@@ -12,6 +12,7 @@ from evolvent.scene.schema.section import SceneSection, key
 
 LEAST_HELIX = 1e-3
 """Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
+EDGE = "0, or a number from 0.03 to 0.3 m_n, in µm"
 
 
 class PairSection(SceneSection):
@@ -60,8 +61,12 @@ class PairSection(SceneSection):
         return value
 
 
-ALTERNATIVES = {"tip_diameter_mm": "addendum_coefficient", "root_diameter_mm": "dedendum_coefficient"}
-"""Key of a diameter -> key of the coefficient that may be given instead."""
+ALTERNATIVES = {
+    "tip_diameter_mm": "addendum_coefficient",
+    "root_diameter_mm": "dedendum_coefficient",
+    "bore_diameter_mm": "rim_thickness_mm",
+}
+"""Key of a diameter -> key that may be given instead."""
 
 
 class BodyKeys(SceneSection):
@@ -80,6 +85,15 @@ class BodyKeys(SceneSection):
     profile_shift: float = key(
         "profile shift coefficient x, times m_n", "a number from -2 to 2", default=0.0, ge=-2, le=2
     )
+    tooth_thickness_allowance_um: float = key(
+        "tooth thickness allowance A_sn: normal tooth thickness at the reference circle less that of x; half of it is "
+        "taken off either flank, the rack cuts at x_E = x + A_sn / (2 m_n tan α_n)",
+        "a number from -15000 to 0, at most 0.3 m_n, in µm",
+        "give it negative, it makes the tooth thinner",
+        default=0.0,
+        ge=-15000,
+        le=0,
+    )
     tip_diameter_mm: float | None = key(
         "tip diameter d_a; else from addendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
@@ -91,11 +105,27 @@ class BodyKeys(SceneSection):
         ge=0.1,
         le=3,
     )
+    tip_chamfer_um: float = key(
+        "tip chamfer: its radial height h_K, d_Fa = d_a − 2 h_K is the tip form diameter; at 45° to the radius there, "
+        "in the transverse section",
+        EDGE,
+        default=0.0,
+        ge=0,
+        le=15000,
+    )
+    tip_rounding_um: float = key(
+        "tip rounding: radius of the arc between involute and tip circle in the transverse section; the involute ends "
+        "at the tip form diameter d_Fa where it begins",
+        EDGE,
+        default=0.0,
+        ge=0,
+        le=15000,
+    )
     root_diameter_mm: float | None = key(
         "root diameter d_f; else from dedendum_coefficient", LENGTH, default=None, gt=0, le=LONGEST
     )
     dedendum_coefficient: float | None = key(
-        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x); 1.25 if there is no root_diameter_mm",
+        "dedendum h_fP* of the basic rack, d_f = d − 2 m_n (h_fP* − x_E); 1.25 if there is no root_diameter_mm",
         "a number from 0.1 to 3, times m_n",
         default=None,
         ge=0.1,
@@ -124,6 +154,31 @@ class BodyKeys(SceneSection):
         gt=0,
         le=LONGEST,
     )
+    rim_thickness_mm: float | None = key(
+        "in place of the bore: thickness s_R of a rim below the root circle; it is held rigidly at its inside, web and "
+        "hub are left out",
+        LENGTH,
+        "delete the key for a gear with a bore",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    support_width_mm: float | None = key(
+        "axial length over which the bore is held, for a shaft through a part of the face; by default the whole face",
+        LENGTH,
+        "delete the key for the default",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    support_offset_mm: float = key(
+        "axial position of the middle of that length, from mid-face towards z > 0",
+        "a number from -500 to 500, in mm",
+        default=0.0,
+        ge=-500,
+        le=500,
+    )
+
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         for first, second in ALTERNATIVES.items():

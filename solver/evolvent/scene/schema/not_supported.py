@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 
 NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
-    (r"chamfer|edge_?break|tip_?round", "tip chamfers and rounded tip edges are not supported, tip_relief_um is"),
+    (r"(end_?|face_?|side_?)chamfer|edge_?break", "chamfers of the teeth's ends are not supported; tip_chamfer_um and "
+      "tip_rounding_um are those of the tips"),
     (r"rpm|speed|omega|velocity|frequency|time", "there is no time and no speed outside [dynamics]: quasi-static"),
     (r"power|kw", "there is no power without a speed: give the torque, load.torque_Nm"),
     (r"dynamic|damping|inertia|mass|density|vibration|noise|nvh", "a run is quasi-static; that is for [dynamics]"),
     (r"bearing|housing", "bearings and shafts are not modelled: bores are held rigidly, "
      "pair.misalignment_um takes what tilts them"),
-    (r"shaft|key_?way|hub", "shafts are not modelled: the bore, bore_diameter_mm, is held rigidly"),
+    (r"shaft|key_?way|hub", "shafts are not modelled: the bore, bore_diameter_mm, is held rigidly over "
+     "support_width_mm"),
     (r"lubric|oil|viscosity|film|ehl|additive|grease", "lubrication is not supported, but by its friction coefficient, "
      "contact.friction"),
     (r"temperature|thermal|heat|flash|conductivity|expansion", "temperatures are not computed"),
@@ -25,10 +27,12 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"rough|asperit|waviness|texture", "roughness is not supported: flanks are smooth"),
     (r"pitch_?error|index_?error|runout|eccentric", "all teeth are alike: pitch errors and runout are not supported"),
     (r"(profile|helix|lead)_?form|topograph", "not supported as a key; a chart as pinion.flank_csv can have it"),
-    (r"backlash", "backlash follows from pair.centre_distance_mm and the profile shifts"),
+    (r"backlash", "backlash follows from pair.centre_distance_mm, the profile shifts and "
+      "tooth_thickness_allowance_um"),
     (r"(pair|pinion|wheel)\.((gear|pair)_?)?(type|kind)|(gear|pair)_?(type|kind)", "spur and helical external pairs "
      "only, told apart by pair.helix_angle_deg"),
-    (r"web|rim|spoke", "the body is a full ring from bore_diameter_mm to the root"),
+    (r"web|spoke", "webs are not modelled: the body is a full ring from bore_diameter_mm to the root, or a rim, "
+     "rim_thickness_mm, held at its inside"),
 )  # fmt: skip
 """Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
 

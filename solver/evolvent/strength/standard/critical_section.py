@@ -47,7 +47,7 @@ class CriticalSection:
 
 
 def rack_of(gear: GearParameters) -> Rack:
-    """The rack of a gear without protuberance and allowances."""
+    """The rack of a gear without protuberance, at the profile shift that makes its tooth thickness."""
     return Rack(gear.dedendum_coefficient * gear.normal_module, gear.rack_tip_radius)
 
 

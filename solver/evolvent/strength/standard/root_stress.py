@@ -15,6 +15,7 @@ from evolvent.strength.standard.factors import (
     deep_tooth_factor,
     helix_angle_factor,
     load_distribution_factor,
+    rim_thickness_factor,
 )
 from evolvent.strength.standard.load_sharing import pedrero_share
 from evolvent.strength.standard.tooth_form import ToothForm, load_point
@@ -41,6 +42,8 @@ class StandardStress:
     """Y_β."""
     deep_tooth_factor: float
     """Y_DT; 1 in 2019."""
+    rim_thickness_factor: float
+    """Y_B; 1 of a gear without a rim."""
     form: ToothForm
     """The tooth and its load."""
 
@@ -99,6 +102,14 @@ class RootLoad:
         points = contact_points(self.contact_ratio)
         return min(points, key=lambda point: (point.pairs, point.below_tip))
 
+    @property
+    def rim_factor(self) -> float:
+        """Y_B of a gear whose body is a rim; 1 of others. Raises InputError for rims that the standard does not cover.
+        """
+        gear = self.pair.gears[self.member]
+        height = 0.5 * (gear.tip_diameter - gear.root_diameter)
+        return rim_thickness_factor(gear.rim_thickness, height) if gear.support.is_rim else 1.0
+
     def tooth_rotation(self, below_tip: float) -> float:
         """Pinion rotation [rad] of a spur tooth that is loaded at a point, 0 at the pitch point; NaN for helical gears,
         whose virtual gear is another one. below_tip: as of `form_at`."""
@@ -125,8 +136,9 @@ def standard_stress(load: RootLoad, edition: Edition, tolerance_class: int = 6) 
     form_factor = form.form_factor * load_distribution_factor(ε, pair.overlap_ratio, edition)
     helix = helix_angle_factor(pair.pinion.helix_angle, pair.overlap_ratio, edition)
     deep = deep_tooth_factor(ε, tolerance_class) if edition == 2006 else 1.0
-    stress = load.face_stress * form_factor * form.stress_correction_factor * helix * deep
-    return StandardStress(stress, form_factor, form.stress_correction_factor, helix, deep, form)
+    rim = load.rim_factor
+    stress = load.face_stress * form_factor * form.stress_correction_factor * helix * deep * rim
+    return StandardStress(stress, form_factor, form.stress_correction_factor, helix, deep, rim, form)
 
 
 def boundary_stresses(load: RootLoad) -> tuple[PointStress, ...]:

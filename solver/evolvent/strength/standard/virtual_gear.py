@@ -24,7 +24,7 @@ class VirtualGear:
     pressure_angle: float
     """α_n [rad]."""
     profile_shift: float
-    """Coefficient x."""
+    """Coefficient x_E, of the tooth with its thickness allowance."""
     tip_diameter: float
     """d_an [mm]."""
 
@@ -58,9 +58,9 @@ class VirtualGear:
 
 
 def virtual_gear(gear: GearParameters) -> VirtualGear:
-    """z_n teeth, d_an = d_n + d_a − d."""
-    tip = gear.virtual_teeth * gear.normal_module + gear.tip_diameter - gear.reference_diameter
-    return VirtualGear(gear.virtual_teeth, gear.normal_module, gear.normal_pressure_angle, gear.profile_shift, tip)
+    """z_n teeth, d_an = d_n + d_Fa − d: loads act up to the tip form circle."""
+    tip = gear.virtual_teeth * gear.normal_module + gear.tip_form_diameter - gear.reference_diameter
+    return VirtualGear(gear.virtual_teeth, gear.normal_module, gear.normal_pressure_angle, gear.generating_shift, tip)
 
 
 def virtual_contact_ratio(pair: GearPair) -> float:

@@ -20,7 +20,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.input_checks import Words, refuse
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-HELD = "bore", "cut_low", "cut_high", "fillet", "back", "tip"
+HELD = "bore", "bore_free", "cut_low", "cut_high", "fillet", "back", "tip"
 """Facet groups of a sector that stay at rest when its mesh follows the wear; plane end faces slide in themselves."""
 MESHABLE_SLOPE = 0.01
 """Largest slope of the depth that a mesh follows: half a degree. Steeper is only the wear of a tip edge, narrow as a
@@ -103,7 +103,8 @@ class MeshedPair:
 
         def mesh_of(gear: Member) -> MeshData:
             unworn, flank = self.unworn[gear]
-            mesh = worn_mesh(unworn, [WornSurface(flank, by_gear[gear])], HELD)
+            held = [name for name in HELD if name in unworn.facets]
+            mesh = worn_mesh(unworn, [WornSurface(flank, by_gear[gear])], held)
             certify_mesh_volume(unworn, mesh, float(flank.weights() @ by_gear[gear]))
             return mesh
 

@@ -14,10 +14,10 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.profile import Profile
 
 
-def spur(z: int, x: float, radius: float | None, angle: float = 20.0) -> GearParameters:
+def spur(z: int, x: float, radius: float | None, angle: float = 20.0, allowance: float = 0.0) -> GearParameters:
     return GearParameters.from_rack(
         z=z, normal_module=2.5, normal_pressure_angle_deg=angle, profile_shift=x, rack_tip_radius_coefficient=radius,
-        face_width=10.0, bore_diameter=15.0,
+        face_width=10.0, bore_diameter=15.0, tooth_thickness_allowance_um=allowance,
     )  # fmt: skip
 
 
@@ -45,8 +45,11 @@ def touched(gear: GearParameters) -> tuple[Floats, float]:
 
 @pytest.mark.parametrize(
     "gear",
-    [spur(33, 0.3, 0.2, 18.0), spur(18, 0.0, None), spur(60, -0.3, 0.25), spur(25, 0.6, 0.2, 25.0)],
-    ids=["Zhang", "few teeth", "negative shift", "positive shift"],
+    [
+        spur(33, 0.3, 0.2, 18.0), spur(18, 0.0, None), spur(60, -0.3, 0.25), spur(25, 0.6, 0.2, 25.0),
+        spur(40, 0.1, 0.25, 20.0, -200.0),
+    ],
+    ids=["Zhang", "few teeth", "negative shift", "positive shift", "thin teeth"],
 )
 def test_section_is_where_30_degree_tangents_touch_the_fillet(gear: GearParameters) -> None:
     """Chord, height and radius of curvature of the fillet that the rack's tip cuts, point by point: 1e-5, the error of

@@ -1,0 +1,66 @@
+"""What `evolvent check` tells of a tooth form that is not that of the basic rack alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from evolvent.scene.plain_text import fixed
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.pair import GearPair
+
+Line = tuple[str, str, str, tuple[str, ...]]
+"""Name, symbol, unit and the values of pinion and wheel, or of both."""
+
+
+def gear_lines(pair: GearPair) -> list[Line]:
+    """Of each gear, where one of the two has the input from which they follow."""
+    return [*_tip_edge(pair), *_thickness(pair), *_support(pair)]
+
+
+def pair_lines(pair: GearPair) -> list[Line]:
+    """Of the pair."""
+    if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
+        return []
+    return [("circumferential backlash", "j_wt", "µm", (fixed(1e3 * pair.circumferential_backlash, 2),))]
+
+
+def _thickness(pair: GearPair) -> list[Line]:
+    if not any(gear.tooth_thickness_allowance_um for gear in pair.gears):
+        return []
+    return [
+        _each(pair, "tooth thickness allowance", "A_sn", "µm", 1, lambda gear: gear.tooth_thickness_allowance_um),
+        _each(pair, "generating profile shift coefficient", "x_E", "", 4, lambda gear: gear.generating_shift),
+        _each(
+            pair, "normal tooth thickness", "s_n", "mm", 4, lambda gear: gear.normal_thickness(gear.reference_diameter)
+        ),
+    ]
+
+
+def _tip_edge(pair: GearPair) -> list[Line]:
+    lines = [
+        _each(pair, name, symbol, "µm", 1, value)
+        for name, symbol, value in (
+            ("tip chamfer, radial", "h_K", lambda gear: gear.tip_chamfer_um),
+            ("radius of the tip rounding", "ρ_K", lambda gear: gear.tip_rounding_um),
+        )
+        if any(value(gear) for gear in pair.gears)
+    ]
+    form = _each(pair, "tip form diameter", "d_Fa", "mm", 3, lambda gear: gear.tip_form_diameter)
+    return [*lines, form] if lines else []
+
+
+def _support(pair: GearPair) -> list[Line]:
+    lines = []
+    if any(gear.support.is_rim for gear in pair.gears):
+        rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
+        lines.append(("rim, held at its inside", "s_R", "mm", rims))
+    if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
+        low, high = (tuple(fixed(gear.support.ends(gear.face_width)[i], 3) for gear in pair.gears) for i in (0, 1))
+        lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
+    return lines
+
+
+def _each(
+    pair: GearPair, name: str, symbol: str, unit: str, digits: int, value: Callable[[GearParameters], float]
+) -> Line:
+    return name, symbol, unit, tuple(fixed(value(gear), digits) for gear in pair.gears)

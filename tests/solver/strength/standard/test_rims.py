@@ -1,0 +1,41 @@
+"""Y_B of gears whose body is a rim, in the standard's root stress."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from evolvent.strength.standard.root_stress import RootLoad, standard_stress
+from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.gear import GearParameters
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.modifications.support import Support
+from evolvent_meshes.gears.pair import GearPair
+from tests.support.paper_pairs import he
+
+
+def rimmed(backup: float, is_rim: bool = True) -> RootLoad:
+    """He's pair, the pinion with a rim so many tooth heights thick."""
+    pair = he()
+    gear: GearParameters = pair.pinion
+    height = 0.5 * (gear.tip_diameter - gear.root_diameter)
+    bore = gear.root_diameter - 2.0 * backup * height
+    pinion = replace(gear, bore_diameter=bore, support=Support(is_rim=is_rim))
+    return RootLoad(GearPair(pinion, pair.wheel, pair.centre_distance), Member.PINION, 170e3)
+
+
+def test_thin_rim_raises_the_stress() -> None:
+    """As thick as the teeth are high: Y_B = 1.6 ln 2.242 = 1.2918 times the stress of the same gear on a bore of this
+    diameter; from 1.2 tooth heights on there is no difference."""
+    thin, bored = (standard_stress(rimmed(1.0, is_rim), 2019).stress for is_rim in (True, False))
+    assert thin / bored == pytest.approx(1.6 * math.log(2.242), rel=1e-12)
+    thick, alike = (standard_stress(rimmed(1.3, is_rim), 2006) for is_rim in (True, False))
+    assert (thick.stress, thick.rim_thickness_factor) == (alike.stress, 1.0)
+
+
+def test_rims_beyond_the_standard_are_refused() -> None:
+    """Half a tooth height is too thin for Y_B."""
+    with pytest.raises(InputError, match="rim thickness"):
+        standard_stress(rimmed(0.47), 2019)

@@ -112,6 +112,17 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
         "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
+    "run.study.plan": (
+        "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",
+    ),
+    "run.study.results": (
+        "meshes", "meshes.gears", "scene", "scene.checking", "scene.schema", "results.archive", "results.tables",
+        "dynamics.results", "strength.results", "run.study.plan",
+    ),
+    "run.study": (
+        "meshes", "gears", "scene", "scene.checking", "results.archive", "strength.results", "run", "run.dynamics",
+        "run.strength", "run.study.plan", "run.study.results",
+    ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import GearModel, Mesher, prepare_model
+from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.root_meshes import coarse_root_mesh, root_mesh
 from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
@@ -43,11 +43,14 @@ NO_DEEP_TEETH = 12
 """Tolerance class that is taken where the scene names none: Y_DT is 1."""
 
 
-def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False) -> list[str]:
+def run_strength(
+    scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
+) -> list[str]:
     """Computes the pitch with roots finer than a run's, and the stress there, and writes tables and picture to `out`.
     Returns a sentence where a picture could not be drawn or error bars not be estimated. Collective.
 
-    scene: its wear is left out. overwrite: replace what an earlier call has written.
+    scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
+    calls share.
 
     Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
     """
@@ -56,11 +59,11 @@ def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool =
     on_first(comm, lambda: _check(out, overwrite))
     dolfinx_compat.silence_logs()
     with Progress(hidden=hidden) as progress:
-        fine = _roots(scene, root_mesh, comm, progress, POSITIONS)
+        fine = _roots(scene, root_mesh, comm, progress, POSITIONS, prepare)
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:
-                coarse = _roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS)
+                coarse = _roots(scene, coarse_root_mesh, comm, progress, ERROR_BARS, prepare)
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
@@ -78,11 +81,11 @@ def _check(out: Path, overwrite: bool) -> None:
 
 
 def _roots(
-    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str
+    scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str, prepare: Preparer
 ) -> list[tuple[GearRoots, GearRoots]]:
     """Of both gears at each friction coefficient; on rank 0, none on the others. Collective."""
     progress.stage(MESHING)
-    model = prepare_model(gear_problem(scene), comm, mesh, lambda: progress.stage(CONDENSING)).model
+    model: GearModel = prepare(gear_problem(scene), comm, mesh, lambda: progress.stage(CONDENSING)).model
     pitch, frictions = pitch_of(scene), scene.contact.friction
     progress.stage(stage, len(pitch.angles))
     swept = []

@@ -23,6 +23,7 @@ from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.dynamics.results.torque_map import MapRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
+from evolvent.results.drawing.labels import UNITS, ending
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
 from evolvent.results.tables.load_table import ERROR, LoadRow
@@ -34,12 +35,6 @@ from evolvent.wear.results.report import GearReport, PairReport, WearReport
 
 Schema = dict[str, Any]
 
-UNITS = {
-    "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_N_s_per_mm": "N·s/mm", "_mm2_per_N": "mm²/N",
-    "_mm_per_rad": "mm/rad", "_mm_per_s": "mm/s", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m",
-    "_N": "N", "_MPa": "MPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB",
-    "_Hz": "Hz", "_ms": "ms", "_s": "s",
-}  # fmt: skip
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (
     ("summary.json", "all values of the run: its scene, facts, values per friction coefficient, positions"),
@@ -166,7 +161,7 @@ def unit(name: str, kind: type | None = None) -> str:
     if kind in SECONDS or name in SECONDS:
         return "s"
     figure = name.removesuffix(ERROR)  # an error bar has the unit of its figure
-    return next((unit for ending, unit in UNITS.items() if figure.endswith(ending)), "")
+    return UNITS.get(ending(figure), "")
 
 
 def page() -> list[str]:

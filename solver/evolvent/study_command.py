@@ -65,7 +65,7 @@ def study(
 
         loaded, count = load_study(file), workers or 1
         figures = gathered_figures(loaded, str(file))
-        planned = Study(loaded, study_scenes(loaded, file, settings or (), versions()["evolvent"] or "unknown"), figures)
+        planned = Study(loaded, study_scenes(loaded, file, settings or (), versions()["evolvent"]), figures)
         if scheduler is not None:
             at_once, context = 1, partial(scheduled_workers, scheduler, out.resolve())
         else:

@@ -119,9 +119,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.gears", "scene", "scene.checking", "scene.schema", "results.archive", "results.tables",
         "dynamics.results", "strength.results", "run.study.plan",
     ),
+    "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
     "run.study": (
-        "meshes", "gears", "scene", "scene.checking", "results.archive", "strength.results", "run", "run.dynamics",
-        "run.strength", "run.study.plan", "run.study.results",
+        "meshes", "gears", "scene", "scene.checking", "results.archive", "results.drawing", "strength.results", "run",
+        "run.dynamics", "run.strength", "run.study.plan", "run.study.results", "run.study.figures",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

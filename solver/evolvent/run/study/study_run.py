@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -10,9 +13,13 @@ from pathlib import Path
 
 from distributed import Client
 
-from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
+from evolvent.results.drawing.picture_files import draw
 from evolvent.run.progress import OUTPUT, Progress
+from evolvent.run.study.figures.all import study_pictures
+from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.plan.parameters import axes
 from evolvent.run.study.plan.study_file import StudyFile
 from evolvent.run.study.plan.study_scenes import StudyScene
 from evolvent.run.study.results.gathering import Figure
@@ -33,6 +40,8 @@ SCENES_STAGE = "scenes"
 INTERVAL = 10.0
 """Time after which the table is written again while scenes are computed [s]."""
 CONTENT = "study.json"
+"""What the table is of: written first, so that another study does not replace it unasked."""
+PICTURES = "pictures/*.png"
 Workers = Callable[[], AbstractContextManager[Client]]
 
 
@@ -51,6 +60,13 @@ class Study:
     figures: Sequence[Figure]
     """That the table gathers."""
 
+    @property
+    def content(self) -> str:
+        """What its table is of, as JSON: title, computation, and a SHA-256 of its scenes' names in their order."""
+        names = hashlib.sha256(" ".join(each.name for each in self.scenes).encode()).hexdigest()
+        values = {"title": self.file.title, "compute": self.file.compute, "scenes": len(self.scenes), "names": names}
+        return json.dumps(values, ensure_ascii=False, indent=1) + "\n"
+
 
 def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite: bool, quiet: bool) -> list[str]:
     """Computes those scenes of a study that are not in `out` yet, and writes its table and pictures. Returns a sentence
@@ -63,7 +79,8 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
     """
     with locked(out):
         folder = RunFolder(out)
-        folder.require_free([TABLE, PARQUET, "pictures/*.png"])
+        folder.require_free([TABLE, PARQUET, CONTENT, PICTURES])
+        _require_same(study, folder, overwrite)
         records = {each.name: record for each in study.scenes if (record := _known(each, out)) is not None}
         table = _Table(study, out, records)
         with Progress(hidden=quiet) as progress:
@@ -76,8 +93,37 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
                         progress.reach(table.done)
                         table.write_now_and_then(folder)
             progress.stage(OUTPUT)
-            table.write(folder)
-        return table.said()
+            folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
+            rows, columns = table.write(folder)
+            said = table.said()
+            drawn = draw(study_pictures(_values(study, rows, columns)), folder)
+        return [*said, *drawn.failures]
+
+
+def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
+    """Notes what the table is of. Raises FolderError where the folder has the table of another study."""
+    path = folder.out / CONTENT
+    if path.exists() and _names(path.read_text(encoding="utf-8")) != _names(study.content) and not overwrite:
+        raise FolderError(
+            f"{folder.out}: found the table of another study, or of other values ({CONTENT}); allowed: a folder "
+            "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
+            "that both have; --out names another folder"
+        )
+    folder.write_text(CONTENT, study.content)
+
+
+def _names(content: str) -> object:
+    """What a study's content says of its scenes; None where it cannot be read."""
+    with contextlib.suppress(ValueError, TypeError, KeyError):
+        return json.loads(content)["names"]
+    return None
+
+
+def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:
+    """For the pictures: each key of a Latin hypercube is an axis."""
+    points = axes(study.file)
+    keys = [(key,) for axis in points for key in axis.keys] if study.file.latin_hypercube else [a.keys for a in points]
+    return StudyValues(study.file.title, keys, rows, columns, study.file.latin_hypercube is not None)
 
 
 def _known(scene: StudyScene, out: Path) -> SceneRecord | None:
@@ -119,10 +165,13 @@ class _Table:
             self.write(folder)
             self.written = time.monotonic()
 
-    def write(self, folder: RunFolder) -> None:
-        """Writes the table of all scenes. Raises WriteError, FolderError."""
+    def write(self, folder: RunFolder) -> tuple[list[TableRow], list[str]]:
+        """Writes the table of all scenes, and returns its rows and the columns of its figures. Raises WriteError,
+        FolderError."""
         rows = self.all_rows()
-        write_table(folder, rows, figure_columns(rows, self.study.figures))
+        columns = figure_columns(rows, self.study.figures)
+        write_table(folder, rows, columns)
+        return rows, columns
 
     def all_rows(self) -> list[TableRow]:
         """In the order of the study; each scene's figures are read once."""

@@ -19,7 +19,7 @@ def finished(client: Client, tasks: Mapping[SceneTask, str]) -> Iterator[SceneRe
     empty: a scene has its own."""
     submitted = _submitted(client, _together(tasks))
     names: dict[str, SceneTask] = {}
-    waiting = as_completed()
+    waiting = as_completed(loop=client.loop)
     for task, future in islice(submitted, MOST_WAITING):
         names[future.key] = task
         waiting.add(future)

@@ -28,6 +28,8 @@ from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
 from evolvent.results.tables.load_table import ERROR, LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
+from evolvent.run.study.results.check_figures import CheckFigures
+from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.scene.skips import Skipped
 from evolvent.strength.results.tables import RootStressRow, StrengthRow
 from evolvent.wear.gears.gear_study import BlockRow
@@ -74,6 +76,12 @@ FILES = (
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
+    ("study.csv", "`evolvent study`: a row per scene: parameters, figures, what became of it, [studies.md](studies.md)"),
+    ("study.json", "`evolvent study`: what its table is of"),
+    ("scenes/*", "`evolvent study`: a folder per scene, with what the command of the computation leaves"),
+    ("study_scene.json", "in these: what became of the scene; written last"),
+    ("check.json", "a study that checks: figures of a scene before it is computed"),
+    ("check.txt", "likewise: what `evolvent check` prints"),
     ("pictures/loads.png", "`evolvent loads`: transmission error, largest pressure and mesh stiffness over the torque"),
 )
 ARRAYS = (
@@ -125,6 +133,8 @@ SECTIONS = (
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
+    ("`study_scene.json`", SceneRecord, "Of each scene of `evolvent study`."),
+    ("`check.json`", CheckFigures, "Of each scene of `evolvent study` with `compute = \"check\"`."),
     ("`wear.csv`", BlockRow, ""),
     ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
     ("`wear.json`", WearReport, ""),

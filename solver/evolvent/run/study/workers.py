@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import os
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import dask
 from distributed import Client, LocalCluster
+from distributed.comm import connect
 
 from evolvent_meshes.errors import InputError
 
@@ -54,7 +56,7 @@ def scheduled_workers(address: str, out: Path) -> Iterator[Client]:
     Raises InputError where the scheduler does not answer, has no workers, or has such as cannot compute scenes.
     """
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        asyncio.run(_reached(address))  # a client that finds none would leave a traceback behind
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
             f"--scheduler: found {address!r}, which does not answer within {PATIENCE:g} s "
@@ -62,9 +64,15 @@ def scheduled_workers(address: str, out: Path) -> Iterator[Client]:
             "`dask scheduler` and `dask worker ADDRESS --nworkers 2 --nthreads 1`, and give the address that the "
             "scheduler prints, such as tcp://10.0.0.1:8786"
         ) from error
-    with contextlib.closing(client):
+    with contextlib.closing(Client(address, timeout=PATIENCE, set_as_default=False)) as client:
         _check_workers(client, address, out)
         yield client
+
+
+async def _reached(address: str) -> None:
+    """Raises OSError, TimeoutError or ValueError where no Dask scheduler answers at the address."""
+    comm = await connect(address, timeout=PATIENCE)
+    await comm.close()
 
 
 def _check_workers(client: Client, address: str, out: Path) -> None:

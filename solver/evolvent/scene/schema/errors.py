@@ -170,7 +170,7 @@ def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProble
 
 def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
     """The problem with an unknown key or section: it names the most similar key, or says what is not supported."""
-    name, parents = str(path[-1]), [str(part) for part in path[:-1]]
+    name, parents = str(path[-1]), [part for part in path[:-1] if isinstance(part, str)]
     kind = "section" if isinstance(value, dict) else "key"
     found = f"an unknown {kind}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"

@@ -23,6 +23,7 @@ MOST_SCENES = 1_000_000
 """Largest number of scenes of a study."""
 PARTS = "grid", "list", "latin_hypercube.ranges"
 """Where parameters stand."""
+EXAMPLE = "write for example load.torque_Nm = [100.0, 200.0]"
 NAMED = 5
 """Largest number of wrong values in a message."""
 
@@ -66,6 +67,7 @@ class LatinHypercubeSection(SceneSection):
     ranges: Ranges = key(
         "keys of the scene with the lowest and the highest value of each",
         "keys of the scene, each with two different numbers, the lower one first",
+        "write for example load.torque_Nm = [100.0, 300.0]",
     )
 
     @field_validator("ranges")
@@ -128,10 +130,13 @@ class StudyFile(SceneSection):
     )  # fmt: skip
     set: SceneKeys = key("keys that all scenes share, in place of the base scene's", "keys of the scene with a value",
                          default={})  # fmt: skip
-    grid: ValueLists = key("keys with a list of values each: all combinations", "keys of the scene, each with a list",
-                           default={})  # fmt: skip
-    list: ValueLists = key("keys with lists of values that go side by side: the first of each, the second, ...",
-                           "keys of the scene, each with a list, all equally long", default={})  # fmt: skip
+    grid: ValueLists = key(
+        "keys with a list of values each: all combinations", "keys of the scene, each with a list", EXAMPLE, default={}
+    )
+    list: ValueLists = key(
+        "keys with lists of values that go side by side: the first of each, the second, ...",
+        "keys of the scene, each with a list, all equally long", EXAMPLE, default={},
+    )  # fmt: skip
     latin_hypercube: LatinHypercubeSection | None = None
     figure: Annotated[
         tuple[FigureSection, ...], BeforeValidator(lambda given: tuple(given) if isinstance(given, list) else given)

@@ -76,7 +76,7 @@ FILES = (
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
-    ("study.csv", "`evolvent study`: a row per scene: parameters, figures, what became of it, [studies.md](studies.md)"),
+    ("study.csv", "`evolvent study`: parameters and figures of each scene, [studies.md](studies.md)"),
     ("study.json", "`evolvent study`: what its table is of"),
     ("scenes/*", "`evolvent study`: a folder per scene, with what the command of the computation leaves"),
     ("study_scene.json", "in these: what became of the scene; written last"),

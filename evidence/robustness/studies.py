@@ -19,7 +19,16 @@ from pathlib import Path
 
 from evidence.checkout import DOCS, ROOT
 from evidence.processes import environment
-from evidence.study_programs import PATIENCE, records, scheduler, started, times_written, until, words, worker
+from evidence.robustness.study_programs import (
+    PATIENCE,
+    records,
+    scheduler,
+    started,
+    times_written,
+    until,
+    words,
+    worker,
+)
 from evidence.tables import Column, Table, write_rows
 
 SCENES, FEW, KILLS = 200, 12, 3

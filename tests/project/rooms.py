@@ -121,8 +121,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
     "run.study": (
-        "meshes", "gears", "scene", "scene.checking", "results.archive", "results.drawing", "strength.results", "run",
-        "run.dynamics", "run.strength", "run.study.plan", "run.study.results", "run.study.figures",
+        "meshes", "fem.backend", "gears", "gears.sweep", "dynamics.excitation", "scene", "scene.checking",
+        "results.archive", "results.drawing", "strength.results", "run", "run.dynamics", "run.strength",
+        "run.study.plan", "run.study.results", "run.study.figures",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

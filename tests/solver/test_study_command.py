@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from evidence.processes import environment
-from evidence.study_programs import (
+from evidence.robustness.study_programs import (
     PATIENCE,
     records,
     scheduler,
@@ -23,7 +23,7 @@ from evidence.study_programs import (
 )
 from tests.support.checkout import ROOT
 from tests.support.running.processes import Run
-from tests.support.study_cases import TORQUES, table, written
+from tests.support.running.study_cases import TORQUES, table, written
 
 SLOW = (
     TORQUES.replace('"check"', '"strength"')

@@ -14,6 +14,7 @@ from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.load_list import LoadList
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.dynamics.excitation import run_excitation
+from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.vibration import run_dynamics
 from evolvent.run.scene_run import run_scene
 from evolvent.run.strength.strength_run import run_strength
@@ -101,11 +102,13 @@ def _wear(task: SceneTask, prepare: Preparer) -> list[str]:
 
 
 def _excitation(task: SceneTask, prepare: Preparer) -> list[str]:
-    return run_excitation(own_torque(task.scene), task.folder, resume=True, quiet=True, prepare=prepare)[1:]
+    resume = (task.folder / KEPT).exists()
+    return run_excitation(own_torque(task.scene), task.folder, resume, not resume, quiet=True, prepare=prepare)
 
 
 def _dynamics(task: SceneTask, prepare: Preparer) -> list[str]:
-    return run_dynamics(task.scene, task.folder, resume=True, quiet=True, prepare=prepare)
+    resume = (task.folder / KEPT).exists()
+    return run_dynamics(task.scene, task.folder, resume, not resume, quiet=True, prepare=prepare)
 
 
 def _strength(task: SceneTask, prepare: Preparer) -> list[str]:

@@ -42,7 +42,7 @@ def local_workers(count: int) -> Iterator[Client]:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="evolvent-study-"))
         stack.enter_context(dask.config.set(settings))
         cluster = LocalCluster(
-            n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
+            n_workers=count, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0", memory_limit=0,
             local_directory=folder, silence_logs=logging.CRITICAL, host="127.0.0.1",
         )  # fmt: skip
         stack.enter_context(contextlib.closing(cluster))

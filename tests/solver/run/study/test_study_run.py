@@ -16,7 +16,7 @@ from evolvent.run.study import study_run
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.run.study.scene_task import SceneTask, solve
 from evolvent.run.study.study_run import NothingComputed, run_study
-from tests.support.study_cases import HEAD, TORQUES, study_of, table
+from tests.support.running.study_cases import HEAD, TORQUES, study_of, table
 
 FAILING = f"{HEAD}[grid]\nload.torque_Nm = [-1.0, 100.0]\n"
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from evolvent.run.study.plan.parameters import axes, combinations
 from evolvent.run.study.plan.study_file import load_study
-from tests.support.study_cases import HEAD, written
+from tests.support.running.study_cases import HEAD, written
 
 HYPERCUBE = """
 [latin_hypercube]

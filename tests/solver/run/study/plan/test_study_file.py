@@ -8,7 +8,7 @@ import pytest
 
 from evolvent.run.study.plan.study_file import MOST_SCENES, load_study
 from evolvent.scene.scene import SceneError
-from tests.support.study_cases import HEAD, TORQUES, written
+from tests.support.running.study_cases import HEAD, TORQUES, written
 
 HYPERCUBE = "[latin_hypercube]\nsamples = 5\n[latin_hypercube.ranges]\n"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from evolvent.scene.scene import SceneError
-from tests.support.study_cases import HEAD, TORQUES, scenes_of
+from tests.support.running.study_cases import HEAD, TORQUES, scenes_of
 
 MAP = (
     HEAD.replace('"check"', '"excitation"').replace("zhang2023", "yang2022")

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.checkout import ROOT
-from evidence.pages import he, outputs, promises, readme, tutorial, yang
+from evidence.pages import outputs, promises, readme, studies, tutorial
+from evidence.pages.papers import he, yang
 
 
 def generated(root: Path = ROOT) -> dict[Path, str]:
@@ -29,6 +30,9 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "he2022.md": {"points": he.points(docs), "sensitivity": he.sensitivity(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
+        docs / "studies.md": {
+            "keys": studies.keys(), "figures": studies.figures(), "measured": studies.measured(docs),
+        },
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),
             "figures": tutorial.figures(docs),

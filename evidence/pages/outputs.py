@@ -23,10 +23,13 @@ from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.dynamics.results.torque_map import MapRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
+from evolvent.results.drawing.labels import UNITS, ending
 from evolvent.results.mesh_facts import MeshFacts
 from evolvent.results.shaft_forces import ShaftForces
 from evolvent.results.tables.load_table import ERROR, LoadRow
 from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, FrictionRow, PositionRow, Summary, ToothRow
+from evolvent.run.study.results.check_figures import CheckFigures
+from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.scene.skips import Skipped
 from evolvent.strength.results.gauge_table import GaugeRow
 from evolvent.strength.results.tables import RootStressRow, StrengthRow
@@ -35,12 +38,6 @@ from evolvent.wear.results.report import GearReport, PairReport, WearReport
 
 Schema = dict[str, Any]
 
-UNITS = {
-    "_N_per_mm_um": "N/(mm·µm)", "_N_per_um": "N/µm", "_N_s_per_mm": "N·s/mm", "_mm2_per_N": "mm²/N",
-    "_mm_per_rad": "mm/rad", "_mm_per_s": "mm/s", "_kg_m2": "kg·m²", "_kg": "kg", "_rpm": "r/min", "_Nm": "N·m",
-    "_N": "N", "_MPa": "MPa", "_um": "µm", "_mm3": "mm³", "_mm": "mm", "_deg": "°", "_percent": "%", "_MB": "MB",
-    "_Hz": "Hz", "_ms": "ms", "_s": "s",
-}  # fmt: skip
 SECONDS = Timings, "seconds"  # named without their unit
 FILES = (
     ("summary.json", "all values of the run: its scene, facts, values per friction coefficient, positions"),
@@ -81,6 +78,12 @@ FILES = (
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
     ("gauges.csv", "`evolvent strength` with `strength.gauges`: a line per strain gauge, coefficient and rotation"),
+    ("study.csv", "`evolvent study`: parameters and figures of each scene, [studies.md](studies.md)"),
+    ("study.json", "`evolvent study`: what its table is of"),
+    ("scenes/*", "`evolvent study`: a folder per scene, with what the command of the computation leaves"),
+    ("study_scene.json", "in these: what became of the scene; written last"),
+    ("check.json", "a study that checks: figures of a scene before it is computed"),
+    ("check.txt", "likewise: what `evolvent check` prints"),
     ("pictures/loads.png", "`evolvent loads`: transmission error, largest pressure and mesh stiffness over the torque"),
 )
 ARRAYS = (
@@ -133,6 +136,8 @@ SECTIONS = (
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
     ("`gauges.csv`", GaugeRow, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),
+    ("`study_scene.json`", SceneRecord, "Of each scene of `evolvent study`."),
+    ("`check.json`", CheckFigures, "Of each scene of `evolvent study` with `compute = \"check\"`."),
     ("`wear.csv`", BlockRow, ""),
     ("`vibration.csv`", VibrationRow, "Of wear, where `dynamics.operating_rpm` is given."),
     ("`wear.json`", WearReport, ""),
@@ -169,7 +174,7 @@ def unit(name: str, kind: type | None = None) -> str:
     if kind in SECONDS or name in SECONDS:
         return "s"
     figure = name.removesuffix(ERROR)  # an error bar has the unit of its figure
-    return next((unit for ending, unit in UNITS.items() if figure.endswith(ending)), "")
+    return UNITS.get(ending(figure), "")
 
 
 def page() -> list[str]:

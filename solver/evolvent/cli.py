@@ -43,6 +43,7 @@ from evolvent.options import (
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene_argument import loaded_scene, require, require_room
+from evolvent.study_command import STUDY_EPILOG, study
 from evolvent_meshes.files import require_writable
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
@@ -76,6 +77,7 @@ app.command(epilog=LOADS_EPILOG)(loads)
 app.command(epilog=EXCITATION_EPILOG)(excitation)
 app.command(epilog=DYNAMICS_EPILOG)(dynamics)
 app.command(epilog=STRENGTH_EPILOG)(strength)
+app.command(epilog=STUDY_EPILOG)(study)
 
 
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")

@@ -115,13 +115,27 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
-        "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing",
+        "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
         "strength.standard", "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
         "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+    ),
+    "run.study.plan": (
+        "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",
+        "run.strength",
+    ),
+    "run.study.results": (
+        "meshes", "meshes.gears", "scene", "scene.checking", "scene.schema", "scene.schema.guesses",
+        "results.archive", "results.tables", "dynamics.results", "strength.results", "run.study.plan",
+    ),
+    "run.study.figures": ("meshes", "results.drawing", "run.study.results"),
+    "run.study": (
+        "meshes", "fem.backend", "gears", "gears.sweep", "dynamics.excitation", "scene", "scene.checking",
+        "results.archive", "results.drawing", "strength.results", "run", "run.dynamics", "run.strength",
+        "run.study.plan", "run.study.results", "run.study.figures",
     ),
     "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
 }  # fmt: skip

@@ -13,8 +13,8 @@ import pytest
 from evidence.benchmarks.pages.page import parts
 from evidence.pages.generated import generated
 from evidence.pages.outputs import described, unit
+from evidence.pages.papers.yang_figures import level_figures
 from evidence.pages.promises import PROMISES, measured, promises
-from evidence.pages.yang_figures import level_figures
 from tests.support.checkout import ROOT
 
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from evidence.benchmarks.accuracy.error_bars import SCENES, BarProblem, mesh_cases, spur_problem
 from evidence.checkout import DEMOS
 from evolvent.gears.gear_model import Mesher
-from evolvent.gears.meshing.root_meshes import coarse_root_mesh, finer_roots, root_mesh, with_back_root
+from evolvent.gears.meshing.root_meshes import RootMesh, finer_roots, with_back_root
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.error_bars.estimation import Curve
@@ -109,8 +109,8 @@ def measure_bars(problem: RootProblem) -> Iterator[RootBarRow]:
         scene = problem.bars.with_mesh(case)
         name = ", ".join(setting.split("=")[1] for setting in case)
         for fillet in problem.fillets:
-            own = _roots(scene, partial(root_mesh, times=fillet))
-            coarse = _roots(scene, partial(coarse_root_mesh, times=fillet), own.angles)
+            own = _roots(scene, RootMesh(fillet))
+            coarse = _roots(scene, RootMesh(fillet, coarse=True), own.angles)
             for index, friction in enumerate(scene.contact.friction):
                 for member in Member:
                     four = [each.roots[index][member] for each in (own, coarse, best, second)]

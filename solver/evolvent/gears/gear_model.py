@@ -135,8 +135,8 @@ def condensed_gears(
     mesh: Mesher = run_mesh,
     meshed: Callable[[], None] = lambda: None,
 ) -> CondensedGears:
-    """The gears of problems that differ in their torques only and have the same `mesh_torques`, condensed once; see
-    `prepare_model`."""
+    """The gears of problems that differ in their torques and misalignments only and have the same `mesh_torques`,
+    condensed once; see `prepare_model`."""
     begin = time.perf_counter()
     # eliminating the pinion, which carries Nitsche's constant term, takes most memory: first, while that is free
     own = [member for member in Member if member % comm.size == comm.rank]

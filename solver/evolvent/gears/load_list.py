@@ -1,14 +1,15 @@
-"""Gears under a list of torques: condensed once, for all of them."""
+"""Gears under a list of torques, or at several misalignments: condensed once, for all of them."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from mpi4py import MPI
 
 from evolvent.gears.gear_model import CondensedGears, Mesher, Preparation, condensed_gears
-from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.meshing.levelled_meshes import is_two_level, run_mesh
 from evolvent.gears.problem.gear_problem import GearProblem
 
 
@@ -21,7 +22,7 @@ def under_torques(problem: GearProblem, torques: Sequence[float]) -> list[GearPr
 class LoadList:
     """Prepares each of some problems, condensing their gears when the first one is asked for.
 
-    problems: alike but for their torques, see `under_torques`.
+    problems: alike but for their torques, see `under_torques`, and misalignments, see `shared_gears_name`.
     """
 
     def __init__(self, problems: Sequence[GearProblem]) -> None:
@@ -41,3 +42,13 @@ class LoadList:
             return known.under(problem).without_time()
         self._gears[mesh] = condensed_gears(self._problems, comm, mesh, meshed)
         return self._gears[mesh].under(problem)
+
+
+def shared_gears_name(problem: GearProblem) -> str:
+    """Name of the condensed gears of a problem: problems of one name can have them from one `LoadList`. They differ in
+    torque and misalignment at most, and have the same `mesh_torques`."""
+    served = (problem.torque, problem.torque) if problem.mesh_torques is None else problem.mesh_torques
+    bodies = replace(problem.pair, misalignment_um=0.0), problem.materials, problem.mesh, problem.options
+    charts = [None if chart is None else chart.text() for chart in problem.flanks]
+    content = repr((bodies, charts, problem.torque_on, served, problem.is_plane, is_two_level(problem)))
+    return hashlib.sha256(content.encode()).hexdigest()

@@ -5,13 +5,25 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from evolvent.scene.schema.errors import LONGEST_TEXT, InputProblem, SceneError, dotted_part, shown
 from evolvent_meshes.text_files import UnreadableText, read_text
 
-EXAMPLE = "demos/yang2022.toml is a complete example"
+
+@dataclass(frozen=True)
+class FileKind:
+    """A kind of TOML file, for messages."""
+
+    name: str
+    """What the file is."""
+    example: str
+    """A sentence that names an example."""
+
+
+SCENE = FileKind("scene file", "demos/yang2022.toml is a complete example")
 LARGEST = 1
 """Largest size of a scene file [MB]."""
 DEEPEST = 8
@@ -20,13 +32,13 @@ UNDECODABLE = (tomllib.TOMLDecodeError, ValueError, RecursionError)
 """Exceptions of tomllib: ValueError for integers of more than 4300 digits, RecursionError for deep nesting."""
 
 
-def scene_text(path: Path) -> str:
-    """Reads a scene file. Raises SceneError where it cannot be read as text."""
+def scene_text(path: Path, kind: FileKind = SCENE) -> str:
+    """Reads a scene file, or another kind of TOML file. Raises SceneError where it cannot be read as text."""
     try:
         return read_text(path, "TOML", LARGEST)
     except UnreadableText as error:
-        remedy = f"{error.remedy}; {EXAMPLE}"
-        raise SceneError([InputProblem("scene file", error.found, error.allowed, remedy)], str(path)) from error
+        remedy = f"{error.remedy}; {kind.example}"
+        raise SceneError([InputProblem(kind.name, error.found, error.allowed, remedy)], str(path)) from error
 
 
 def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str, Any]:
@@ -35,30 +47,35 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
     overrides: "section.key=value", as `--set` takes them. folder: to which paths in `text` are relative; paths in
     overrides are relative to the current folder. Raises SceneError.
     """
-    try:
-        values = tomllib.loads(text)
-    except UNDECODABLE as error:
-        raise SceneError([_no_toml(text, error)]) from error
+    values = toml_values(text)
     for section in (values.get("pinion"), values.get("wheel")):
         if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
             section["flank_csv"] = str(folder / section["flank_csv"]) if section["flank_csv"] else ""
     for override in overrides:
-        _apply(values, override)
-    _require_shallow(values)
+        apply_override(values, override)
+    require_shallow(values)
     return values
 
 
-def _no_toml(text: str, error: Exception) -> InputProblem:
+def toml_values(text: str, kind: FileKind = SCENE) -> dict[str, Any]:
+    """Nested dictionaries of a TOML text. Raises SceneError."""
+    try:
+        return tomllib.loads(text)
+    except UNDECODABLE as error:
+        raise SceneError([_no_toml(text, error, kind)]) from error
+
+
+def _no_toml(text: str, error: Exception, kind: FileKind) -> InputProblem:
     """Why a text cannot be parsed as TOML, with the line where that was noticed."""
     line = _named_line(text, str(error))
     hint = number_hint(line.partition("=")[2])
-    remedy = f'mend that line{hint and ": "}{hint}; texts stand in "quotes", every key only once; {EXAMPLE}'
+    remedy = f'mend that line{hint and ": "}{hint}; texts stand in "quotes", every key only once; {kind.example}'
     if isinstance(error, tomllib.TOMLDecodeError):
         found = f"no TOML: {error}{line and ': '}{line}"
-        return InputProblem("scene file", found, "valid TOML 1.0", remedy)
+        return InputProblem(kind.name, found, "valid TOML 1.0", remedy)
     if isinstance(error, RecursionError):
-        return InputProblem("scene file", "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
-    return InputProblem("scene file", "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
+        return InputProblem(kind.name, "brackets nested too deep", f"tables and lists up to {DEEPEST} deep", remedy)
+    return InputProblem(kind.name, "a number of thousands of digits", "numbers of up to 4300 digits", remedy)
 
 
 def _named_line(text: str, message: str) -> str:
@@ -77,7 +94,7 @@ def number_hint(text: str) -> str:
     return "a decimal point, not a comma; no unit after a number" if wrong else ""
 
 
-def _require_shallow(values: dict[str, Any]) -> None:
+def require_shallow(values: dict[str, Any]) -> None:
     """Raises SceneError where tables and lists are nested deeper than `DEEPEST`: validation is recursive."""
     waiting: list[tuple[str, Any, int]] = [(name, value, 1) for name, value in values.items()]
     while waiting:
@@ -90,7 +107,7 @@ def _require_shallow(values: dict[str, Any]) -> None:
         waiting += [(name, each, depth + 1) for each in inner if isinstance(each, (dict, list))]
 
 
-def _apply(values: dict[str, Any], override: str) -> None:
+def apply_override(values: dict[str, Any], override: str) -> None:
     """Sets one "section.key=value" in the nested values. Raises SceneError."""
     name, equals, text = override.partition("=")
     names = [part.strip() for part in name.split(".")]

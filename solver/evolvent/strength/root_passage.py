@@ -17,8 +17,7 @@ from evolvent.fem.surface_stress import surface_stress
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.sweep.nodal_forces import nodal_forces
-from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_result import PositionResult, nodal_forces
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.strength.root_surface import RootSurface, compression_side, tension_side
 from evolvent_meshes.arrays import Floats

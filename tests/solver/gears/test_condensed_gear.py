@@ -12,10 +12,10 @@ from evolvent.gears.condensed_gear import GearBody, condensed_gear, sector_body
 from evolvent.gears.gear_model import GearModel, prepare_model
 from evolvent.gears.kinematics import turn
 from evolvent.gears.meshing import levelled_meshes
-from evolvent.gears.meshing.root_meshes import root_mesh, root_nodes
+from evolvent.gears.meshing.root_meshes import RootMesh, root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.sweep.nodal_forces import NodalForces, nodal_forces
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.sweep.position_result import NodalForces, nodal_forces
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.fields.deformation import GearField
 from evolvent.scene.gear_problem import gear_problem
@@ -30,7 +30,7 @@ POSITIONS = 2
 
 def loaded(scene: Scene) -> tuple[GearModel, list[NodalForces]]:
     """Gears with the nodes of their roots, and the forces on each at two positions with friction."""
-    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, root_mesh).model
+    model = prepare_model(gear_problem(scene), MPI.COMM_SELF, RootMesh()).model
     positions = sweep_pitch(model, uniform_pitch(scene.pinion.teeth, POSITIONS), [0.1], initial_state([0.1]))
     results = [position.results[0] for position in positions]
     return model, [nodal_forces(results, body.member) for body in model.bodies]
@@ -83,7 +83,7 @@ def test_reactions_of_all_sectors_balance_the_forces(member: Member) -> None:
     """Of He's pair, two teeth under random forces. Exact: what holds the bore of all z sectors, K u there, is the
     negative of their sum, 1e-6, in moment, too."""
     problem = gear_problem(spur_scene("mesh.level=quick"))
-    gear, mesh = problem.pair.gears[member], root_mesh(problem, member)
+    gear, mesh = problem.pair.gears[member], RootMesh()(problem, member)
     assert isinstance(mesh, MeshData)
     body = condensed_gear(
         gear, mesh, problem.materials[member], range(gear.z), member, carries_pressure=member is Member.PINION

@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from evolvent.gears.gear_model import GearModel, prepare_model
-from evolvent.gears.meshing.root_meshes import root_mesh
+from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import SweptPosition, initial_state, uniform_pitch
 from evolvent.scene.gear_problem import gear_problem
@@ -21,7 +21,7 @@ FRICTIONS, POSITIONS = (0.0, 0.1), 8
 
 @cache
 def model() -> GearModel:
-    return prepare_model(gear_problem(spur_scene("mesh.level=quick")), MPI.COMM_SELF, root_mesh).model
+    return prepare_model(gear_problem(spur_scene("mesh.level=quick")), MPI.COMM_SELF, RootMesh()).model
 
 
 @cache

@@ -62,7 +62,7 @@ def loaded_mesh(
     rows = _searched(models, angles[own])
 
     def next_one(number: int) -> Figures:
-        return {number: np.array([_figures(*each) for each in zip(models, next(rows))])}
+        return {number: np.array([figures_of(*each) for each in zip(models, next(rows))])}
 
     for k in range(max(map(len, shares))):
         solved_now = together(comm, lambda: next_one(own[k]) if k < len(own) else {})  # noqa: B023  called at once
@@ -92,7 +92,7 @@ def loaded_mesh_again(
     own = angles[division(len(angles), comm.size)[comm.rank]]
     before = [[row.get(torque) for torque in torques] for row in kept] if kept is not None else None
     rows = together(comm, lambda: tuple(_searched(models, own, before)))
-    figures = [np.array([_figures(*each) for each in zip(models, row)]) for row in rows]
+    figures = [np.array([figures_of(*each) for each in zip(models, row)]) for row in rows]
     found = dict(enumerate(each for part in comm.allgather(figures) for each in part))
     mesh = mesh_of(found, np.array(torques) / _radius(model), angles)
     return mesh, tuple(dict(zip(torques, row)) for row in rows)
@@ -109,12 +109,12 @@ def _radius(model: GearModel) -> float:
     return model.bodies[model.load.on].gear.base_radius
 
 
-def _figures(model: GearModel, position: SharedPosition) -> tuple[float, float]:
+def figures_of(model: GearModel, position: SharedPosition) -> tuple[float, float]:
     """Transmission error [mm] and stiffness [N/mm]."""
-    return _equilibrium(model, position).transmission_error, position.stiffness * model.width_factor
+    return equilibrium(model, position).transmission_error, position.stiffness * model.width_factor
 
 
-def _equilibrium(model: GearModel, position: SharedPosition) -> Stand:
+def equilibrium(model: GearModel, position: SharedPosition) -> Stand:
     """Where the gears stand under their torque."""
     return position.contact.stand.turned(model.load.on, float(position.smooth.motion[0]))
 
@@ -148,12 +148,12 @@ def _predicted(
     accuracy of a search. ahead: the last position under all torques; empty before the first one."""
     j = len(row)
     if j == 0:
-        return _equilibrium(models[0], ahead[0]).extra if ahead else (0.0, 0.0)
+        return equilibrium(models[0], ahead[0]).extra if ahead else (0.0, 0.0)
     step = _step_along_tangent(models, row)
     if ahead and (before := _step_along_tangent(models, ahead[:j])) > 0.0:
-        last, this = (_equilibrium(model, each) for model, each in zip(models[j - 1 : j + 1], ahead[j - 1 : j + 1]))
+        last, this = (equilibrium(model, each) for model, each in zip(models[j - 1 : j + 1], ahead[j - 1 : j + 1]))
         step *= (this.transmission_error - last.transmission_error) / before
-    return _equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).extra
+    return equilibrium(models[j - 1], row[-1]).turned(models[j].load.on, step / _radius(models[j])).extra
 
 
 def _step_along_tangent(models: Sequence[GearModel], row: Sequence[SharedPosition]) -> float:

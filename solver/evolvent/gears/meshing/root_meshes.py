@@ -5,8 +5,7 @@ Displacements of the roots' nodes are condensed with the flank (`condensed_gear`
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,17 +39,22 @@ def finer_roots(sector: SectorResolution, times: int = FINER) -> SectorResolutio
     )  # fmt: skip
 
 
-def root_mesh(problem: GearProblem, member: Member, times: int = FINER) -> SectorMesh:
-    """The mesh of a run with finer roots, and with `BACK_ROOT`. times: see `finer_roots`.
+@dataclass(frozen=True)
+class RootMesh:
+    """Makes the mesh of a run with finer roots, and with `BACK_ROOT`."""
 
-    Raises MeshError, TooMuchRelief.
-    """
-    return adapted_root_mesh(problem, member, partial(finer_roots, times=times))
+    times: int = FINER
+    """See `finer_roots`."""
+    coarse: bool = False
+    """With elements of twice the size everywhere, for error bars."""
 
+    def __call__(self, problem: GearProblem, member: Member) -> SectorMesh:
+        """Of the pinion's or the wheel's sector. Raises MeshError, TooMuchRelief."""
+        return adapted_root_mesh(problem, member, self._adapted)
 
-def coarse_root_mesh(problem: GearProblem, member: Member, times: int = FINER) -> SectorMesh:
-    """The same with elements of twice the size, for error bars. Raises MeshError."""
-    return adapted_root_mesh(problem, member, lambda sector: coarser(finer_roots(sector, times)))
+    def _adapted(self, sector: SectorResolution) -> SectorResolution:
+        fine = finer_roots(sector, self.times)
+        return coarser(fine) if self.coarse else fine
 
 
 def adapted_root_mesh(problem: GearProblem, member: Member, adapted: Adaption) -> SectorMesh:

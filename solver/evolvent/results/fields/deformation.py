@@ -23,8 +23,7 @@ from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.gear_model import prepare_model
 from evolvent.gears.kinematics import turn
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
-from evolvent.gears.sweep.nodal_forces import NodalForces, nodal_forces
-from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.gears.sweep.position_result import NodalForces, PositionResult, nodal_forces
 from evolvent.gears.two_level.two_level_ring import TwoLevelRing
 from evolvent.results.archive.archive import Archive
 from evolvent.scene.gear_problem import gear_problem

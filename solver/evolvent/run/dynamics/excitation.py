@@ -17,7 +17,7 @@ from evolvent.dynamics.results.design_load import excitation_facts, write_excita
 from evolvent.dynamics.results.tables import EXCITATION, excitation_rows, harmonic_rows, write_tables
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
@@ -35,14 +35,16 @@ from evolvent_meshes.errors import EvolventError
 
 
 def run_excitation(
-    loads: SceneTorques, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
-) -> list[str]:
+    loads: SceneTorques, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
+    prepare: Preparer = prepare_model,
+) -> list[str]:  # fmt: skip
     """Computes the excitation under some torques and writes its tables and picture to `out`. Returns a sentence where
     a picture could not be drawn or error bars not be estimated. Collective.
 
     loads: the scene and its torques, see `scene_torques`.
     resume: go on from the positions that an earlier call has solved.
     overwrite: begin anew, and replace what an earlier call has written.
+    prepare: prepares gears that other calls share.
 
     Raises SceneError, FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged, SearchError, NoForceSurface,
     WriteError.
@@ -51,8 +53,8 @@ def run_excitation(
     check_positions(loads.scene)
     fine, coarse = kept_positions(loads, out, resume)
     with writing_to(out, OF_EXCITATION, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
-        excitation = computed_excitation(loads, comm, progress, fine)
-        companion = companion_of(excitation, loads, comm, progress, coarse)
+        excitation = computed_excitation(loads, comm, progress, fine, prepare)
+        companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         progress.stage(OUTPUT)
         return said + loads.warnings + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
 
@@ -85,18 +87,19 @@ def _checked(out: Path, written: Sequence[str], resume: bool, overwrite: bool) -
 
 
 def computed_excitation(
-    loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None
-) -> MeshExcitation:
-    """Of the scene's gears under each torque. kept: positions on disk. Collective."""
+    loads: SceneTorques, comm: MPI.Comm, progress: Progress, kept: KeptPositions | None = None,
+    prepare: Preparer = prepare_model,
+) -> MeshExcitation:  # fmt: skip
+    """Of the scene's gears under each torque. kept: positions on disk. prepare: see `run_excitation`. Collective."""
     problem = loads.problem
     angles = np.array(uniform_pitch(problem.pair.pinion.z, loads.scene.sweep.positions).angles)
-    loaded = loaded_pitch(loads, angles, run_mesh, comm, progress, POSITIONS, kept)
+    loaded = loaded_pitch(loads, angles, run_mesh, comm, progress, POSITIONS, kept, prepare)
     return MeshExcitation(unloaded_error(RigidFlanks(problem.pair, problem.flanks), angles, problem.torque_on), loaded)
 
 
 def companion_of(
     excitation: MeshExcitation, loads: SceneTorques, comm: MPI.Comm, progress: Progress,
-    kept: KeptPositions | None = None,
+    kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> CoarseExcitation:  # fmt: skip
     """The same positions and torques on elements of twice the size, where the scene asks for error bars; an error of
     meshing or solving becomes its `failure`: results are not lost for their error bars. Collective."""
@@ -104,7 +107,7 @@ def companion_of(
         return NO_COMPANION
     angles = excitation.loaded.angles
     try:
-        loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept)
+        loaded = loaded_pitch(loads, angles, companion_mesh, comm, progress, ERROR_BARS, kept, prepare)
         coarse = MeshExcitation(excitation.unloaded_error, loaded)
         return CoarseExcitation(coarse, loads.scene.mesh.order, loads.elements)
     except EvolventError as error:  # the same on all ranks
@@ -113,12 +116,13 @@ def companion_of(
 
 def loaded_pitch(
     loads: SceneTorques, angles: Floats, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
-    kept: KeptPositions | None = None,
+    kept: KeptPositions | None = None, prepare: Preparer = prepare_model,
 ) -> LoadedMesh:  # fmt: skip
     """The pitch under each torque, on the sectors that `mesh` makes. Collective.
 
     stage: name of the solution in the progress.
     kept: positions on disk; where all of them are there, no gears are meshed.
+    prepare: see `run_excitation`.
     """
     known = on_first(comm, kept.read) if kept is not None else {}
 
@@ -131,7 +135,7 @@ def loaded_pitch(
         progress.stage(stage, len(angles), len(known))
         return mesh_of(known, loads.forces, angles)
     progress.stage(MESHING)
-    model = prepare_model(loads.problem, comm, mesh, lambda: progress.stage(CONDENSING)).model
+    model: GearModel = prepare(loads.problem, comm, mesh, lambda: progress.stage(CONDENSING)).model
     progress.stage(stage, len(angles), len(known))
     return loaded_mesh(model, loads.torques, angles, comm, known, keep)
 

@@ -31,6 +31,7 @@ from evolvent.dynamics.results.response_errors import VibrationErrors
 from evolvent.dynamics.results.spectrum import spectrum_rows, write_spectrum
 from evolvent.dynamics.results.torque_map import write_torque_map
 from evolvent.fem.parallel.ranks import on_first
+from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
@@ -56,14 +57,16 @@ SPEEDS, SPEEDS_AGAIN, MAP = "speeds", "speeds, error bars", "torque map"
 
 
 def run_dynamics(
-    scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False
-) -> list[str]:
+    scene: Scene, out: Path, resume: bool = False, overwrite: bool = False, quiet: bool = False,
+    prepare: Preparer = prepare_model,
+) -> list[str]:  # fmt: skip
     """Computes excitation and vibration and writes their tables and pictures to `out`. Returns sentences on what a
     reader has to know, pictures that could not be drawn among them. Collective.
 
     scene: with or without a section [dynamics]; its wear is left out.
     resume: go on from the positions of the excitation that an earlier call has solved; the rest is computed anew.
     overwrite: begin anew, and replace what an earlier call has written.
+    prepare: prepares gears that other calls share.
 
     Raises as `run_excitation`, and NoSteadyState.
     """
@@ -74,8 +77,8 @@ def run_dynamics(
     fine, coarse = kept_positions(loads, out, resume)
     check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
     with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
-        excitation = computed_excitation(loads, comm, progress, fine)
-        companion = companion_of(excitation, loads, comm, progress, coarse)
+        excitation = computed_excitation(loads, comm, progress, fine, prepare)
+        companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         written = partial(_written, excitation, companion, loads, section, out, progress)
         return said + loads.warnings + on_first(comm, written)
 

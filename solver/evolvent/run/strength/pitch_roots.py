@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.gear_model import Mesher, prepare_model
+from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
+from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.gears.solution.certificates import certify
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
@@ -18,6 +19,7 @@ from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
+from evolvent.scene.schema.strength import StrengthSection
 from evolvent.strength.peak_positions import Roots, roots_of, with_angles, with_peaks
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent_meshes.gears.member import Member
@@ -33,21 +35,27 @@ class PitchRoots:
     roots: Roots
 
 
+def scene_root_meshes(scene: Scene) -> tuple[RootMesh, RootMesh]:
+    """Those of results and of error bars."""
+    times = (scene.strength or StrengthSection()).root_refinement
+    return RootMesh(times), RootMesh(times, coarse=True)
+
+
 def pitch_roots(
     scene: Scene, mesh: Mesher, comm: MPI.Comm, progress: Progress, stage: str = POSITIONS,
-    angles: Sequence[float] | None = None,
+    angles: Sequence[float] | None = None, prepare: Preparer = prepare_model,
 ) -> PitchRoots:  # fmt: skip
     """Of both gears at each friction coefficient. Collective.
 
     mesh: of `root_meshes`. stage: of the progress, for the positions. angles: beyond the uniform ones; None: see
-    `PitchRoots`.
+    `PitchRoots`. prepare: prepares gears that other calls share.
 
     Raises MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance.
     """
     progress.stage(MESHING)
     problem = gear_problem(scene)
     one_sector = replace(problem, options=replace(problem.options, whole_gears=False))  # it has the roots
-    model = prepare_model(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
+    model: GearModel = prepare(one_sector, comm, mesh, lambda: progress.stage(CONDENSING)).model
     pitch, frictions = pitch_of(scene), scene.contact.friction
     progress.stage(stage, len(pitch.angles))
     swept = []

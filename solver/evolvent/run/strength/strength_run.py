@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
 
 from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
-from evolvent.gears.meshing.root_meshes import coarse_root_mesh, root_mesh
+from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
-from evolvent.run.strength.pitch_roots import pitch_roots
+from evolvent.run.strength.pitch_roots import pitch_roots, scene_root_meshes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
@@ -45,29 +44,31 @@ NO_DEEP_TEETH = 12
 """Tolerance class that is taken where the scene names none: Y_DT is 1."""
 
 
-def run_strength(scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False) -> list[str]:
+def run_strength(
+    scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
+) -> list[str]:
     """Computes the pitch with roots finer than a run's, and the stress there, and writes tables and picture to `out`.
     Returns a sentence where a picture could not be drawn or error bars not be estimated. Collective.
 
-    scene: its wear is left out. overwrite: replace what an earlier call has written.
+    scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
+    calls share.
 
     Raises InputError where the standard does not cover the gears or a strain gauge does not lie on a root, before
     anything is computed; FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, Imbalance, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
-    times = (scene.strength or StrengthSection()).root_refinement
     _loads_of_standard(scene)
     on_first(comm, lambda: _check(out, overwrite))
-    on_first(comm, lambda: _check_gauges(scene, times))
+    on_first(comm, lambda: _check_gauges(scene))
     dolfinx_compat.silence_logs()
     with Progress(hidden=hidden) as progress:
-        fine = pitch_roots(scene, partial(root_mesh, times=times), comm, progress)
+        fine_mesh, coarse_mesh = scene_root_meshes(scene)
+        fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
         coarse, failure = None, ""
         if wanted_output(scene).error_bars:
             try:
-                mesh = partial(coarse_root_mesh, times=times)
-                coarse = pitch_roots(scene, mesh, comm, progress, ERROR_BARS, fine.angles)
+                coarse = pitch_roots(scene, coarse_mesh, comm, progress, ERROR_BARS, fine.angles, prepare)
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
@@ -105,11 +106,11 @@ def _scene_gauges(scene: Scene) -> list[Gauge]:
     ]
 
 
-def _check_gauges(scene: Scene, times: int) -> None:
+def _check_gauges(scene: Scene) -> None:
     """Raises InputError where a gauge does not lie on a root, before anything is solved."""
     problem, gauges = gear_problem(scene), _scene_gauges(scene)
     for member in sorted({gauge.member for gauge in gauges}):
-        made = root_mesh(problem, member, times)
+        made = scene_root_meshes(scene)[0](problem, member)
         mesh = made if isinstance(made, MeshData) else made.mesh
         for gauge in gauges:
             if gauge.member is member:

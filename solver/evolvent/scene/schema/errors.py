@@ -16,6 +16,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from evolvent.scene.schema.guesses.meant_value import expected, meant_value
 from evolvent.scene.schema.guesses.nearest_key import nearest_key, unit_conversion
 from evolvent.scene.schema.not_supported import not_supported
+from evolvent.scene.schema.section import SceneSection
 from evolvent_meshes.errors import InputError
 
 NOTHING = "nothing"
@@ -68,13 +69,14 @@ def validation_error(problem: InputProblem) -> PydanticCustomError:
     return PydanticCustomError("scene", "scene", {"problem": problem})
 
 
-def problems_of(error: ValidationError, model: type[BaseModel]) -> list[InputProblem]:
+def problems_of(error: ValidationError, model: type[SceneSection]) -> list[InputProblem]:
     """The problems of a failed validation, with the texts of the schema `model`: all, or the first `MOST`."""
     details = error.errors(include_url=False)
     problems = _without_consequences([_problem(each, model) for each in details[:MOST]])
     if len(details) > MOST:
-        more, remedy = len(details) - MOST, "mend these first; is this a scene file at all?"
-        problems.append(InputProblem("scene file", f"{more} more errors", "a scene (docs/scene.md)", remedy))
+        more, remedy = len(details) - MOST, f"mend these first; is this a {model.kind} file at all?"
+        wanted = f"a {model.kind} ({model.page})"
+        problems.append(InputProblem(f"{model.kind} file", f"{more} more errors", wanted, remedy))
     return problems
 
 
@@ -105,7 +107,7 @@ def _short(text: str, limit: int = LONGEST_TEXT) -> str:
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 
-def _problem(details: ErrorDetails, model: type[BaseModel]) -> InputProblem:
+def _problem(details: ErrorDetails, model: type[SceneSection]) -> InputProblem:
     """The problem that one of pydantic's errors reports."""
     path = list(details["loc"])
     if details["type"] == "scene":
@@ -154,19 +156,31 @@ def keys_of(model: type[BaseModel], prefix: str = "") -> dict[str, FieldInfo]:
     return keys
 
 
-def _unknown_key(path: list[str | int], value: Any, model: type[BaseModel]) -> InputProblem:
+def key_problem(name: str, value: Any, model: type[SceneSection]) -> InputProblem | None:
+    """The problem where a dotted name is not that of a key of a schema, None where it is. value: given for it."""
+    keys, path = keys_of(model), name.split(".")
+    if name in keys:
+        return None
+    for depth in range(1, len(path)):
+        if not any(each.startswith(".".join([*path[:depth], ""])) for each in keys):
+            return _unknown_key(list(path[:depth]), {".".join(path[depth:]): value}, model)
+    section = section_of(_declaration(path, model)) if any(each.startswith(f"{name}.") for each in keys) else None
+    return _not_a_section(list(path), value, section) if section else _unknown_key(list(path), value, model)
+
+
+def _unknown_key(path: list[str | int], value: Any, model: type[SceneSection]) -> InputProblem:
     """The problem with an unknown key or section: it names the most similar key, or says what is not supported."""
-    name, parents = str(path[-1]), [str(part) for part in path[:-1]]
+    name, parents = str(path[-1]), [part for part in path[:-1] if isinstance(part, str)]
     kind = "section" if isinstance(value, dict) else "key"
     found = f"an unknown {kind}, {shown(value)}"
     place = f"a key of [{dotted(parents)}]" if parents else "a section or key"
-    allowed = f"{place} that docs/scene.md lists"
+    allowed = f"{place} that {model.page} lists"
     words = not_supported(name, dotted(parents))
     similar = _similar(name, parents, model, strict=bool(words))
     if words and not similar:
         return InputProblem(dotted(path), found, f"{allowed}; {words}", "delete it")
     if not similar:
-        return InputProblem(dotted(path), found, allowed, "delete it, or see docs/scene.md")
+        return InputProblem(dotted(path), found, allowed, f"delete it, or see {model.page}")
     converted = unit_conversion(name, similar)
     remedy = f"did you mean {similar}? {f'Then {converted}; else' if converted else 'Else'} delete it"
     return InputProblem(dotted(path), found, allowed, remedy)

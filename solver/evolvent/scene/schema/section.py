@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
@@ -31,7 +31,13 @@ def key(
 
 
 class SceneSection(BaseModel):
-    """A table of the scene file: frozen, without unknown keys, conversion between types, NaN and infinity."""
+    """A table of an input file, of a scene by default: frozen, without unknown keys, conversion between types, NaN and
+    infinity."""
+
+    kind: ClassVar[str] = "scene"
+    """What the file describes."""
+    page: ClassVar[str] = "docs/scene.md"
+    """The page that lists its keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from evolvent.cli import main
+from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.run.strength import strength_run
 from evolvent.run.strength.strength_run import run_strength
@@ -108,7 +109,7 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
     def refuse(*_: object, **__: object) -> None:
         raise MeshError("too coarse")
 
-    monkeypatch.setattr(strength_run, "coarse_root_mesh", refuse)
+    monkeypatch.setattr(strength_run, "scene_root_meshes", lambda _: (RootMesh(), refuse))
     (said,) = run_strength(scene(), tmp_path, quiet=True)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
 

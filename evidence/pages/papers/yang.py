@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evidence.pages.yang_figures import level_figures
+from evidence.pages.papers.yang_figures import level_figures
 from evidence.tables import markdown
 from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, LEVELS_PER_WIDTH
 from evolvent.results.archive.error_bar_data import plus_minus

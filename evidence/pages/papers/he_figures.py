@@ -1,4 +1,4 @@
-"""`python -m evidence.pages.he_figures --out DIR [--part PART] [--few]`: computes and keeps the figures of
+"""`python -m evidence.pages.papers.he_figures --out DIR [--part PART] [--few]`: computes and keeps the figures of
 docs/he2022.md.
 
 PART points: the vibration of He's pair over the speed with several models of its mesh, bores and dampings, its contact
@@ -19,9 +19,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS
-from evidence.pages import kept
-from evidence.pages.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
-from evidence.pages.kept import Named
+from evidence.pages.papers import kept
+from evidence.pages.papers.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
+from evidence.pages.papers.kept import Named
 from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.engagement import engagement
@@ -29,7 +29,7 @@ from evolvent.results.run_data import read_run
 from evolvent.scene.scene import Scene, load_scene
 
 KEPT, SENSITIVITY = "he2022/figures.csv", "he2022/sensitivity.csv"
-COMMAND = "python -m evidence.pages.he_figures --out DIR"
+COMMAND = "python -m evidence.pages.papers.he_figures --out DIR"
 PAPER_RPM, OPERATING_RPM = 3500.0, 2000.0
 """Measured resonance; the speed of the paper's Figures 14b to 22."""
 BORES = 36, 40, 70, 100  # mm

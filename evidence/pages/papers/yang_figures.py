@@ -1,4 +1,4 @@
-"""`python -m evidence.pages.yang_figures OUT`: keeps the figures of docs/yang2022.md of a run of demos/yang2022.toml.
+"""`python -m evidence.pages.papers.yang_figures OUT`: keeps the figures of docs/yang2022.md of a run of its scene.
 
 They are those at the smallest and at the largest friction coefficient of the run. Angles are those of a tooth, 0 at the
 pitch point. `python -m evidence.pages` then writes them into the pages.
@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from evidence.checkout import DOCS
-from evidence.pages import kept
-from evidence.pages.kept import Named
+from evidence.pages.papers import kept
+from evidence.pages.papers.kept import Named
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import between, pooled_peaks
 from evolvent.results.drawing.teeth import YANG
@@ -115,7 +115,7 @@ def keep(run: RunData, docs: Path) -> Path:
 
 def level_figures(docs: Path, level: str) -> dict[str, float]:
     """What was kept. Raises ValueError where nothing was."""
-    return kept.kept(docs / KEPT / f"{level}.csv", "python -m evidence.pages.yang_figures OUT")
+    return kept.kept(docs / KEPT / f"{level}.csv", "python -m evidence.pages.papers.yang_figures OUT")
 
 
 if __name__ == "__main__":

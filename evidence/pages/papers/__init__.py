@@ -1,0 +1,1 @@
+"""Pages that hold a paper's pair against it, point by point."""

@@ -1,0 +1,87 @@
+"""Studies, schedulers and workers started as programs of their own, and what studies leave, for tests and evidence."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from evidence.checkout import ROOT
+from evidence.processes import environment
+
+PATIENCE = 300.0
+"""Longest time that something is waited for [s]."""
+
+
+def words(study: Path, out: Path, *more: str) -> list[str]:
+    """The command line of a study."""
+    return [sys.executable, "-m", "evolvent", "study", str(study), "--out", str(out), *more]
+
+
+@contextmanager
+def started(command: list[str]) -> Iterator[subprocess.Popen[str]]:
+    """A program in the background, which is killed at the end."""
+    program = subprocess.Popen(
+        command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        yield program
+    finally:
+        program.kill()
+        program.communicate()
+
+
+def workers_of(parent: int) -> list[int]:
+    """Process numbers of the worker processes below a study."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            own, words = int(path.parent.name), path.with_name("cmdline").read_text().split("\0")
+            if int(path.read_text().rpartition(")")[2].split()[1]) == parent and "spawn_main" in " ".join(words):
+                found.append(own)
+        except OSError:
+            continue
+    return found
+
+
+def until(holds: Callable[[], object], *, say: str) -> None:
+    """Waits until a call returns something true. Raises TimeoutError."""
+    end = time.monotonic() + PATIENCE
+    while not holds():
+        if time.monotonic() > end:
+            raise TimeoutError(f"waited {PATIENCE:g} s for {say}")
+        time.sleep(0.05)
+
+
+def records(out: Path) -> list[Path]:
+    """Those of scenes that were computed."""
+    return sorted(out.glob("scenes/*/study_scene.json"))
+
+
+def times_written(out: Path) -> list[int]:
+    """How often each scene's record was written."""
+    manifests = (path.parent / "results/evolvent-files.jsonl" for path in records(out))
+    return [path.read_text().count("study_scene.json") for path in manifests]
+
+
+@contextmanager
+def scheduler(tmp_path: Path) -> Iterator[str]:
+    """A Dask scheduler of its own, and its address."""
+    file = tmp_path / "scheduler.json"
+    code = "from distributed.cli.dask_scheduler import main; main()"
+    options = ["--port", "0", "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file)]
+    with started([sys.executable, "-c", code, *options]):
+        until(lambda: file.exists() and file.read_text().endswith("}"), say="the scheduler")
+        yield file.read_text().partition('"address": "')[2].partition('"')[0]
+
+
+@contextmanager
+def worker(address: str, tmp_path: Path, threads: int = 1) -> Iterator[subprocess.Popen[str]]:
+    """A worker of a scheduler."""
+    code = "from distributed.cli.dask_worker import main; main()"
+    options = ["--nthreads", str(threads), "--no-dashboard", "--no-nanny", "--local-directory", str(tmp_path)]
+    with started([sys.executable, "-c", code, address, *options]) as program:
+        yield program

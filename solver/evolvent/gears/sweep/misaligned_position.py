@@ -1,0 +1,71 @@
+"""A position reused at another misalignment: the search and the compliance stay, gap and levers are new."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import frictionless, normal_part
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.gears.contact.contact_geometry import ContactGeometry
+from evolvent.gears.contact.overlap_check import overlap_outside, unsearched_overlaps
+from evolvent.gears.contact.pair_contact import GearContact
+from evolvent.gears.contact.tooth_contact import ToothContact
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.kinematics import Stand
+from evolvent.gears.sweep.position_search import SharedPosition, free_rotation, free_shift
+from evolvent.gears.sweep.worn_position import STALE
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
+
+
+def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
+    """The same position without friction, with the wheel misaligned as in the model's pair.
+
+    shared: of the same gears at another misalignment, searched on undeflected flanks.
+
+    None where the flanks have moved so far, or the contact so near to the window's rim, that the position has to be
+    searched, or where no solution is found.
+    """
+    geometry = shared.contact.geometry
+    stand = replace(geometry.stand, pair=model.pair)
+    if geometry.is_deflected or _farthest(geometry, stand) > STALE * model.pair.pinion.normal_module:
+        return None
+    teeth = tuple(_misaligned(geometry, tooth, stand) for tooth in geometry.teeth)
+    contact = GearContact(replace(geometry, stand=stand, teeth=teeth), model.bodies)
+    system = contact.system_with(shared.system.compliance, model.load.on, model.load.at(stand.angle))
+    try:
+        smooth = frictionless(normal_part(system), shared.smooth.traction[:, 0] > 0.0)
+    except NotConverged:
+        return None
+    near = abs(free_shift(model, smooth)) <= STALE * model.pair.pinion.normal_module
+    if not near or contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
+        return None
+    unsearched = unsearched_overlaps(contact.geometry, model.teeth)
+    if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) != 0.0:
+        return None
+    return SharedPosition(contact, system, smooth, unsearched)
+
+
+def _misaligned(geometry: ContactGeometry, tooth: ToothContact, stand: Stand) -> ToothContact:
+    """A tooth pair with the gap that the wheel's motion to another stand leaves."""
+    return replace(tooth, operator=tooth.operator.before(_moved(geometry, tooth, stand)))
+
+
+def _farthest(geometry: ContactGeometry, stand: Stand) -> float:
+    """Largest distance [mm] by which the gap changes."""
+    normals = [t.operator.shape @ t.operator.frames[:, 0] for t in geometry.teeth]
+    moved = [_moved(geometry, t, stand) for t in geometry.teeth]
+    return max(float(np.abs(np.einsum("qa,qa->q", n, u)).max()) for n, u in zip(normals, moved))
+
+
+def _moved(geometry: ContactGeometry, tooth: ToothContact, stand: Stand) -> Floats:
+    """Displacement (q, d) [mm] of the wheel at the points of a tooth pair, as it moves to another stand."""
+    wheel, d = geometry.bodies[Member.WHEEL], geometry.d
+    points, pairs = wheel.flank.points, tooth.pairing
+    before, after = (
+        points @ each.rotation(Member.WHEEL, d, tooth.tooth).T + each.centre(Member.WHEEL, d)
+        for each in (geometry.stand, stand)
+    )
+    return np.asarray(wheel.flank.evaluate(after - before, pairs.facet2, pairs.xi2[:, None])[0][:, 0])

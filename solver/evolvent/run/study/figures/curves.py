@@ -1,0 +1,60 @@
+"""Figures of a study over its one parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.labels import UNITS, ending, label
+from evolvent.results.drawing.style import foot, png, sheet, styled
+from evolvent.run.study.figures.study_values import StudyValues
+
+COLOURS = matplotlib.colormaps["tab10"]
+MARKERS = "o", "s", "^", "D", "v", "P", "X", "*"
+
+
+def curves_picture(values: StudyValues, names: Sequence[str]) -> bytes:
+    """PNG of `curves_figure`."""
+    with styled():
+        return png(curves_figure(values, names))
+
+
+def curves_figure(values: StudyValues, names: Sequence[str]) -> Figure:
+    """A line a figure, with error bars where they are known. names: figures of one unit."""
+    axis, unit = values.axes[0], UNITS.get(ending(names[0].partition(" (")[0]), "")
+    figure = sheet(values.title, _subtitle(values, names), (9.6, 5.4))
+    axes, order = figure.subplots(), np.argsort(values.points(0), kind="stable")
+    places = axis.places[values.points(0)][order]
+    for number, name in enumerate(names):
+        own, bars = values.of(name)[order], values.errors(name)[order]
+        style = {"color": COLOURS(number % 10), "marker": MARKERS[number % len(MARKERS)], "markersize": 5.0}
+        known = bars if np.isfinite(bars).any() else None
+        axes.errorbar(places, own, known, capsize=3.0, label=_label(name, unit=not unit or len(names) == 1), **style)
+    if not axis.is_numeric:
+        axes.set_xticks(axis.places, axis.texts)
+    axes.set_xlabel(axis.label)
+    axes.set_ylabel(f"[{unit}]" if len(names) > 1 and unit else _label(names[0]))
+    if len(names) > 1:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    has_bars = any(np.isfinite(values.errors(name)).any() for name in names)
+    foot(figure, *(["Bars: estimated error."] if has_bars else []), *values.foot)
+    return figure
+
+
+def _label(name: str, unit: bool = True) -> str:
+    """In words, with the friction coefficient behind."""
+    figure, space, friction = name.partition(" (")
+    return label(figure, unit) + space + friction
+
+
+def _subtitle(values: StudyValues, names: Sequence[str]) -> str:
+    """From where to where the first figure goes."""
+    axis, own = values.axes[0], values.of(names[0])
+    known = np.flatnonzero(np.isfinite(own))
+    low, high = known[np.argmin(own[known])], known[np.argmax(own[known])]
+    texts = [axis.texts[point] for point in values.points(0)]
+    said = f"{_label(names[0])} from {own[low]:.4g} at {texts[low]} to {own[high]:.4g} at {texts[high]}"
+    return f"{said}. {values.done} scenes."

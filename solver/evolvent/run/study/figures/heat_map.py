@@ -1,0 +1,75 @@
+"""A figure of a study over its two parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.labels import label
+from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
+from evolvent.run.study.figures.study_values import StudyValues
+from evolvent_meshes.arrays import Floats
+
+MOST_NUMBERS = 150
+"""Largest number of cells into which their values are written."""
+DARK = 0.55
+"""Part of the colour scale from which numbers are white."""
+MOST_TICKS = 20
+
+
+def map_picture(values: StudyValues, name: str) -> bytes:
+    """PNG of `map_figure`."""
+    with styled():
+        return png(map_figure(values, name))
+
+
+def map_figure(values: StudyValues, name: str) -> Figure:
+    """A cell for each scene, equally large, with its value; cells of scenes without one are hatched."""
+    grid, (first, second) = grid_of(values, name), values.axes
+    words, space, friction = name.partition(" (")
+    figure = sheet(label(words) + space + friction, f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
+    axes = figure.subplots()
+    axes.grid(visible=False)
+    axes.set_facecolor("#f4f4f4")
+    norm = Normalize(float(np.nanmin(grid)), float(np.nanmax(grid)))
+    drawn = axes.pcolormesh(np.ma.masked_invalid(grid), cmap=PRESSURE_MAP, norm=norm, edgecolors="white", linewidth=0.6)
+    for j, i in np.argwhere(~np.isfinite(grid)):
+        axes.fill([i, i + 1, i + 1, i], [j, j, j + 1, j + 1], facecolor="none", edgecolor=FAINT, hatch="///", lw=0.0)
+    if grid.size <= MOST_NUMBERS:
+        _numbers(axes, grid, norm)
+    for ticks, texts in ((axes.set_xticks, first.texts), (axes.set_yticks, second.texts)):
+        step = -(-len(texts) // MOST_TICKS)
+        ticks(np.arange(len(texts))[::step] + 0.5, texts[::step])
+    axes.set_xlabel(first.label)
+    axes.set_ylabel(second.label)
+    figure.colorbar(drawn, ax=axes, pad=0.015, label=label(words))
+    foot(figure, *values.foot)
+    return figure
+
+
+def grid_of(values: StudyValues, name: str) -> Floats:
+    """(n, m) a figure over the second and the first axis; NaN where a scene has none."""
+    first, second = values.axes
+    grid = np.full((len(second.values), len(first.values)), np.nan)
+    grid[values.points(1), values.points(0)] = values.of(name)
+    return grid
+
+
+def _numbers(axes: Axes, grid: Floats, norm: Normalize) -> None:
+    """Writes the values into their cells."""
+    size = 9.0 if grid.shape[1] <= 10 else 7.0
+    for (j, i), value in np.ndenumerate(grid):
+        if np.isfinite(value):
+            colour = "white" if norm(value) > DARK else INK
+            axes.text(i + 0.5, j + 0.5, f"{value:.3g}", ha="center", va="center", fontsize=size, color=colour)
+
+
+def _range(values: StudyValues, grid: Floats) -> str:
+    """Where the figure is least and largest."""
+    said = []
+    for word, place in (("least", np.nanargmin(grid)), ("largest", np.nanargmax(grid))):
+        j, i = np.unravel_index(int(place), grid.shape)
+        said.append(f"{word} {grid[j, i]:.4g} at ({values.axes[0].texts[i]}, {values.axes[1].texts[j]})")
+    return f"{said[0].capitalize()}, {said[1]}."

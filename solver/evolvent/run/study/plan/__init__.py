@@ -1,0 +1,1 @@
+"""What a study computes: its file, its parameters, its scenes."""

@@ -1,0 +1,54 @@
+"""The parameters of a study: its axes, and the values of each of its scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from scipy.stats import qmc
+
+from evolvent.run.study.plan.study_file import LatinHypercubeSection, StudyFile
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.errors import keys_of
+
+SampleRow = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Keys that take their values together."""
+
+    keys: tuple[str, ...]
+    """Of the scene, dotted."""
+    rows: tuple[SampleRow, ...]
+    """Values of the keys, one row a point of the axis."""
+    is_sampled: bool = False
+    """Whether the points are samples of a Latin hypercube, which have no order."""
+
+
+def axes(study: StudyFile) -> list[Axis]:
+    """Each key of [grid] is an axis of its own, the keys of [list] are one together, and those of [latin_hypercube]."""
+    found = [Axis((name,), tuple((value,) for value in values)) for name, values in study.grid.items()]
+    if study.list:
+        found.append(Axis(tuple(study.list), tuple(zip(*study.list.values()))))
+    if study.latin_hypercube is not None:
+        found.append(_sampled(study.latin_hypercube))
+    return found
+
+
+def combinations(axes: Sequence[Axis]) -> Iterator[Mapping[str, Any]]:
+    """Key -> value, of each scene: all combinations of the points of the axes, the last axis varying fastest."""
+    for rows in product(*(axis.rows for axis in axes)):
+        yield {name: value for axis, row in zip(axes, rows) for name, value in zip(axis.keys, row)}
+
+
+def _sampled(section: LatinHypercubeSection) -> Axis:
+    """Samples of a Latin hypercube: each of as many equal intervals of a parameter holds one (McKay et al. 1979)."""
+    lowest, highest = zip(*section.ranges.values())
+    sampler = qmc.LatinHypercube(d=len(section.ranges), seed=section.seed)
+    samples = qmc.scale(sampler.random(section.samples), lowest, highest)
+    whole = [keys_of(Scene)[name].annotation is int for name in section.ranges]
+    rows = (tuple(round(v) if w else float(v) for v, w in zip(row, whole)) for row in samples)
+    return Axis(tuple(section.ranges), tuple(rows), is_sampled=True)

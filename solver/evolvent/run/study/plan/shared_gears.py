@@ -1,0 +1,83 @@
+"""Which scenes of a study have the same condensed gears.
+
+The compliance of gears depends neither on friction nor on misalignment, and on the torque by their meshes only, which
+may serve a range of torques.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+
+from evolvent.gears.gear_model import Mesher
+from evolvent.gears.load_list import shared_gears_name
+from evolvent.gears.meshing.companion_meshes import companion_mesh
+from evolvent.gears.meshing.levelled_meshes import run_mesh
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
+from evolvent.run.strength.pitch_roots import scene_root_meshes
+from evolvent.run.study.plan.study_file import Computation
+from evolvent.scene.gear_problem import gear_problem, shares_gears
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.skips import wanted_output
+
+SHARING: tuple[Computation, ...] = ("run", "excitation", "dynamics", "strength")
+"""Computations whose scenes can share gears. Wear has flanks of its own."""
+
+
+def meshes(scene: Scene, compute: Computation) -> tuple[Mesher, ...]:
+    """From which a scene's gears are condensed: for results, and for error bars where it asks for them."""
+    both = scene_root_meshes(scene) if compute == "strength" else (run_mesh, companion_mesh)
+    return both if wanted_output(scene).error_bars else both[:1]
+
+
+def own_torque(scene: Scene) -> SceneTorques:
+    """For the excitation of a scene under its own torque."""
+    return SceneTorques(scene.model_copy(update={"wear": None}), (1e3 * scene.load.torque_Nm,))
+
+
+def condensed_problem(scene: Scene, compute: Computation) -> GearProblem:
+    """The problem whose gears a computation condenses. Raises SceneError."""
+    if compute == "dynamics":
+        return scene_torques(scene, (scene.dynamics or DynamicsSection()).torque_percents).problem
+    return gear_problem(scene)
+
+
+def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scene]:
+    """The scenes on meshes that serve all torques under which the same gears stand among them."""
+    if compute not in SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
+        return list(scenes)
+    torques: dict[str, set[float]] = defaultdict(set)
+    names = [_without_torque(scene) for scene in scenes]
+    for name, scene in zip(names, scenes):
+        torques[name].add(scene.load.torque_Nm)
+    return [_serving(scene, torques[name]) for name, scene in zip(names, scenes)]
+
+
+def gears_names(scenes: Sequence[Scene], compute: Computation) -> list[str]:
+    """Name of the gears that each scene has in common with another one; empty where it has its own."""
+    if compute not in SHARING:
+        return [""] * len(scenes)
+    names = [_name(scene, compute) if shares_gears(scene) else "" for scene in scenes]
+    counts = Counter(names)
+    return [name if counts[name] > 1 else "" for name in names]
+
+
+def _name(scene: Scene, compute: Computation) -> str:
+    times = scene_root_meshes(scene)[0].times if compute == "strength" else 0
+    return f"{shared_gears_name(condensed_problem(scene, compute))} {len(meshes(scene, compute))} {times}"
+
+
+def _without_torque(scene: Scene) -> str:
+    """Name of the gears of a scene under any torque."""
+    return shared_gears_name(replace(gear_problem(scene), torque=1.0, mesh_torques=(1.0, 1.0)))
+
+
+def _serving(scene: Scene, torques: set[float]) -> Scene:
+    """On meshes for all of some torques [N·m], unless it says itself for which."""
+    if len(torques) == 1 or scene.load.mesh_torques_Nm is not None:
+        return scene
+    load = scene.load.model_copy(update={"mesh_torques_Nm": (min(torques), max(torques))})
+    return scene.model_copy(update={"load": load})

@@ -1,0 +1,115 @@
+"""The scenes of a study: each validated, named by its content, and in a group with those that share its gears."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from evolvent.results.archive.archive import fingerprint
+from evolvent.run.study.plan.parameters import axes, combinations
+from evolvent.run.study.plan.shared_gears import gears_names, on_shared_meshes
+from evolvent.run.study.plan.study_file import Computation, StudyFile
+from evolvent.scene.scene import Scene, SceneError, scene_from_values
+from evolvent.scene.scene_text import apply_override, nested_values, scene_text
+
+NAME = 16
+"""Digits of a scene's name."""
+NOT_DRAWN = {"pictures": False, "animation": False, "fields": False}
+"""Output that scenes of a study leave out unless the study sets it."""
+Values = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class StudyScene:
+    """A scene of a study, or the reason why there is none."""
+
+    parameters: Mapping[str, Any]
+    """Key -> value."""
+    scene: Scene | None
+    """None where the values are refused."""
+    refusal: str
+    """Why they are refused; empty where they are not."""
+    name: str
+    """Of its content: of all that its results depend on, and of what is computed."""
+    gears: str
+    """Name of the condensed gears that it can share; empty where it has its own."""
+
+
+def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version: str) -> list[StudyScene]:
+    """All scenes of a study, in the order of its parameters.
+
+    path: of the study file. overrides: "section.key=value" for all scenes, as `--set` takes them. version: of the
+    program. Raises SceneError where the base scene cannot be read.
+    """
+    base, found = base_values(study, path, overrides), []
+    for parameters in combinations(axes(study)):
+        values = deepcopy(base)
+        for name, value in parameters.items():
+            _put(values, name, value, path.parent)
+        try:
+            scene = scene_from_values(values)
+        except SceneError as error:
+            found.append(StudyScene(parameters, None, "; ".join(map(str, error.problems)), "", ""))
+        else:
+            found.append(StudyScene(parameters, scene, "", "", ""))
+    if study.share_gears:
+        found = _sharing(found, study.compute)
+    return [replace(each, name=_name(each, study.compute, version)) for each in found]
+
+
+def base_values(study: StudyFile, path: Path, overrides: Sequence[str]) -> Values:
+    """Nested values of the base scene with those that all scenes share. Raises SceneError."""
+    base = path.parent / study.scene
+    try:
+        values = nested_values(scene_text(base), (), base.parent)
+    except SceneError as error:
+        raise SceneError(error.problems, f"{path}: scene {base}") from error
+    for name in study.leave_out:
+        _take_out(values, name)
+    for name, value in {**{f"output.{name}": drawn for name, drawn in NOT_DRAWN.items()}, **study.set}.items():
+        _put(values, name, value, path.parent)
+    for override in overrides:
+        apply_override(values, override)
+    return values
+
+
+def _put(values: Values, name: str, value: Any, folder: Path) -> None:
+    """Sets a dotted key. folder: to which the paths of flank charts are relative."""
+    *sections, last = name.split(".")
+    for section in sections:
+        values = values.setdefault(section, {})
+    values[last] = str(folder / value) if last == "flank_csv" and isinstance(value, str) else value
+
+
+def _take_out(values: Values, name: str) -> None:
+    """Removes a dotted key, where it is there."""
+    *sections, last = name.split(".")
+    for section in sections:
+        values = values.get(section, {})
+    values.pop(last, None)
+
+
+def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudyScene]:
+    """With the names of the gears that several scenes share, on meshes that serve the torques of all of these."""
+    known = {number: each.scene for number, each in enumerate(scenes) if each.scene is not None}
+    served = dict(zip(known, on_shared_meshes(list(known.values()), compute)))
+    names = dict(zip(known, gears_names(list(served.values()), compute)))
+    return [
+        replace(each, scene=served[number], gears=names[number]) if number in known else each
+        for number, each in enumerate(scenes)
+    ]
+
+
+def _name(each: StudyScene, compute: Computation, version: str) -> str:
+    """Digits of a SHA-256."""
+    content: list[Any]
+    if each.scene is None:
+        content = [sorted((name, repr(value)) for name, value in each.parameters.items())]
+    else:
+        content = [fingerprint(each.scene), each.scene.output.model_dump(mode="json"), each.scene.skip.off]
+    return hashlib.sha256(json.dumps([version, compute, *content]).encode()).hexdigest()[:NAME]

@@ -1,0 +1,1 @@
+"""What a study gives: records of scenes, figures, table and pictures."""

@@ -1,0 +1,124 @@
+"""The figures that a study can name, and those that it gathers by default, for each computation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+from evolvent.dynamics.results.curves import LOADED, SECANT, TANGENT
+from evolvent.dynamics.results.response import DYNAMICS, RESPONSE
+from evolvent.dynamics.results.tables import HARMONICS
+from evolvent.results.archive.error_bar_data import FigureErrors
+from evolvent.run.study.plan.study_file import Computation, StudyFile
+from evolvent.run.study.results.check_figures import CHECK, CheckFigures
+from evolvent.run.study.results.gathering import ERROR, Figure
+from evolvent.scene.schema.errors import InputProblem, SceneError
+from evolvent.scene.schema.guesses.nearest_key import nearest_key
+from evolvent.strength.results.tables import STRENGTH
+from evolvent_meshes.gears.member import Member
+
+SUMMARY, WEAR = "summary.json", "wear.json"
+
+
+def _of_check() -> list[Figure]:
+    return [Figure(each.name, CHECK, each.name) for each in fields(CheckFigures)]
+
+
+def _of_run() -> list[Figure]:
+    names = [each.name for each in fields(FigureErrors)]
+    own = [Figure(name, SUMMARY, name, "frictions", error=f"estimated_error.{name}") for name in names]
+    return [*own, Figure("balance_error", SUMMARY, "balance_error", "frictions")]
+
+
+def _of_excitation() -> list[Figure]:
+    def of(name: str, quantity: str, column: str) -> Figure:
+        return Figure(name, HARMONICS, column, where={"quantity": quantity, "harmonic": 1}, error=f"{column}{ERROR}")
+
+    return [
+        of("transmission_error_peak_to_peak_um", LOADED, "peak_to_peak"),
+        of("transmission_error_mean_um", LOADED, "mean"),
+        of("transmission_error_harmonic_1_um", LOADED, "amplitude"),
+        of("tangent_stiffness_mean_N_per_um", TANGENT, "mean"),
+        of("tangent_stiffness_peak_to_peak_N_per_um", TANGENT, "peak_to_peak"),
+        of("secant_stiffness_mean_N_per_um", SECANT, "mean"),
+    ]
+
+
+def _of_dynamics() -> list[Figure]:
+    def over_speed(name: str, column: str) -> Figure:
+        return Figure(name, RESPONSE, column, statistic="max")
+
+    return [
+        over_speed("largest_dynamic_factor", "dynamic_factor"),
+        over_speed("largest_equivalent_amplitude_um", "equivalent_amplitude_um"),
+        over_speed("largest_separated_share", "separated_share"),
+        Figure("natural_speed_rpm", DYNAMICS, "natural_speed_rpm", error=f"natural_speed_rpm{ERROR}"),
+        Figure("mean_stiffness_N_per_um", DYNAMICS, "mean_stiffness_N_per_um", error=f"mean_stiffness_N_per_um{ERROR}"),
+    ]
+
+
+def _of_strength() -> list[Figure]:
+    def of(gear: str, name: str, method: str, error: str = "") -> Figure:
+        where: Mapping[str, str | int | float] = {"gear": gear, "method": method}
+        return Figure(f"{gear}_{name}_MPa", STRENGTH, "stress_MPa", where=where, error=error)
+
+    found = []
+    for gear in (member.label for member in Member):
+        found += [
+            of(gear, "tension", "finite elements, tension", f"stress_MPa{ERROR}"),
+            of(gear, "compression", "finite elements, compression", f"stress_MPa{ERROR}"),
+            of(gear, "ISO_2006", "ISO 6336-3:2006"),
+            of(gear, "ISO_2019", "ISO 6336-3:2019"),
+            of(gear, "equal_shares_b", "equal shares, outer point of double contact (b)"),
+            of(gear, "Pedrero", "Pedrero's shares, largest over the path"),
+        ]
+    return found
+
+
+def _of_wear() -> list[Figure]:
+    found = []
+    for gear in (member.label for member in Member):
+        for name in ("deepest_um", "volume_mm3"):
+            found.append(Figure(f"{gear}_{name}", WEAR, f"{gear}.{name}", "reports", statistic="last"))
+    for name in ("max_pressure_MPa", "transmission_error_peak_to_peak_um", "mesh_stiffness_N_per_mm_um"):
+        found.append(Figure(f"worn_{name}", WEAR, name, "reports", statistic="last"))
+    return found + _of_run()
+
+
+CATALOGUE: Mapping[Computation, list[Figure]] = {
+    "check": _of_check(), "run": _of_run(), "excitation": _of_excitation(), "dynamics": _of_dynamics(),
+    "strength": _of_strength(), "wear": _of_wear(),
+}  # fmt: skip
+"""Figures with a name, by computation."""
+DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
+    "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
+              "wheel_tip_thickness_mm"),
+    "run": ("transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent"),
+    "excitation": ("transmission_error_peak_to_peak_um", "tangent_stiffness_mean_N_per_um"),
+    "dynamics": ("largest_dynamic_factor", "largest_equivalent_amplitude_um", "natural_speed_rpm"),
+    "strength": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("tension", "compression",
+                                                                                      "ISO_2006", "ISO_2019")),
+    "wear": ("pinion_deepest_um", "wheel_deepest_um", "worn_max_pressure_MPa",
+             "worn_transmission_error_peak_to_peak_um"),
+}  # fmt: skip
+"""Names of the figures that are gathered where a study names none."""
+
+
+def gathered_figures(study: StudyFile, source: str) -> list[Figure]:
+    """The figures of a study's table: those that it names, or those of its computation by default, and its own.
+
+    source: path of the study file. Raises SceneError where a name is unknown or stands for two.
+    """
+    own = [Figure(**each.model_dump()) for each in study.figure]
+    known = {each.name: each for each in [*CATALOGUE[study.compute], *own]}
+    names = study.figures or (*DEFAULTS[study.compute], *(each.name for each in own))
+    for name in names:
+        if name not in known:
+            meant = nearest_key(name, dict.fromkeys(known, ""), {})
+            allowed = f'figures of "{study.compute}" (docs/studies.md), or names of [[figure]]'
+            remedy = f"did you mean {meant}?" if meant else f"take some of {', '.join(known)}"
+            raise SceneError([InputProblem("figures", f"{name!r}, an unknown figure", allowed, remedy)], source)
+        if list(names).count(name) > 1 or sum(each.name == name for each in [*CATALOGUE[study.compute], *own]) > 1:
+            remedy = "name each figure once, and other figures otherwise"
+            raise SceneError([InputProblem("figures", f"{name!r} twice", "different names", remedy)], source)
+    return [known[name] for name in names]

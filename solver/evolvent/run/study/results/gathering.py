@@ -1,0 +1,133 @@
+"""Figures that a study gathers: a value of a table that each scene leaves in its folder."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+from evolvent_meshes.files import open_file
+
+ERROR = "_error"
+"""Behind the name of a figure: its estimated error."""
+STATISTICS: Mapping[str, Callable[[Sequence[float]], float]] = {
+    "max": max, "min": min, "mean": fmean, "last": lambda values: values[-1],
+    "peak_to_peak": lambda values: max(values) - min(values),
+}  # fmt: skip
+"""What is taken of several rows."""
+ONLY = "only"
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Where a figure stands."""
+
+    name: str
+    """Of its column in the study's table."""
+    file: str
+    """CSV or JSON file in a scene's folder."""
+    column: str
+    """Of the CSV file, or key of the JSON file; dotted where it lies deeper."""
+    rows: str = ""
+    """Key of a JSON file's list whose entries are its rows; empty: the file itself is the only row."""
+    where: Mapping[str, str | int | float] = field(default_factory=dict)
+    """Column -> value that a row has."""
+    statistic: str = ONLY
+    """What is taken of several rows; "only": there is one."""
+    error: str = ""
+    """Column of its estimated error; empty where there is none."""
+
+
+class Gathering:
+    """The tables of one scene, each read once. folder: of the scene."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._tables: dict[tuple[str, str], list[Row]] = {}
+
+    def columns(self, figures: Sequence[Figure]) -> dict[str, float]:
+        """Column of the study's table -> value, NaN where there is none. A scene with several friction coefficients has
+        a column for each."""
+        found: dict[str, float] = {}
+        for figure in figures:
+            groups = self._by_friction(figure)
+            for friction, rows in groups.items():
+                behind = f" (μ = {friction})" if len(groups) > 1 else ""
+                found[figure.name + behind] = _value(rows, figure.column, figure.statistic)
+                if figure.error:
+                    found[f"{figure.name}{ERROR}{behind}"] = _value(rows, figure.error, figure.statistic)
+        return found
+
+    def _by_friction(self, figure: Figure) -> dict[str, list[Row]]:
+        """The rows of a figure; those of different friction coefficients apart. At least one group."""
+        groups: dict[str, list[Row]] = {}
+        for row in self._rows(figure.file, figure.rows):
+            if all(_same(_deep(row, name), value) for name, value in figure.where.items()):
+                groups.setdefault(_friction(row), []).append(row)
+        return groups or {"": []}
+
+    def _rows(self, file: str, rows: str) -> list[Row]:
+        if (file, rows) not in self._tables:
+            self._tables[file, rows] = list(_read(self._folder / file, rows))
+        return self._tables[file, rows]
+
+
+def _read(path: Path, rows: str) -> Iterator[Row]:
+    """Rows of a table; none where it cannot be read."""
+    try:
+        with open_file(path) as file:
+            text = file.read().decode("utf-8")
+    except (OSError, ValueError):
+        return
+    if path.suffix == ".csv":
+        yield from csv.DictReader(text.splitlines())
+        return
+    try:
+        content = json.loads(text)
+    except ValueError:
+        return
+    listed = _deep(content, rows) if rows else [content]
+    yield from (row for row in listed or [] if isinstance(row, Mapping))
+
+
+def _deep(row: Any, dotted: str) -> Any:
+    """The value of a dotted key; None where it is not there."""
+    if isinstance(row, Mapping) and dotted in row:
+        return row[dotted]
+    for part in dotted.split("."):
+        row = row.get(part) if isinstance(row, Mapping) else None
+    return row
+
+
+def _friction(row: Row) -> str:
+    """The friction coefficient of a row as text; empty where it has none."""
+    number = _number(row.get("friction"))
+    return "" if math.isnan(number) else f"{number:g}"
+
+
+def _same(found: Any, wanted: str | int | float) -> bool:
+    if isinstance(wanted, str):
+        return str(found) == wanted
+    return math.isclose(_number(found), wanted, rel_tol=1e-8, abs_tol=1e-12)
+
+
+def _number(value: Any) -> float:
+    """NaN where the value is no number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def _value(rows: Sequence[Row], column: str, statistic: str) -> float:
+    """NaN where no row has a number there, or several rows have where only one is wanted."""
+    numbers = [number for row in rows if not math.isnan(number := _number(_deep(row, column)))]
+    if not numbers or (statistic == ONLY and len(numbers) > 1):
+        return math.nan
+    return numbers[0] if statistic == ONLY else STATISTICS[statistic](numbers)

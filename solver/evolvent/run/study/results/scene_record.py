@@ -1,0 +1,53 @@
+"""What became of a scene of a study: a file in its folder, written last, by which it is recognised as computed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent_meshes.text_files import UnreadableText, read_text
+
+RECORD = "study_scene.json"
+SCENES = "scenes"
+"""Folder of the scenes' folders, below that of the study."""
+
+
+@dataclass(frozen=True)
+class SceneRecord:
+    """study_scene.json: what became of a scene."""
+
+    name: str
+    """Of its content, and of its folder."""
+    compute: str
+    """What was computed."""
+    status: str
+    """done, failed (the computation ended with an error), or refused (its values are no scene)."""
+    reason: str
+    """Why it failed or was refused; empty where it is done."""
+    warnings: tuple[str, ...]
+    """What a reader has to know, a sentence each."""
+    seconds: float
+    """Wall time of the computation."""
+
+
+def scene_folder(out: Path, name: str) -> Path:
+    """Of a scene, below that of the study."""
+    return out / SCENES / name
+
+
+def write_record(folder: Path, record: SceneRecord) -> None:
+    """Raises WriteError, FolderError."""
+    text = json.dumps(asdict(record), ensure_ascii=False, indent=1) + "\n"
+    RunFolder(folder).write_text(RECORD, text)
+
+
+def read_record(folder: Path) -> SceneRecord | None:
+    """None where the scene was not computed to the end, or its record cannot be read."""
+    try:
+        values = json.loads(read_text(folder / RECORD, "JSON", 1))
+        record = SceneRecord(**{**values, "warnings": tuple(values["warnings"])})
+    except (UnreadableText, ValueError, TypeError, KeyError):
+        return None
+    return record if record.name == folder.name else None

@@ -1,0 +1,85 @@
+"""The table of a study: a row a scene, with its parameters, the gathered figures, and what became of it."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import csv_text
+from evolvent.run.study.plan.study_scenes import StudyScene
+from evolvent.run.study.results.gathering import Figure, Gathering
+from evolvent.run.study.results.scene_record import SCENES, SceneRecord, scene_folder
+
+TABLE, PARQUET = "study.csv", "study.parquet"
+WAITING, DONE = "waiting", "done"
+WRITERS = "pandas", "pyarrow"
+"""Packages that write Parquet; Debian has no pyarrow."""
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row of study.csv: first the parameters, each by its key, then the figures, then what follows here."""
+
+    parameters: Mapping[str, Any]
+    """Key of the scene -> value."""
+    figures: Mapping[str, float]
+    """Figure -> value, NaN where the scene has none; with error bars in a column `..._error` behind it."""
+    status: str
+    """done; failed: the computation ended with an error; refused: the values are no scene; waiting: to come."""
+    reason: str
+    """Why a scene failed or was refused."""
+    folder: str
+    """Of the scene, below that of the study."""
+    seconds: float | None
+    """Wall time of the scene."""
+
+    def flat(self, figures: Sequence[str]) -> dict[str, object]:
+        """As it is written. figures: columns of all rows."""
+        values = {name: self.figures.get(name, float("nan")) for name in figures}
+        own = {"status": self.status, "reason": self.reason, "folder": self.folder, "seconds": self.seconds}
+        return {**{name: written(value) for name, value in self.parameters.items()}, **values, **own}
+
+
+def written(value: Any) -> object:
+    """A parameter's value in the table: a list as TOML writes it."""
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (list, tuple, dict)) else value
+
+
+def table_row(scene: StudyScene, record: SceneRecord | None, out: Path, figures: Sequence[Figure]) -> TableRow:
+    """Of a scene. record: None where it waits."""
+    if record is None:
+        return TableRow(scene.parameters, {}, WAITING, "", "", None)
+    if record.status != DONE:
+        where = f"{SCENES}/{record.name}" if scene_folder(out, record.name).exists() else ""
+        return TableRow(scene.parameters, {}, record.status, record.reason, where, record.seconds)
+    found = Gathering(scene_folder(out, record.name)).columns(figures)
+    return TableRow(scene.parameters, found, DONE, "", f"{SCENES}/{record.name}", record.seconds)
+
+
+def figure_columns(rows: Sequence[TableRow], figures: Sequence[Figure]) -> list[str]:
+    """Columns of the figures, in the order in which they are gathered."""
+    found = dict.fromkeys(name for row in rows for name in row.figures)
+    return list(found) or [figure.name for figure in figures]
+
+
+def write_table(folder: RunFolder, rows: Sequence[TableRow], columns: Sequence[str]) -> None:
+    """Writes study.csv and, where pandas and pyarrow are installed, study.parquet. Raises WriteError, FolderError."""
+    flat = [row.flat(columns) for row in rows]
+    folder.write_text(TABLE, csv_text(flat))
+    if all(importlib.util.find_spec(name) for name in WRITERS):
+        folder.write(PARQUET, parquet(flat))
+
+
+def parquet(rows: Sequence[Mapping[str, object]]) -> bytes:
+    """Content of a Parquet file."""
+    import pandas
+
+    content = io.BytesIO()
+    pandas.DataFrame(rows).to_parquet(content, index=False)
+    return content.getvalue()

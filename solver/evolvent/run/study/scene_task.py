@@ -1,0 +1,126 @@
+"""One scene of a study, and the condensed gears of several, computed in a worker process."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mpi4py import MPI
+
+from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.load_list import LoadList
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.dynamics.excitation import run_excitation
+from evolvent.run.dynamics.kept_positions import KEPT
+from evolvent.run.dynamics.vibration import run_dynamics
+from evolvent.run.scene_run import run_scene
+from evolvent.run.strength.strength_run import run_strength
+from evolvent.run.study.plan.shared_gears import condensed_problem, meshes, own_torque
+from evolvent.run.study.plan.study_file import Computation
+from evolvent.run.study.results.check_figures import run_check
+from evolvent.run.study.results.scene_record import SceneRecord, read_record, write_record
+from evolvent.scene.checking.problem_size import memory_megabytes, require_memory
+from evolvent.scene.scene import Scene
+from evolvent.strength.results.tables import STRENGTH
+from evolvent_meshes.errors import EvolventError, InputError, ResultError
+
+DONE, FAILED, REFUSED = "done", "failed", "refused"
+
+
+@dataclass(frozen=True)
+class SceneTask:
+    """A scene to be computed."""
+
+    name: str
+    """Of its content."""
+    folder: Path
+    """Where its results go."""
+    compute: Computation
+    """What is computed."""
+    scene: Scene
+    """Valid."""
+    share_of_memory: int = 1
+    """How many scenes are computed at once on a machine; 0: its memory is not checked."""
+
+
+def condense(tasks: Sequence[SceneTask]) -> LoadList:
+    """The gears that some scenes share. Those that cannot be condensed are left out: each scene then fails by itself,
+    with its own reason."""
+    compute, first = tasks[0].compute, tasks[0].scene
+    gears = LoadList([condensed_problem(task.scene, compute) for task in tasks])
+    for mesh in meshes(first, compute):
+        with contextlib.suppress(EvolventError):
+            gears.prepare(condensed_problem(first, compute), MPI.COMM_SELF, mesh)
+    return gears
+
+
+def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
+    """Computes a scene in its folder, and leaves a record there where a repetition would find the same: it is done, or
+    fails by its input or without a reliable result. gears: condensed for it, None: it condenses its own."""
+    if (known := read_record(task.folder)) is not None:
+        return known
+    begin, warnings, reason, lasting = time.perf_counter(), [], "", True
+    try:
+        _require_room(task)
+        warnings = COMPUTING[task.compute](task, prepare_model if gears is None else gears.prepare)
+    except EvolventError as error:
+        reason, lasting = str(error), isinstance(error, (InputError, ResultError)) and not _of_folder(error)
+    except (OSError, MemoryError) as error:
+        reason, lasting = str(error) or type(error).__name__, False
+    record = SceneRecord(
+        task.name, task.compute, FAILED if reason else DONE, reason, tuple(warnings), time.perf_counter() - begin
+    )
+    if lasting:
+        write_record(task.folder, record)
+    return record
+
+
+def _of_folder(error: EvolventError) -> bool:
+    return isinstance(error, FolderError)
+
+
+def _require_room(task: SceneTask) -> None:
+    """Raises SceneError where as many scenes at once as there are want more memory than the machine has."""
+    if task.share_of_memory and task.compute != "check":
+        require_memory(task.scene, lambda scene, _: task.share_of_memory * memory_megabytes(scene), MPI.COMM_SELF)
+
+
+def _run(task: SceneTask, prepare: Preparer) -> list[str]:
+    resume = (task.folder / "results/state.npz").exists()
+    scene = task.scene.model_copy(update={"wear": None})
+    run_scene(scene, task.folder, resume, quiet=True, overwrite=not resume, prepare=prepare)
+    return []
+
+
+def _wear(task: SceneTask, prepare: Preparer) -> list[str]:
+    resume = (task.folder / "results/wear.npz").exists()
+    run_scene(task.scene, task.folder, resume, quiet=True, overwrite=not resume)
+    return []
+
+
+def _excitation(task: SceneTask, prepare: Preparer) -> list[str]:
+    resume = (task.folder / KEPT).exists()
+    return run_excitation(own_torque(task.scene), task.folder, resume, not resume, quiet=True, prepare=prepare)
+
+
+def _dynamics(task: SceneTask, prepare: Preparer) -> list[str]:
+    resume = (task.folder / KEPT).exists()
+    return run_dynamics(task.scene, task.folder, resume, not resume, quiet=True, prepare=prepare)
+
+
+def _strength(task: SceneTask, prepare: Preparer) -> list[str]:
+    return run_strength(task.scene, task.folder, (task.folder / STRENGTH).exists(), quiet=True, prepare=prepare)
+
+
+def _check(task: SceneTask, prepare: Preparer) -> list[str]:
+    return run_check(task.scene, task.folder)
+
+
+COMPUTING: Mapping[Computation, Callable[[SceneTask, Preparer], list[str]]] = {
+    "check": _check, "run": _run, "excitation": _excitation, "dynamics": _dynamics, "strength": _strength,
+    "wear": _wear,
+}  # fmt: skip
+"""Computation -> what computes a scene in its folder and returns sentences for a reader."""

@@ -1,0 +1,199 @@
+"""A study from start to finish. `evolvent study` calls only this."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+from distributed import Client
+
+from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_lock import locked
+from evolvent.results.drawing.picture_files import draw
+from evolvent.run.progress import OUTPUT, Progress
+from evolvent.run.study.figures.all import study_pictures
+from evolvent.run.study.figures.study_values import StudyValues
+from evolvent.run.study.plan.parameters import axes
+from evolvent.run.study.plan.study_file import StudyFile
+from evolvent.run.study.plan.study_scenes import StudyScene
+from evolvent.run.study.results.gathering import Figure
+from evolvent.run.study.results.scene_record import SceneRecord, read_record, scene_folder
+from evolvent.run.study.results.study_table import (
+    PARQUET,
+    TABLE,
+    TableRow,
+    figure_columns,
+    table_row,
+    write_table,
+)
+from evolvent.run.study.scene_task import DONE, REFUSED, SceneTask
+from evolvent.run.study.submission import finished
+from evolvent_meshes.errors import ResultError
+
+SCENES_STAGE = "scenes"
+INTERVAL = 10.0
+"""Time after which the table is written again while scenes are computed [s]."""
+CONTENT = "study.json"
+"""What the table is of: written first, so that another study does not replace it unasked."""
+PICTURES = "pictures/*.png"
+Workers = Callable[[], AbstractContextManager[Client]]
+
+
+class NothingComputed(ResultError):
+    """No scene of a study could be computed."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study, ready to be computed."""
+
+    file: StudyFile
+    """What it is made from."""
+    scenes: Sequence[StudyScene]
+    """In the order of the table."""
+    figures: Sequence[Figure]
+    """That the table gathers."""
+
+    @property
+    def content(self) -> str:
+        """What its table is of, as JSON: title, computation, and a SHA-256 of its scenes' names in their order."""
+        names = hashlib.sha256(" ".join(each.name for each in self.scenes).encode()).hexdigest()
+        values = {"title": self.file.title, "compute": self.file.compute, "scenes": len(self.scenes), "names": names}
+        return json.dumps(values, ensure_ascii=False, indent=1) + "\n"
+
+
+def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite: bool, quiet: bool) -> list[str]:
+    """Computes those scenes of a study that are not in `out` yet, and writes its table and pictures. Returns a sentence
+    on scenes that failed, and for each picture that could not be drawn.
+
+    workers: context with the processes that compute. at_once: how many scenes a machine computes at once; 0: its memory
+    is not checked. overwrite: replace the table of another study. quiet: no progress is displayed.
+
+    Raises FolderError, InputError where workers cannot be had, NothingComputed, WriteError.
+    """
+    with locked(out):
+        folder = RunFolder(out)
+        folder.require_free([TABLE, PARQUET, CONTENT, PICTURES])
+        _require_same(study, folder, overwrite)
+        records = {each.name: record for each in study.scenes if (record := _known(each, out)) is not None}
+        table = _Table(study, out, records)
+        with Progress(hidden=quiet) as progress:
+            progress.stage(SCENES_STAGE, len(study.scenes), table.done)
+            missing = table.missing(at_once)
+            if missing:
+                with workers() as client:
+                    for record in finished(client, missing):
+                        table.add(record)
+                        progress.reach(table.done)
+                        table.write_now_and_then(folder)
+            progress.stage(OUTPUT)
+            folder.remove(str(path.relative_to(out)) for path in out.glob(PICTURES))
+            rows, columns = table.write(folder)
+            said = table.said()
+            drawn = draw(study_pictures(_values(study, rows, columns)), folder)
+        return [*said, *drawn.failures]
+
+
+def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
+    """Notes what the table is of. Raises FolderError where the folder has the table of another study."""
+    path = folder.out / CONTENT
+    if path.exists() and _names(path.read_text(encoding="utf-8")) != _names(study.content) and not overwrite:
+        raise FolderError(
+            f"{folder.out}: found the table of another study, or of other values ({CONTENT}); allowed: a folder "
+            "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
+            "that both have; --out names another folder"
+        )
+    folder.write_text(CONTENT, study.content)
+
+
+def _names(content: str) -> object:
+    """What a study's content says of its scenes; None where it cannot be read."""
+    with contextlib.suppress(ValueError, TypeError, KeyError):
+        return json.loads(content)["names"]
+    return None
+
+
+def _values(study: Study, rows: Sequence[TableRow], columns: Sequence[str]) -> StudyValues:
+    """For the pictures: each key of a Latin hypercube is an axis."""
+    points = axes(study.file)
+    keys = [(key,) for axis in points for key in axis.keys] if study.file.latin_hypercube else [a.keys for a in points]
+    return StudyValues(study.file.title, keys, rows, columns, study.file.latin_hypercube is not None)
+
+
+def _known(scene: StudyScene, out: Path) -> SceneRecord | None:
+    """The record of a scene that was computed before, or whose values are refused."""
+    if scene.scene is None:
+        return SceneRecord(scene.name, "", REFUSED, scene.refusal, (), 0.0)
+    return read_record(scene_folder(out, scene.name))
+
+
+class _Table:
+    """The table of a study as it fills. records: by the name of their scene."""
+
+    def __init__(self, study: Study, out: Path, records: Mapping[str, SceneRecord]) -> None:
+        self.study, self.out, self.records = study, out, dict(records)
+        self.written = time.monotonic()
+        self.rows: dict[str, TableRow] = {}
+
+    @property
+    def done(self) -> int:
+        """How many scenes are not waiting."""
+        return sum(each.name in self.records for each in self.study.scenes)
+
+    def missing(self, at_once: int) -> dict[SceneTask, str]:
+        """Tasks that are to be computed, each once, with the name of the gears that they share."""
+        compute = self.study.file.compute
+        return {
+            SceneTask(each.name, scene_folder(self.out, each.name), compute, each.scene, at_once): each.gears
+            for each in {each.name: each for each in self.study.scenes}.values()
+            if each.scene is not None and each.name not in self.records
+        }
+
+    def add(self, record: SceneRecord) -> None:
+        """A scene was computed."""
+        self.records[record.name] = record
+
+    def write_now_and_then(self, folder: RunFolder) -> None:
+        """Writes the table where it was not for a while."""
+        if time.monotonic() - self.written > INTERVAL:
+            self.write(folder)
+            self.written = time.monotonic()
+
+    def write(self, folder: RunFolder) -> tuple[list[TableRow], list[str]]:
+        """Writes the table of all scenes, and returns its rows and the columns of its figures. Raises WriteError,
+        FolderError."""
+        rows = self.all_rows()
+        columns = figure_columns(rows, self.study.figures)
+        write_table(folder, rows, columns)
+        return rows, columns
+
+    def all_rows(self) -> list[TableRow]:
+        """In the order of the study; each scene's figures are read once."""
+        return [self._row(each) for each in self.study.scenes]
+
+    def _row(self, scene: StudyScene) -> TableRow:
+        record = self.records.get(scene.name)
+        if record is None or scene.name not in self.rows:
+            row = table_row(scene, record, self.out, self.study.figures)
+            if record is None:
+                return row
+            self.rows[scene.name] = row
+        return self.rows[scene.name]
+
+    def said(self) -> list[str]:
+        """What a reader has to know of failures. Raises NothingComputed where no scene is done."""
+        rows = self.all_rows()
+        failed = [row for row in rows if row.status != DONE]
+        if not failed:
+            return []
+        count = f"{len(failed)} of {len(rows)} scenes are not done"
+        sentence = f"{count} ({TABLE} says why), the first one: {failed[0].reason}"
+        if len(failed) == len(rows):
+            raise NothingComputed(f"{self.out}: {sentence}")
+        return [sentence]

@@ -1,0 +1,149 @@
+"""A study from start to finish, in this process: `evolvent check` of scenes of Zhang's pair, which takes no time."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.run_lock import locked
+from evolvent.run.study import study_run
+from evolvent.run.study.results.scene_record import SceneRecord
+from evolvent.run.study.scene_task import SceneTask, solve
+from evolvent.run.study.study_run import NothingComputed, run_study
+from tests.support.running.study_cases import HEAD, TORQUES, study_of, table
+
+FAILING = f"{HEAD}[grid]\nload.torque_Nm = [-1.0, 100.0]\n"
+
+
+@contextmanager
+def nobody() -> Iterator[None]:
+    """In place of worker processes."""
+    yield None
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the scenes that are computed, in this process."""
+    names: list[str] = []
+
+    def here(_: object, tasks: dict[SceneTask, str]) -> Iterator[SceneRecord]:
+        for task in tasks:
+            names.append(task.name)
+            yield solve(task)
+
+    monkeypatch.setattr(study_run, "finished", here)
+    return names
+
+
+def run(folder: Path, text: str = TORQUES, overwrite: bool = False) -> list[str]:
+    """A study into folder/out."""
+    workers: Callable[[], Any] = nobody
+    return run_study(study_of(folder, text), folder / "out", workers, 1, overwrite, quiet=True)
+
+
+def test_table_has_a_row_a_scene(tmp_path: Path, computed: list[str]) -> None:
+    """Three torques: Hertz pressure grows with their root, the contact ratio stays; a folder and a picture each."""
+    assert run(tmp_path) == []
+    rows = table(tmp_path / "out")
+    assert [float(row["load.torque_Nm"]) for row in rows] == [100.0, 200.0, 300.0]
+    pressures = [float(row["pitch_point_pressure_MPa"]) for row in rows]
+    assert pressures[1:] == pytest.approx([pressures[0] * 2**0.5, pressures[0] * 3**0.5], rel=1e-8)
+    assert len({row["transverse_contact_ratio"] for row in rows}) == 1
+    assert {row["status"] for row in rows} == {"done"}
+    assert all((tmp_path / "out" / row["folder"] / "check.txt").is_file() for row in rows)
+    assert {path.name for path in (tmp_path / "out/pictures").iterdir()} == {
+        "curves.png", "curves_MPa.png", "curves_mm.png"
+    }  # fmt: skip
+
+
+def test_scenes_that_are_there_are_not_computed_again(tmp_path: Path, computed: list[str]) -> None:
+    """The same study: nothing. With one more value, and --overwrite for the other table: that one alone. The first
+    study again: nothing, and its table is the same to the byte."""
+    run(tmp_path)
+    before, first = (tmp_path / "out/study.csv").read_bytes(), list(computed)
+    run(tmp_path)
+    assert computed == first and len(first) == 3
+    run(tmp_path, TORQUES.replace("300.0", "300.0, 400.0"), overwrite=True)
+    assert len(computed) == 4 and len(table(tmp_path / "out")) == 4
+    run(tmp_path, overwrite=True)
+    assert len(computed) == 4 and (tmp_path / "out/study.csv").read_bytes() == before
+
+
+def test_another_study_does_not_replace_the_table(tmp_path: Path, computed: list[str]) -> None:
+    """Refused with what to do; files are as they were. Other figures of the same scenes are no other study."""
+    run(tmp_path)
+    before = (tmp_path / "out/study.csv").read_bytes()
+    with pytest.raises(FolderError, match=r"found the table of another study.*--overwrite replaces"):
+        run(tmp_path, TORQUES.replace("300.0", "400.0"))
+    assert (tmp_path / "out/study.csv").read_bytes() == before
+    run(tmp_path, f'figures = ["overlap_ratio"]\n{TORQUES}')
+    assert list(table(tmp_path / "out")[0])[:3] == ["load.torque_Nm", "overlap_ratio", "status"]
+
+
+def test_a_changed_table_is_not_replaced(tmp_path: Path, computed: list[str]) -> None:
+    """Notes that a reader has written into the table stay, also with --overwrite."""
+    run(tmp_path)
+    path = tmp_path / "out/study.csv"
+    path.write_text("my notes")
+    with pytest.raises(FolderError, match=r"study\.csv"):
+        run(tmp_path, overwrite=True)
+    assert path.read_text() == "my notes"
+
+
+def test_two_studies_at_once(tmp_path: Path, computed: list[str]) -> None:
+    """A study into the folder of one that is going on is refused."""
+    with locked(tmp_path / "out"), pytest.raises(FolderError, match="wanted a folder that no other run computes into"):
+        run(tmp_path)
+    assert computed == []
+
+
+def test_what_fails_stands_in_the_table(tmp_path: Path, computed: list[str]) -> None:
+    """A refused scene: its reason in the table and in a sentence; the other one is done."""
+    (said,) = run(tmp_path, FAILING)
+    assert said.startswith("1 of 2 scenes are not done (study.csv says why), the first one: load.torque_Nm: found -1")
+    refused, done = table(tmp_path / "out")
+    assert refused["status"] == "refused" and "a number above 0" in refused["reason"]
+    assert done["status"] == "done" and done["reason"] == ""
+
+
+def test_nothing_computed(tmp_path: Path, computed: list[str]) -> None:
+    """Where no scene is done the study ends with an error; its table says why."""
+    with pytest.raises(NothingComputed, match="1 of 1 scenes are not done"):
+        run(tmp_path, FAILING.replace(", 100.0", ""))
+    assert table(tmp_path / "out")[0]["status"] == "refused"
+
+
+def test_a_failure_that_would_come_again_is_kept(tmp_path: Path, computed: list[str]) -> None:
+    """A check of a scene whose folder holds a foreign file fails, and is tried again once that is gone; an input error
+    of the computation itself is not tried again."""
+    study = study_of(tmp_path)
+    folder = tmp_path / "out/scenes" / study.scenes[0].name
+    folder.mkdir(parents=True)
+    (folder / "check.txt").write_text("mine")
+    (said,) = run(tmp_path)
+    assert said.startswith("1 of 3 scenes are not done") and (folder / "check.txt").read_text() == "mine"
+    (folder / "check.txt").unlink()
+    assert run(tmp_path) == [] and len(computed) == 4
+
+
+def test_an_unknown_figure_is_named(tmp_path: Path) -> None:
+    """With the nearest one."""
+    with pytest.raises(ValueError, match="did you mean overlap_ratio"):
+        study_of(tmp_path, f'figures = ["overlap_ratios"]\n{TORQUES}')
+    with pytest.raises(ValueError, match="'overlap_ratio' twice"):
+        study_of(tmp_path, f'figures = ["overlap_ratio", "overlap_ratio"]\n{TORQUES}')
+
+
+def test_own_figures(tmp_path: Path, computed: list[str]) -> None:
+    """A figure that the study itself describes is gathered after the others."""
+    own = '[[figure]]\nname = "backlash_um"\nfile = "check.json"\ncolumn = "normal_backlash_um"\n'
+    run(tmp_path, TORQUES + own)
+    row = table(tmp_path / "out")[0]
+    found = json.loads((tmp_path / "out" / row["folder"] / "check.json").read_text())
+    assert float(row["backlash_um"]) == pytest.approx(found["normal_backlash_um"], rel=1e-8)

@@ -1,0 +1,125 @@
+"""`evolvent study` as a user types it: worker processes that die, a study that is killed, a Dask cluster, bad input."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from evidence.processes import environment
+from evidence.robustness.study_programs import (
+    PATIENCE,
+    records,
+    scheduler,
+    started,
+    times_written,
+    until,
+    words,
+    worker,
+    workers_of,
+)
+from tests.support.checkout import ROOT
+from tests.support.running.processes import Run
+from tests.support.running.study_cases import TORQUES, table, written
+
+SLOW = (
+    TORQUES.replace('"check"', '"strength"')
+    + '[set]\npinion.face_width_mm = 25.0\nmesh.level = "quick"\nsweep.positions = 4\noutput.error_bars = false\n'
+)
+"""Three scenes in plane strain, a second or two each, on the same gears."""
+CODE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+
+
+@pytest.mark.slow
+def test_a_study_that_is_killed_goes_on(tmp_path: Path) -> None:
+    """Killed after its first scene: its workers end, too. The same command computes what is missing, each scene once,
+    and its table has what one that nobody kills has."""
+    study, out = written(tmp_path, SLOW), tmp_path / "out"
+    with started(words(study, out, "--quiet")) as program:
+        until(lambda: records(out), say="the first scene")
+        below = workers_of(program.pid)
+        os.kill(program.pid, signal.SIGKILL)
+        assert below
+        until(lambda: not any(Path(f"/proc/{each}/stat").exists() for each in below), say="the end of its workers")
+    kept = {path: path.stat().st_mtime_ns for path in records(out)}
+    assert 1 <= len(kept) < 3
+    for folder in (out, tmp_path / "undisturbed"):
+        done = subprocess.run(words(study, folder, "--quiet"), cwd=ROOT, env=environment(), check=False)
+        assert done.returncode == 0
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert times_written(out) == [1, 1, 1]
+    one, two = ([{**row, "seconds": ""} for row in table(each)] for each in (out, tmp_path / "undisturbed"))
+    assert one == two and {row["status"] for row in one} == {"done"}
+
+
+@pytest.mark.slow
+def test_a_worker_that_dies_is_replaced(tmp_path: Path) -> None:
+    """Killed while it computes: the study ends with all scenes done."""
+    study, out = written(tmp_path, SLOW), tmp_path / "out"
+    with started(words(study, out, "--quiet", "--workers", "2")) as program:
+        until(lambda: records(out), say="the first scene")
+        os.kill(workers_of(program.pid)[0], signal.SIGKILL)
+        _, errors = program.communicate(timeout=PATIENCE)
+        assert program.returncode == 0, errors
+    assert {row["status"] for row in table(out)} == {"done"}
+    assert times_written(out) == [1, 1, 1]
+
+
+@pytest.mark.slow
+def test_a_cluster_loses_a_worker(tmp_path: Path) -> None:
+    """A running scheduler with two workers, one of which is killed after the first scene: all scenes are done."""
+    study, out = written(tmp_path, SLOW), tmp_path / "out"
+    with scheduler(tmp_path) as address, worker(address, tmp_path) as one, worker(address, tmp_path) as other:
+        with started(words(study, out, "--quiet", "--scheduler", address)) as program:
+            until(lambda: records(out), say="the first scene")
+            one.kill()
+            _, errors = program.communicate(timeout=PATIENCE)
+            assert program.returncode == 0, errors
+        assert other.poll() is None
+    assert {row["status"] for row in table(out)} == {"done"}
+
+
+@pytest.mark.slow
+def test_schedulers_that_cannot_compute(tmp_path: Path, run_script: Run) -> None:
+    """Without workers, with a worker of two threads: status 2 and what to start."""
+    study = written(tmp_path, TORQUES)
+    arguments = ["study", str(study), "--out", str(tmp_path / "out"), "--scheduler"]
+    with scheduler(tmp_path) as address:
+        done = run_script("-c", CODE, *arguments, address)
+        assert done.returncode == 2
+        assert "without workers; allowed: one with workers; remedy: start some with `dask worker tcp://" in done.stderr
+        with worker(address, tmp_path, threads=2):
+            done = run_script("-c", CODE, *arguments, address)
+    assert done.returncode == 2 and "with 2 threads; allowed: one thread a worker" in done.stderr
+    assert not (tmp_path / "out/study.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--workers", "0"), "--workers: found 0; allowed: a whole number from 1 on; remedy: write --workers"),
+        (("--workers", "2", "--scheduler", "tcp://127.0.0.1:9"), "--workers: found --scheduler, too; allowed: one of"),
+        (("--workers", "two"), "--workers: found"),
+        (("--scheduler", "nowhere"), "--scheduler: found 'nowhere', which does not answer"),
+        (("--scheduler", "tcp://127.0.0.1:9"), "--scheduler: found 'tcp://127.0.0.1:9', which does not answer"),
+        (("--set", "load.torque_Nm"), "--set: found"),
+    ],
+)
+def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...], said: str) -> None:
+    """Status 2, one line, nothing computed."""
+    study, out = written(tmp_path, TORQUES), tmp_path / "out"
+    done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", *options)
+    assert done.returncode == 2
+    assert done.stderr.startswith("evolvent: ") and said in done.stderr and "Traceback" not in done.stderr
+    assert not list(out.glob("scenes/*"))
+
+
+@pytest.mark.mpi
+def test_mpirun_is_refused(tmp_path: Path, run_script: Run) -> None:
+    """Two ranks: status 2, and what to do instead."""
+    study = written(tmp_path, TORQUES)
+    done = run_script("-c", CODE, "study", str(study), "--out", str(tmp_path / "out"), ranks=2)
+    assert done.returncode == 2 and "leave out mpirun, give --workers" in done.stderr

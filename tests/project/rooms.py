@@ -69,8 +69,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "results.archive": ("meshes.*", "scene", "gears", "gears.contact", "gears.sweep"),
     "results": (
-        "meshes", "meshes.gears", "meshes.gears.modifications", "fem", "gears", "gears.sweep", "gears.pressure",
-        "scene", "results.archive",
+        "meshes", "meshes.gears", "fem", "gears", "gears.sweep", "gears.pressure", "scene", "results.archive",
     ),
     "results.error_bars": ("meshes", "results.archive", "results"),
     "results.tables": (

@@ -22,7 +22,7 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile
-from tests.support.modified_gears import fully_modified
+from tests.support.meshes.modified_gears import fully_modified
 from tests.support.paper_pairs import he, yang, zhang
 
 RELIEF = Modifications(tip_relief_um=20.0, tip_relief_start_diameter=44.0, lead_crowning_um=8.0)

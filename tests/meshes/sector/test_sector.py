@@ -14,8 +14,8 @@ from evolvent_meshes.mesh.quality import scaled_jacobians
 from evolvent_meshes.sector.section import SectorResolution, section_mesh
 from evolvent_meshes.sector.sector import layer_heights, sector_mesh
 from tests.support.meshes.mesh_measures import covers_boundary, measure
+from tests.support.meshes.modified_gears import fully_modified
 from tests.support.meshes.sector_cases import COARSE, GEARS, gear_and_start, nodes_of, sector, turned
-from tests.support.modified_gears import fully_modified
 
 
 @pytest.mark.parametrize("name", GEARS)

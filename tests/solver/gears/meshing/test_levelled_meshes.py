@@ -27,7 +27,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.modifications.modifications import Modifications
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.mesh.mesh_data import MeshData
-from tests.support.modified_gears import fully_modified
+from tests.support.meshes.modified_gears import fully_modified
 from tests.support.paper_pairs import yang
 
 RELIEVED = Modifications(tip_relief_um=10.0, tip_relief_start_diameter=46.0, lead_crowning_um=5.0)

@@ -18,7 +18,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.mesh.quality import least_determinants
 from tests.support.gear_cases import helical_scene, spur_scene
-from tests.support.modified_gears import fully_modified
+from tests.support.meshes.modified_gears import fully_modified
 
 THIN_TIP = """
 [pair]

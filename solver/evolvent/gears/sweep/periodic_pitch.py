@@ -95,12 +95,13 @@ def one_pitch(swept: Sequence[SweptPosition]) -> list[SweptPosition]:
 
 def _renewed(first: SweptPosition, again: SweptPosition) -> SweptPosition:
     """A position with what it has again, of some of its coefficients."""
-    known = {result.friction: each for result, *each in zip(again.results, again.results, again.state.histories)}
-    both = [
-        known.get(result.friction, [result, history]) for result, history in zip(first.results, first.state.histories)
-    ]
-    results, histories = zip(*both)
-    return replace(again, results=results, state=replace(again.state, histories=histories))
+    renewed = {result.friction: result for result in again.results}
+    results = tuple(renewed.get(result.friction, result) for result in first.results)
+    if len(first.state.histories) < len(first.results):  # read from an archive, which keeps that of the last position
+        return replace(again, results=results)
+    histories = dict(zip((result.friction for result in first.results), first.state.histories))
+    histories |= dict(zip(renewed, again.state.histories))
+    return replace(again, results=results, state=replace(again.state, histories=tuple(histories.values())))
 
 
 def transmission_errors(position: SweptPosition, frictions: Sequence[float]) -> Floats:

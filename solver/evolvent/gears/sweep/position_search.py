@@ -32,7 +32,11 @@ RELOCATE = 1.7e-4
 """A free rotation that moves the flanks further [modules] is made exact and searched again; the gap is linear in a
 smaller one but for its square over the curvature radius, 3e-8 modules. Searches are made at rotations that are whole
 multiples of twice this, at the nearest one to the solution: so that results do not depend on where a search starts."""
-NEAREST = 1.001  # of half a multiple: at its very end two searches could send each other back and forth
+NEAREST = 1.001
+"""Of half a multiple, at whose very end two searches could send each other back and forth."""
+NEAREST_AGAIN = 1.2
+"""The same where the search has been at a place before: on coarse meshes the solution jumps a little between two
+neighbouring places, so that each can send it to the other one."""
 FIRST_CONTACT = 0.25
 """Share of the window that is taken for pressed at first; Newton's method needs fewer steps from too few points."""
 ROUNDS = 8
@@ -150,7 +154,10 @@ def shared_position(
     stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
     if known is not None:
         stand, half_width = Stand(model.pair, angle, known.searched.extra), known.searched.half_width
+    been: set[tuple[float, float]] = set()
     for _ in range(ROUNDS):
+        nearest = NEAREST_AGAIN if stand.extra in been else NEAREST
+        been.add(stand.extra)
         contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:
             raise NotConverged(
@@ -171,7 +178,7 @@ def shared_position(
             )
         if contact.geometry.reaches_rim(smooth.traction[:, 0] > 0.0):
             half_width *= 1.5
-        elif abs(shift) <= NEAREST * RELOCATE * model.pair.pinion.normal_module:
+        elif abs(shift) <= nearest * RELOCATE * model.pair.pinion.normal_module:
             unsearched = unsearched_overlaps(contact.geometry, model.teeth)
             if overlap_outside(contact, unsearched, smooth.force, free_rotation(model, smooth)) == 0.0:
                 return SharedPosition(contact, system, smooth, unsearched)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from evolvent.contact.newton.snes import NotConverged
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import position_search
 from evolvent.gears.sweep.contact_patch import ContactPatch
@@ -47,6 +48,18 @@ def test_search_without_fixed_rotations_depends_on_its_start(monkeypatch: pytest
     """The check above fails where searches are made wherever the last one led to."""
     monkeypatch.setattr(position_search, "_at_a_multiple", lambda model, stand: stand)
     assert apart(model_of(helical_scene("contact.friction=0"))) > 1e-7
+
+
+def test_two_places_do_not_send_a_search_back_and_forth(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no first search at a place is near enough, the second one there is taken, with the same result; were it
+    not, none would be found."""
+    model = model_of(spur_scene("contact.friction=0"))
+    wanted = solved(model, 0.0).transmission_error
+    monkeypatch.setattr(position_search, "NEAREST", 0.0)
+    assert solved(model, 0.0).transmission_error == pytest.approx(wanted, rel=1e-8)
+    monkeypatch.setattr(position_search, "NEAREST_AGAIN", 0.0)
+    with pytest.raises(NotConverged, match="after 8 searches"):
+        solved(model, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 from scipy.optimize import brentq
@@ -30,6 +31,8 @@ SCENE = DEMOS / "zhang2023.toml"
 PLANE = "pinion.face_width_mm=25"
 PAPER = {"pinion": 490.6, "wheel": 487.01}
 """MPa, at 500 N·m."""
+RADII = 15, 20, 25, 30
+"""Of the rack's tip, in hundredths of a module."""
 REFINEMENTS = 1, 2, 4, 8
 DEDENDUM = 1.60
 """As in these studies."""
@@ -78,8 +81,11 @@ def figures(runs: Runs) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     yield from _contact_ratio(load_scene(SCENE).gear_pair())
     folder, _ = runs.ended("demo", "table.csv", sys.executable, ROOT / "demos/zhang2023.py")
-    yield from _demo(read(folder / "table.csv"))
+    rows = read(folder / "table.csv")
+    yield from _demo(rows)
+    yield from _reasons(rows)
     yield from _in_space(runs)
+    yield from _bores(runs)
     yield from _root_mesh(runs)
     yield from _studies(runs)
 
@@ -109,6 +115,42 @@ def _demo(rows: list[Row]) -> Named:
         yield f"{head}_b_over_percent", 100.0 * (float(row["equal_shares_b_MPa"]) / float(row["tension_MPa"]) - 1.0)
         if torque == 500.0:
             yield f"{head}_off_percent", 100.0 * (float(row["tension_MPa"]) / PAPER[row["gear"]] - 1.0)
+
+
+def _reasons(rows: list[Row]) -> Named:
+    """What torque, rack tip radius and friction change."""
+    found = {(row["gear"], float(row["torque_Nm"]), round(100.0 * float(row["rack_tip_radius_modules"])),
+              float(row["friction"])): float(row["tension_MPa"]) for row in rows}  # fmt: skip
+    costs = [
+        100.0 * (1.0 - found[gear, 500.0, wide, 0.0] / found[gear, 500.0, tight, 0.0])
+        for gear in PAPER for tight, wide in pairwise(RADII)
+    ]  # fmt: skip
+    yield "least_cost_percent", min(costs)
+    yield "largest_cost_percent", max(costs)
+    for radius in RADII[:2]:
+        offs = [abs(100.0 * (found[gear, 500.0, radius, 0.0] / PAPER[gear] - 1.0)) for gear in PAPER]
+        yield f"largest_off_{radius}_percent", max(offs)
+    for gear in PAPER:
+        change = found[gear, 500.0, RADII[1], 0.05] / found[gear, 500.0, RADII[1], 0.0]
+        yield f"{gear}_sliding_percent", 100.0 * (change - 1.0)
+    slopes = [[stress / torque for (gear, torque, radius, μ), stress in found.items()
+               if (gear, radius, μ) == (name, RADII[1], 0.0)] for name in PAPER]  # fmt: skip
+    yield "out_of_proportion_percent", max(100.0 * (max(each) / min(each) - 1.0) for each in slopes)
+
+
+def _bores(runs: Runs) -> Named:
+    """Changes of the tension with other bores, at level quick."""
+    quick = PLANE, "mesh.level=quick", "output.error_bars=false"
+    usual = _tensions(runs.strength("bore_35", *quick)[0])
+    for pinion, wheel in ((20, 30), (55, 80)):
+        bores = f"pinion.bore_diameter_mm={pinion}", f"wheel.bore_diameter_mm={wheel}"
+        tensions = _tensions(runs.strength(f"bore_{pinion}", *quick, *bores)[0])
+        for gear in PAPER:
+            yield f"{gear}_bore_{pinion}_percent", 100.0 * (tensions[gear] / usual[gear] - 1.0)
+
+
+def _tensions(rows: list[Row]) -> dict[str, float]:
+    return {row["gear"]: float(row["stress_MPa"]) for row in rows if row["method"] == "finite elements, tension"}
 
 
 def _in_space(runs: Runs) -> Named:

@@ -5,7 +5,8 @@ from __future__ import annotations
 ROOMS: dict[str, tuple[str, ...]] = {
     "meshes": (),
     "meshes.mesh": ("meshes",),
-    "meshes.gears": ("meshes",),
+    "meshes.gears.form": ("meshes",),
+    "meshes.gears": ("meshes", "meshes.gears.form"),
     "meshes.sector": ("meshes", "meshes.mesh", "meshes.gears"),
     "meshes.shapes": ("meshes", "meshes.mesh"),
     "fem.parallel": ("meshes",),
@@ -55,7 +56,10 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "strength.standard": ("meshes", "meshes.gears"),
     "scene.schema": ("meshes",),
-    "scene": ("meshes", "meshes.gears", "fem", "gears.problem", "gears.meshing", "dynamics", "scene.schema"),
+    "scene": (
+        "meshes", "meshes.gears", "meshes.gears.form", "fem", "gears.problem", "gears.meshing", "dynamics",
+        "scene.schema",
+    ),
     "scene.checking": (
         "meshes.gears", "fem.parallel", "contact", "gears.problem", "gears.meshing", "gears.pressure",
         "dynamics", "dynamics.oscillator", "scene", "scene.schema",

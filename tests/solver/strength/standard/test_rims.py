@@ -9,10 +9,10 @@ import pytest
 
 from evolvent.strength.standard.root_stress import RootLoad, standard_stress
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.gears.support import Support
 from tests.support.paper_pairs import he
 
 

@@ -78,7 +78,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.sweep", "gears.pressure", "results.archive", "results",
     ),
     "strength": ("meshes", "meshes.mesh", "meshes.gears", "fem", "gears", "gears.sweep", "results.fields"),
-    "results.drawing": ("meshes", "scene", "results.archive", "results"),
+    "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
     "results.figures": (
         "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
         "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
@@ -116,6 +116,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
         "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
-    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
+    "cli": (
+        "meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "results.drawing", "wear",
+        "run.*",
+    ),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

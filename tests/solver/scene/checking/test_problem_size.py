@@ -48,7 +48,8 @@ def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str,
     """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
     space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
     off = ['skip.off=["coarse-body"]'] if long_way else []
-    _require_exact_sizes(make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off))
+    coarse = "mesh.elements_per_contact_width=0.5"
+    _require_exact_sizes(make(f"mesh.order={order}", f"mesh.shape={shape}", coarse, *off))
 
 
 def test_rounded_tips_and_partial_supports_add_no_node() -> None:

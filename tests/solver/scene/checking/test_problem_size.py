@@ -48,17 +48,7 @@ def test_sector_size_is_that_of_the_mesh(make: Callable[..., Scene], shape: str,
     """Exact: the nodes of the mesh, of its loaded flank and of its two cut faces, times the dimension; plane and in
     space, both orders and shapes, with a coarse back flank and with one as fine as the loaded one."""
     off = ['skip.off=["coarse-body"]'] if long_way else []
-    coarse = "mesh.elements_per_contact_width=0.5"
-    _require_exact_sizes(make(f"mesh.order={order}", f"mesh.shape={shape}", coarse, *off))
-
-
-def test_rounded_tips_and_partial_supports_add_no_node() -> None:
-    """The same of a helical pair with a rounding, a chamfer and a bore that is held on half of the face."""
-    form = "pinion.tip_rounding_um=300", "wheel.tip_chamfer_um=200", "wheel.support_width_mm=4"
-    _require_exact_sizes(helical_scene("mesh.order=2", *form))
-
-
-def _require_exact_sizes(scene: Scene) -> None:
+    scene = make(f"mesh.order={order}", f"mesh.shape={shape}", "mesh.elements_per_contact_width=0.5", *off)
     for member, found in zip(Member, sector_sizes(scene)):
         mesh = gear_mesh(gear_problem(scene), member)
         flank, low, high = (len(np.unique(mesh.facets[name])) for name in ("flank", "cut_low", "cut_high"))

@@ -44,7 +44,7 @@ from evolvent.options import (
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene_argument import loaded_scene, require, require_room
 from evolvent.study_command import STUDY_EPILOG, study
-from evolvent_meshes.files import require_writable
+from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
@@ -80,9 +80,26 @@ app.command(epilog=STRENGTH_EPILOG)(strength)
 app.command(epilog=STUDY_EPILOG)(study)
 
 
+def _require_new(out: Path, suffix: str, overwrite: bool) -> None:
+    """Leaves with status 2 unless --out names a file of this kind that may be written."""
+    example = f"pair{suffix}"
+    require(out.suffix == suffix, f"--out: found {out}; allowed: a name that ends in {suffix}; remedy: --out {example}")
+    require_writable(out)
+    exists = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
+    require(overwrite or not (out.exists() or out.is_symlink()), exists)
+    require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/{example}")
+
+
 @app.command(epilog="\b\nExample:\n  evolvent check demos/yang2022.toml --set pair.centre_distance_mm=93.1")
 def check(
-    scene: SceneFile, level: LevelOption = None, settings: Overrides = None, no_skip: NoSkip = None
+    scene: SceneFile,
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE.png", help="Picture of the tooth forms.", parser=given_path)
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Write over FILE.png.")] = False,
 ) -> None:
     """Validate a scene, print what follows from it.
 
@@ -92,7 +109,14 @@ def check(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
         from evolvent.scene.checking.check_report import overview
 
+        if out is not None:
+            _require_new(out, ".png", overwrite)
         typer.echo(overview(loaded))
+        if out is not None:
+            from evolvent.results.drawing.tooth_form import tooth_form_picture
+
+            write_bytes(out, tooth_form_picture(loaded.title, loaded.gear_pair()))
+            typer.echo(f"\nTooth forms: {out}")
 
 
 @app.command(epilog="\b\nExample:\n  evolvent mesh demos/yang2022.toml --out pair.msh --level quick")
@@ -111,11 +135,7 @@ def mesh(
     """
     with reported():
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_SELF)
-        require(out.suffix == ".msh", f"--out: found {out}; allowed: a name that ends in .msh; remedy: --out pair.msh")
-        require_writable(out)
-        exists = f"--out: found {out}, which exists; allowed: a new file; remedy: --overwrite, or another name"
-        require(overwrite or not (out.exists() or out.is_symlink()), exists)
-        require(not out.is_dir(), f"--out: found the directory {out}; allowed: a file; remedy: --out {out}/pair.msh")
+        _require_new(out, ".msh", overwrite)
         require_room(loaded, "mesh", force, MPI.COMM_SELF)
         from evolvent.gears.meshing.levelled_meshes import is_two_level
         from evolvent.gears.meshing.standing_pair import standing_pair

@@ -5,8 +5,9 @@ from __future__ import annotations
 ROOMS: dict[str, tuple[str, ...]] = {
     "meshes": (),
     "meshes.mesh": ("meshes",),
+    "meshes.gears.form": ("meshes",),
     "meshes.gears.modifications": ("meshes",),
-    "meshes.gears": ("meshes", "meshes.gears.modifications"),
+    "meshes.gears": ("meshes", "meshes.gears.form", "meshes.gears.modifications"),
     "meshes.sector": ("meshes", "meshes.mesh", "meshes.gears"),
     "meshes.shapes": ("meshes", "meshes.mesh"),
     "fem.parallel": ("meshes",),
@@ -60,7 +61,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "scene.schema.guesses"),
     "scene": (
-        "meshes", "meshes.gears", "meshes.gears.modifications", "fem", "gears.problem", "gears.meshing", "dynamics",
+        "meshes", "meshes.gears", "meshes.gears.form", "meshes.gears.modifications", "fem", "gears.problem",
+        "gears.meshing", "dynamics",
         "scene.schema",
     ),
     "scene.checking": (
@@ -84,7 +86,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.parallel", "gears.meshing", "gears.ring",
         "gears.two_level", "gears", "gears.sweep",
     ),
-    "results.drawing": ("meshes", "scene", "results.archive", "results"),
+    "results.drawing": ("meshes", "meshes.gears", "scene", "results.archive", "results"),
     "results.figures": (
         "meshes", "meshes.gears", "contact", "gears.problem", "gears.sweep", "gears.pressure", "scene",
         "scene.checking", "results.archive", "results", "results.tables", "results.fields", "results.drawing",
@@ -137,6 +139,9 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.archive", "results.drawing", "strength.results", "run", "run.dynamics", "run.strength",
         "run.study.plan", "run.study.results", "run.study.figures",
     ),
-    "cli": ("meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "wear", "run.*"),
+    "cli": (
+        "meshes", "meshes.mesh", "fem.backend", "gears.meshing", "scene.*", "results.tables", "results.drawing", "wear",
+        "run.*",
+    ),
 }  # fmt: skip
 """Room -> what it may import. "meshes" is evolvent_meshes, "cli" evolvent's own files, "fem" evolvent.fem."""

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.gear_geometry import GearGeometry, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 from evolvent_meshes.gears.modifications.modifications import Modifications
-from evolvent_meshes.gears.modifications.support import Support
 
 RACK_TIP_RADIUS = 0.38
 """ρ_fP* of the basic rack of ISO 53, profile A."""
@@ -42,6 +42,7 @@ class GearParameters(GearGeometry):
         addendum_coefficient: float = 1.0,
         dedendum_coefficient: float = 1.25,
         rack_tip_radius_coefficient: float | None = None,
+        protuberance_um: float = 0.0,
         tip_shortening_coefficient: float = 0.0,
         tip_chamfer_um: float = 0.0,
         tip_rounding_um: float = 0.0,
@@ -102,6 +103,7 @@ class GearParameters(GearGeometry):
             tip_rounding_um=tip_rounding_um,
             root_diameter=d - 2.0 * normal_module * (dedendum_coefficient - generating),
             rack_tip_radius=rounded,
+            protuberance_um=protuberance_um,
             hand=hand,
             bore_diameter=bore_diameter,
             support=Support() if support is None else support,

@@ -10,9 +10,14 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.form.rack_tip import PROTUBERANCE_ANGLE, RackTip
+from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.tip_edge import TipEdge
 from evolvent_meshes.gears.modifications.flank_depth import FlankDepth
 from evolvent_meshes.gears.modifications.modifications import Modifications
-from evolvent_meshes.gears.modifications.support import Support
 
 
 def involute_function(angle: float) -> float:
@@ -42,6 +47,8 @@ class GearGeometry:
     tip_chamfer_um: radial height of a chamfer between flank and tip circle, transverse section; 0: none [µm].
     tip_rounding_um: radius of a rounding in its place; 0: none [µm].
     rack_tip_radius: ρ_fP, root fillet radius of the basic rack: tip radius of the generating rack, normal section [mm].
+    protuberance_um: s_pr, by which a protuberance of the rack's tip cuts deeper than its flank, less the machining
+        allowance that is left on the flank and taken off later [µm].
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
     support: how it is held there.
@@ -60,6 +67,7 @@ class GearGeometry:
     tip_rounding_um: float = 0.0
     root_diameter: float
     rack_tip_radius: float
+    protuberance_um: float = 0.0
     hand: int = 1
     bore_diameter: float
     support: Support = field(default_factory=Support)
@@ -134,6 +142,14 @@ class GearGeometry:
         along = math.sqrt(centre**2 - self.base_radius**2)
         return 2.0 * math.hypot(self.base_radius, radius + along) if along else self.base_diameter
 
+    @cached_property
+    def tip_edge(self) -> TipEdge | None:
+        """Chamfer or rounding of the tip at θ > 0; None of a sharp one."""
+        form = self.tip_form_diameter / 2.0, self.half_angle(self.tip_form_diameter)
+        if self.tip_rounding_um:
+            return TipEdge.rounded(form, self.tip_diameter / 2.0, self.base_radius, 1e-3 * self.tip_rounding_um)
+        return TipEdge.chamfered(form, self.tip_diameter / 2.0) if self.tip_chamfer_um else None
+
     @property
     def rim_thickness(self) -> float:
         """s_R, from the bore to the root circle."""
@@ -194,8 +210,8 @@ class GearGeometry:
         return FlankDepth(self.modifications, self.base_radius, start, tip, self.face_width)
 
     @property
-    def rack_form_roll_length(self) -> float:
-        """ρ_Ff, roll length at the root form circle as cut by the straight flank of the rack; negative: undercut [7.6].
+    def rack_flank_roll_length(self) -> float:
+        """Roll length at which the straight flank of a rack without protuberance ends; negative: it undercuts [7.6].
 
         The straight flank ends h = (d − d_f)/2 − ρ_fP(1 − sin α_n) below the pitch line; the line of action is there at
         the distance h / sin α_t before the pitch point.
@@ -204,6 +220,44 @@ class GearGeometry:
         depth -= self.rack_tip_radius * (1.0 - math.sin(self.normal_pressure_angle))
         angle = self.transverse_pressure_angle
         return self.reference_diameter / 2.0 * math.sin(angle) - depth / math.sin(angle)
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether the rack takes a part of the involute away above the base circle."""
+        return self.rack_flank_roll_length <= 0.0
+
+    @property
+    def rack_tip(self) -> RackTip:
+        """The tip of the generating rack."""
+        angle, share = self.normal_pressure_angle, PROTUBERANCE_ANGLE if self.protuberance_um else 1.0
+        depth = (self.reference_diameter - self.root_diameter) / 2.0
+        return RackTip(
+            self.rack_tip_half_land, self.rack_tip_radius - depth, self.rack_tip_radius, share * angle,
+            self.reference_diameter / 2.0, math.pi / self.z, math.cos(self.helix_angle),
+        )  # fmt: skip
+
+    @cached_property
+    def form_direction(self) -> float | None:
+        """Direction of the point of the rack's tip that cuts the end of the fillet, where the involute begins; None
+        where they do not meet."""
+        if not (self.protuberance_um or self.is_undercut):
+            return self.normal_pressure_angle
+        tip = self.rack_tip
+        highest = tip.pitch_line if self.protuberance_um else tip.straight
+        return tip.crossing(highest, self.base_radius, self._involute_angles)
+
+    def _involute_angles(self, radius: Floats) -> Floats:
+        """θ (n,) at radii (n,) of the flank θ > 0 at mid-face."""
+        tangent = np.sqrt(np.maximum(radius**2 - self.base_radius**2, 0.0)) / self.base_radius
+        return np.asarray(self.base_half_angle - (tangent - np.arctan(tangent)))
+
+    @cached_property
+    def rack_form_roll_length(self) -> float:
+        """ρ_Ff, roll length at the root form circle, where fillet and involute meet; NaN where they do not [7.6]."""
+        if not (self.protuberance_um or self.is_undercut):
+            return self.rack_flank_roll_length
+        direction = self.form_direction
+        return math.nan if direction is None else self.roll_length(2.0 * float(self.rack_tip.generated(direction)[0]))
 
     @property
     def root_form_diameter(self) -> float:
@@ -215,9 +269,10 @@ class GearGeometry:
         """Half the width of the flat land at the rack's tip, normal section; 0: the tip is a full round.
 
         The tip circle (radius ρ_fP, lowest point (d − d_f)/2 below the pitch line) is tangent to the straight flank of
-        the rack, which is half a space width from the centre line of the rack tooth at the pitch line.
+        the rack, or with protuberance to a line s_pr outside it. The flank is half a space width from the centre line
+        of the rack tooth at the pitch line.
         """
         angle, radius = self.normal_pressure_angle, self.rack_tip_radius
         half_space = self.normal_module * (math.pi / 4.0 - self.generating_shift * math.tan(angle))
         centre = radius - (self.reference_diameter - self.root_diameter) / 2.0
-        return half_space + centre * math.tan(angle) - radius / math.cos(angle)
+        return half_space + centre * math.tan(angle) - (radius - 1e-3 * self.protuberance_um) / math.cos(angle)

@@ -6,10 +6,9 @@ import math
 from typing import Any
 
 from evolvent_meshes.gears.errors import require, require_numbers
+from evolvent_meshes.gears.form_limits import check_crossing, check_form_lengths, check_support, check_tip_edge
 from evolvent_meshes.gears.gear_geometry import GearGeometry
 from evolvent_meshes.gears.modification_limits import check_modification_types, check_modifications
-from evolvent_meshes.gears.modifications.support import Support
-from evolvent_meshes.gears.tip_edge import tip_edge
 from evolvent_meshes.input_checks import is_index, shown
 
 SMALLEST_BORE = 0.01
@@ -18,16 +17,8 @@ FEWEST_TEETH = 5
 """Smallest number of teeth."""
 SMALLEST_RIM = 1.0
 """Smallest thickness of the rim between bore and root, in normal modules."""
-LEAST_EDGE, MOST_EDGE = 0.03, 0.3
-"""Smallest and largest chamfer or rounding of a tip, in normal modules: beside smaller ones cells are too thin."""
-LEAST_LAND = 0.05
-"""Smallest width of the tip between them, in normal modules."""
-STEEPEST_FLANK = math.radians(42.0)
-"""Largest pressure angle at the tip form circle with a chamfer: at 45° both are one line."""
-LEAST_SUPPORT = 0.05
-"""Smallest width of a support over the face width: a narrower one is a line, on which nothing is stiff."""
-MOST_ALLOWANCE = 0.3
-"""Largest tooth thickness allowance, in normal modules."""
+MOST_UNDERCUT = 0.3
+"""By how many normal modules a rack may be too deep not to undercut."""
 
 
 def check_gear(gear: GearGeometry) -> None:
@@ -35,8 +26,9 @@ def check_gear(gear: GearGeometry) -> None:
     check_teeth(gear.z)
     check_types(gear)
     check_numbers(gear)
+    check_form_lengths(gear)
     check_diameters(gear)
-    check_support(gear.support, gear.face_width)
+    check_support(gear)
     check_rack(gear)
     check_tip_edge(gear)
     check_modifications(gear)
@@ -63,7 +55,8 @@ def check_types(gear: GearGeometry) -> None:
         helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
         tooth_thickness_allowance_um=gear.tooth_thickness_allowance_um,
         tip_diameter=gear.tip_diameter, root_diameter=gear.root_diameter, rack_tip_radius=gear.rack_tip_radius,
-        tip_chamfer_um=gear.tip_chamfer_um, tip_rounding_um=gear.tip_rounding_um, bore_diameter=gear.bore_diameter,
+        tip_chamfer_um=gear.tip_chamfer_um, tip_rounding_um=gear.tip_rounding_um,
+        protuberance_um=gear.protuberance_um, bore_diameter=gear.bore_diameter,
     )  # fmt: skip
 
 
@@ -76,9 +69,6 @@ def check_numbers(gear: GearGeometry) -> None:
     check_angles(gear.normal_pressure_angle_deg, gear.helix_angle_deg)
     shift, radius = gear.profile_shift, gear.rack_tip_radius
     require(-3.0 <= shift <= 3.0, "profile_shift", shift, "-3 to 3", "Give the coefficient x, not x times the module.")
-    allowance, most = gear.tooth_thickness_allowance_um, 1e3 * MOST_ALLOWANCE * gear.normal_module
-    remedy = "It makes the tooth thinner: give it in µm and negative, for both flanks together."
-    require(-most <= allowance <= 0.0, "tooth_thickness_allowance_um", allowance, f"{-most:.6g} to 0 µm", remedy)
     require(0.0 <= radius < math.inf, "rack_tip_radius", radius, "a finite radius from 0 mm on", "Give it in mm.")
 
 
@@ -151,15 +141,18 @@ def check_rack(gear: GearGeometry) -> None:
         f"up to the depth of the rack below the reference circle, {depth:.6g} mm",
         "Use a smaller tool tip radius or root diameter.",
     )
-    least = -gear.rack_form_roll_length * math.sin(gear.transverse_pressure_angle) / gear.normal_module
+    least = -gear.rack_flank_roll_length * math.sin(gear.transverse_pressure_angle) / gear.normal_module
     require(
-        gear.rack_form_roll_length > 0.0,
+        least <= MOST_UNDERCUT,
         "profile_shift",
         gear.profile_shift,
-        f"at least {gear.profile_shift + least:.4f} with this rack (the fillet would undercut the involute)",
+        f"at least {gear.profile_shift + least - MOST_UNDERCUT:.4f} with this rack (the fillet would undercut the "
+        "involute deeply)",
         "Raise the profile shift together with the root and tip diameters, take more teeth, a larger pressure "
         "angle or tool tip radius.",
     )
+    if gear.protuberance_um or gear.is_undercut:
+        check_crossing(gear)
     form = gear.root_form_diameter
     require(
         form < gear.tip_diameter,
@@ -170,49 +163,3 @@ def check_rack(gear: GearGeometry) -> None:
     )
 
 
-def check_support(support: Any, face_width: float) -> None:
-    """Raises GeometryError unless the support lies within the face width [mm]."""
-    require(isinstance(support, Support), "support", support, "Support", "Write Support(width=...).")
-    require_numbers(support_offset=support.offset)
-    if support.width is None:
-        remedy = "Give support_width, too, or leave the offset out."
-        require(support.offset == 0.0, "support_offset", support.offset, "0 where the whole face is held", remedy)
-        return
-    require_numbers(support_width=support.width)
-    least = LEAST_SUPPORT * face_width
-    require(
-        least <= support.width <= face_width, "support_width", support.width,
-        f"{least:.6g} to {face_width:.6g} mm, the face width",
-        "Leave it out where the gear is held over its whole face.",
-    )  # fmt: skip
-    most = 0.5 * (face_width - support.width)
-    require(
-        math.isfinite(support.offset) and abs(support.offset) <= most + 1e-9 * face_width,
-        "support_offset", support.offset, f"{-most:.6g} to {most:.6g} mm: the support lies within the face",
-        "It is the middle of the support, seen from mid-face.",
-    )  # fmt: skip
-
-
-def check_tip_edge(gear: GearGeometry) -> None:
-    """Chamfer or rounding of the tip: one of the two, off the fillet, a tip land between. Raises GeometryError."""
-    chamfer, rounding, module = gear.tip_chamfer_um, gear.tip_rounding_um, 1e3 * gear.normal_module
-    least, most = LEAST_EDGE * module, MOST_EDGE * module
-    remedy = "It is a length in µm."
-    for key, value in (("tip_chamfer_um", chamfer), ("tip_rounding_um", rounding)):
-        require(value == 0.0 or least <= value <= most, key, value, f"0, or {least:.4g} to {most:.4g} µm", remedy)
-    require(not (chamfer and rounding), "tip_chamfer_um", chamfer, "one of chamfer and rounding", "Leave out one.")
-    if (edge := tip_edge(gear)) is None:
-        return
-    key, value = ("tip_chamfer_um", chamfer) if chamfer else ("tip_rounding_um", rounding)
-    land, form = 2.0 * gear.tip_diameter * edge.end[1] / 2.0, gear.tip_form_diameter
-    require(
-        form > gear.root_form_diameter and land >= LEAST_LAND * gear.normal_module, key, value,
-        f"an edge that leaves an involute and a tip land of {LEAST_LAND * gear.normal_module:.4g} mm (it leaves "
-        f"{max(land, 0.0):.4g} mm)", "Make it smaller.",
-    )  # fmt: skip
-    steepest = math.acos(min(1.0, gear.base_diameter / form))
-    require(
-        not chamfer or steepest < STEEPEST_FLANK, key, value,
-        f"none where the flank leans {math.degrees(steepest):.3g}° at the tip: a chamfer of 45° cuts nothing there",
-        "Give a rounding instead.",
-    )  # fmt: skip

@@ -108,7 +108,7 @@ def check_root(
         tip,
         f"up to {largest:.6g} mm (it runs on the fillet of the {name}, below its form circle of "
         f"{gear.root_form_diameter:.6g} mm)",
-        f"Lower the tip diameter, or take a smaller tool tip radius or root diameter for the {name}.",
+        f"Lower the tip diameter, or take a smaller tool tip radius, protuberance or root diameter for the {name}.",
     )
 
 

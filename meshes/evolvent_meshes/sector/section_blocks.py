@@ -26,8 +26,10 @@ TABLE = 801
 """Points of the tables by which nodes are distributed along an arc; the positions of the nodes are exact."""
 
 
-FEWEST_ON_EDGE = 1
-"""Cells along the part of a tip's chamfer or rounding that belongs to the flank."""
+SHORT_EDGE, COARSE_ROW = 0.75, 3
+"""A tip's chamfer or rounding that is shorter than so many cells of the flank has one cell along its part of the flank,
+others have a coarse row of them, or more: scaled Jacobians of 12 and more cells a flank are then 0.08 and more at edges
+from 0.06 modules on; with two unequal cells in a coarse row they fold."""
 
 
 def half_steps(start: float, end: float) -> Floats:
@@ -185,7 +187,7 @@ def row_radii(
 
     size_at: relative length of the cells at radii [mm]; None: uniform.
     graded_middles: see `SectorResolution`.
-    On a chamfer or a rounding the cells are about as long as below it; at least `FEWEST_ON_EDGE`.
+    On a chamfer or a rounding the cells are about as long as below it.
     """
     base, edge = profile.gear.base_radius, profile.edge
     end = profile.gear.tip_form_diameter / 2
@@ -196,7 +198,8 @@ def row_radii(
     last = 0
     if edge is not None:
         share = edge.length * density[-1] / (count[-1] * (arc[1] - arc[0]))
-        last = min(max(FEWEST_ON_EDGE, round(n * share / (1 + share))), n - 1)
+        wanted = n * share / (1 + share)
+        last = 1 if wanted < SHORT_EDGE else min(max(COARSE_ROW, round(wanted)), n - 1)
         n -= last
     if graded_middles:
         nodes = np.interp(np.linspace(0, count[-1], 2 * n + 1), count, arc)

@@ -18,6 +18,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.meshing.modifications import modification_warnings, tip_edge_warnings
+from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.results.archive.archive import Archive
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
@@ -90,9 +91,8 @@ def _log_beginning(run: RunContext, scene: Scene) -> None:
         run.log.info("not skipped: %s", name)
     if sentence := one_mesh_reason(scene):
         run.log.info("%s", sentence)
-    for sentence in modification_warnings(gear_problem(scene)):
-        run.log.warning(sentence)
-    for sentence in tip_edge_warnings(gear_problem(scene)):
+    problem = gear_problem(scene)
+    for sentence in (*undercut_warnings(problem), *modification_warnings(problem), *tip_edge_warnings(problem)):
         run.log.warning(sentence)
 
 

@@ -12,10 +12,10 @@ from evolvent.scene.schema.errors import NOTHING, InputProblem, shown
 from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError, require
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
 from evolvent_meshes.gears.gear_geometry import involute_function, thickness_shift
 from evolvent_meshes.gears.modifications.modifications import AMOUNTS
-from evolvent_meshes.gears.modifications.support import Support
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.pair_geometry import tip_alteration
 
@@ -44,6 +44,7 @@ GEAR_KEYS = {
     "tip_rounding_um": "tip_rounding_um",
     "root_diameter": "root_diameter_mm",
     "rack_tip_radius": "rack_tip_radius_mm",
+    "protuberance_um": "protuberance_um",
     "bore_diameter": "bore_diameter_mm",
     "support_width": "support_width_mm",
     "support_offset": "support_offset_mm",
@@ -123,6 +124,7 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         tip_rounding_um=gear.tip_rounding_um,
         root_diameter=root,
         rack_tip_radius=_or(gear.rack_tip_radius_mm, _usual_rack_tip(pair, gear, (reference - root) / 2)),
+        protuberance_um=gear.protuberance_um,
         hand=hand,
         bore_diameter=_bore_diameter(gear, root),
         support=Support(gear.support_width_mm, gear.support_offset_mm, gear.rim_thickness_mm is not None),

@@ -55,7 +55,8 @@ def test_impossible_gears(change: dict[str, Any], key: str) -> None:
 
 
 def test_undercut_limit() -> None:
-    """Without shift, 20 degrees and h_aP* = 1 the sharp-cornered standard rack undercuts below 2/sin²α = 17.1 teeth."""
+    """Without shift, 20 degrees and h_aP* = 1 the sharp-cornered standard rack undercuts below 2/sin²α = 17.1 teeth.
+    Where it should be withdrawn by more than 0.3 modules, it is refused: below 2 (1 − 0.3)/sin²α = 11.97 teeth."""
 
     def gear(z: int) -> GearParameters:
         return GearParameters.from_rack(
@@ -68,8 +69,10 @@ def test_undercut_limit() -> None:
             bore_diameter=5.0,
         )
 
-    assert gear(18).root_form_diameter > gear(18).base_diameter
+    assert not gear(18).is_undercut
+    assert gear(17).is_undercut
+    assert gear(12).root_form_diameter > gear(12).base_diameter
     with pytest.raises(GeometryError, match="undercut") as caught:
-        gear(17)
+        gear(11)
     least = float(caught.value.allowed.split()[2])
-    assert least == pytest.approx(1.0 - 17.0 / 2.0 * math.sin(math.radians(20.0)) ** 2, abs=1e-4)
+    assert least == pytest.approx(1.0 - 0.3 - 11.0 / 2.0 * math.sin(math.radians(20.0)) ** 2, abs=1e-4)

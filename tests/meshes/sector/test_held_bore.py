@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evolvent_meshes.gears.flank import Flank
-from evolvent_meshes.gears.modifications.support import Support
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.mesh.mesh_data import MeshError
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.meshes.mesh_measures import covers_boundary, measure

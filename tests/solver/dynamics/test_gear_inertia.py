@@ -23,7 +23,7 @@ def outline(gear: GearParameters) -> Floats:
     half = np.concatenate([
         polar(np.full(400, root), np.linspace(profile.sector_angle, profile.root_angle, 400)), profile.fillet(t),
         profile.involute_at_roll(np.linspace(*profile.roll_lengths, 400)),
-        polar(np.full(400, tip), np.linspace(profile.tip_angle, 0.0, 400)),
+        profile.edge_line(t), polar(np.full(400, tip), np.linspace(profile.tip_angle, 0.0, 400)),
     ])  # fmt: skip
     tooth = np.concatenate([mirror(half), half[::-1]])
     turns = 2.0 * np.pi * np.arange(gear.z) / gear.z
@@ -32,10 +32,11 @@ def outline(gear: GearParameters) -> Floats:
 
 @pytest.mark.parametrize("helix", [0.0, 25.0])
 @pytest.mark.parametrize("teeth", [24, 50])
-def test_polar_moment_is_that_of_the_outline(teeth: int, helix: float) -> None:
+@pytest.mark.parametrize("tip", [{}, {"tip_rounding_um": 600.0}, {"tip_chamfer_um": 600.0}], ids=str)
+def test_polar_moment_is_that_of_the_outline(teeth: int, helix: float, tip: dict[str, Any]) -> None:
     """ρb Σ(x_i y_j − x_j y_i)(x_i² + x_i x_j + x_j² + y_i² + y_i y_j + y_j²)/12 of a polygon of 1600 points a tooth,
     less the bore: 1e-6."""
-    gear = GearParameters.from_rack(z=teeth, helix_angle_deg=helix, bore_diameter=30.0, **STANDARD)
+    gear = GearParameters.from_rack(z=teeth, helix_angle_deg=helix, bore_diameter=30.0, **STANDARD, **tip)
     x, y = outline(gear).T
     X, Y = np.roll(x, -1), np.roll(y, -1)
     whole = float(np.sum((x * Y - X * y) * (x * x + x * X + X * X + y * y + y * Y + Y * Y))) / 12.0

@@ -44,13 +44,20 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
     ),
     "rounding as a burr": (YANG, ["pinion.tip_rounding_um=5"], "pinion.tip_rounding_um", "5", "in µm"),
     "rounding without a tip": (
-        YANG, ["pinion.tip_rounding_um=600", "pinion.tip_diameter_mm=49"], "pinion.tip_rounding_um", "600",
-        "make it sm",
+        YANG, ["pinion.tip_rounding_um=600", "pinion.tip_diameter_mm=48.6"], "pinion.tip_rounding_um", "600",
+        "make it smaller",
     ),
     "negative chamfer": (YANG, ["wheel.tip_chamfer_um=-100"], "wheel.tip_chamfer_um", "-100", "give 0"),
     "chamfer that loses contact": (
         HE, ["pinion.tip_chamfer_um=900", "wheel.tip_chamfer_um=900", "pair.centre_distance_mm=151.4"],
         "pair.centre_distance_mm", "151.4", "raise the tip diameters",
+    ),
+    "protuberance without allowance": (
+        YANG, ["pinion.protuberance_um=400"], "pinion.protuberance_um", "400", "less the machining",
+    ),
+    "negative protuberance": (YANG, ["wheel.protuberance_um=-20"], "wheel.protuberance_um", "-20", "give a number"),
+    "fillet under the mate's tip": (
+        YANG, ["pinion.protuberance_um=150"], "wheel.tip_diameter_mm", "149.3", "lower the tip",
     ),
 }  # fmt: skip
 """Case -> scene, overrides; key, what was found and a part of the remedy that the message must have."""

@@ -1,1 +1,1 @@
-"""What a drawing gives beside a gear's data: flank modifications, and how the body is held."""
+"""Modifications of a flank: their amounts, and the depth that they have at a point."""

@@ -108,11 +108,12 @@ def flank_needs(problem: GearProblem, member: Member, levels: bool = False) -> F
     count = elements_per_contact_width(problem, levels)
     width = ContactWidth(estimate, member)
     start = _flank_start(gear, ContactWidth(problem.heaviest.hertz_estimate, member))
-    roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_diameter), 401)
+    roll = np.linspace(gear.roll_length(start), gear.roll_length(gear.tip_form_diameter), 401)
     density = roll / gear.base_radius * count / width.at_roll_length(roll)
     shear = float(np.mean(density)) * math.tan(gear.base_helix_angle) * gear.face_width
     depths = LAYER_DEPTHS * float(estimate.half_width(0.0)) * min(1.0, math.sqrt(3 / count))
-    return FlankNeeds(float(trapezoid(density, roll)), shear, depths, start, width)
+    edge = 0.0 if gear.tip_edge is None else gear.tip_edge.length * count / float(width.at_roll_length(roll[-1]))
+    return FlankNeeds(float(trapezoid(density, roll)) + edge, shear, depths, start, width)
 
 
 @dataclass(frozen=True)

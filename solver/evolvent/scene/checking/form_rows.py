@@ -14,7 +14,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 def gear_lines(pair: GearPair) -> list[Line]:
     """Of each gear, where one of the two has the input from which they follow."""
-    return [*_tip_edge(pair), *_thickness(pair), *_support(pair)]
+    return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
@@ -47,6 +47,12 @@ def _tip_edge(pair: GearPair) -> list[Line]:
     ]
     form = _each(pair, "tip form diameter", "d_Fa", "mm", 3, lambda gear: gear.tip_form_diameter)
     return [*lines, form] if lines else []
+
+
+def _protuberance(pair: GearPair) -> list[Line]:
+    if not any(gear.protuberance_um for gear in pair.gears):
+        return []
+    return [_each(pair, "residual protuberance of the rack", "s_pr", "µm", 1, lambda gear: gear.protuberance_um)]
 
 
 def _support(pair: GearPair) -> list[Line]:

@@ -12,6 +12,7 @@ from evolvent.gears.meshing.element_sizes import (
 )
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.meshing.modifications import folding_warnings, modification_warnings, tip_edge_warnings
+from evolvent.gears.meshing.undercut import undercut_warnings
 from evolvent.gears.pressure.contact_cells import FEWEST_CELLS, SCATTER
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
@@ -41,6 +42,7 @@ def _expected(scene: Scene) -> Iterator[str]:
             "falls to 1e-3 and below, and those of order 1 are too stiff in bending; hexahedra of order 2 are the "
             "better choice."
         )
+    yield from undercut_warnings(problem)
     yield from modification_warnings(problem)
     yield from tip_edge_warnings(problem)
     if not is_two_level(problem):  # coarse sectors have no modifications

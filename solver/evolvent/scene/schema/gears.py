@@ -140,6 +140,14 @@ class BodyKeys(SceneSection):
         ge=0,
         le=LONGEST,
     )
+    protuberance_um: float = key(
+        "residual protuberance s_pr = pr − q of the generating rack: by how much its tip cuts deeper than its flank, "
+        "less the machining allowance q that is taken off later",
+        "a number from 0 to 5000, at most 0.1 m_n, in µm",
+        default=0.0,
+        ge=0,
+        le=5000,
+    )
     hand: Literal["right", "left"] | None = key(
         "direction of the helix; the pinion's is right by default, the wheel's the other one",
         '"right" or "left"',

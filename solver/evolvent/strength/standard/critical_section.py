@@ -47,8 +47,10 @@ class CriticalSection:
 
 
 def rack_of(gear: GearParameters) -> Rack:
-    """The rack of a gear without protuberance, at the profile shift that makes its tooth thickness."""
-    return Rack(gear.dedendum_coefficient * gear.normal_module, gear.rack_tip_radius)
+    """The rack of a gear."""
+    return Rack(
+        gear.dedendum_coefficient * gear.normal_module, gear.rack_tip_radius, 1e-3 * gear.protuberance_um
+    )
 
 
 def critical_section(gear: VirtualGear, rack: Rack) -> CriticalSection:

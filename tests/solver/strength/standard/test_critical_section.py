@@ -11,7 +11,6 @@ from evolvent.strength.standard.virtual_gear import VirtualGear, virtual_gear
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.gears.profile import Profile
 
 
 def spur(z: int, x: float, radius: float | None, angle: float = 20.0, allowance: float = 0.0) -> GearParameters:
@@ -24,10 +23,10 @@ def spur(z: int, x: float, radius: float | None, angle: float = 20.0, allowance:
 def touched(gear: GearParameters) -> tuple[Floats, float]:
     """Point (2,) [mm] of the generated fillet whose tangent is at 30° to the tooth's axis, which is the x axis, and the
     radius of curvature there [mm]."""
-    profile, h = Profile(gear), 1e-3
+    h = 1e-3
 
     def at(direction: float) -> Floats:
-        radius, angle = profile._generated(direction)
+        radius, angle = gear.rack_tip.generated(direction)
         return np.array([radius * np.cos(angle), radius * np.sin(angle)])
 
     def slope(direction: float) -> Floats:

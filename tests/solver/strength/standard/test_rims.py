@@ -9,9 +9,9 @@ import pytest
 
 from evolvent.strength.standard.root_stress import RootLoad, standard_stress
 from evolvent_meshes.errors import InputError
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
-from evolvent_meshes.gears.modifications.support import Support
 from evolvent_meshes.gears.pair import GearPair
 from tests.support.paper_pairs import he
 

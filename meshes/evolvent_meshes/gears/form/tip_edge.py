@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.gears.gear_geometry import GearGeometry
 
 ON_FLANK = 1.0 / 3.0
 """Of a rounding's turn."""
@@ -38,6 +37,24 @@ class TipEdge:
     """Of a rounding's arc; None of a chamfer."""
     radius: float
     """Of a rounding's arc [mm]; 0 of a chamfer."""
+
+    @staticmethod
+    def chamfered(form: tuple[float, float], tip: float) -> TipEdge:
+        """A chamfer. form: radius and θ where it begins. tip: radius of the tip circle [mm]."""
+        end = tip, form[1] + CHAMFER - math.acos(form[0] * math.cos(CHAMFER) / tip)
+        return TipEdge(form, end, end, None, 0.0)
+
+    @staticmethod
+    def rounded(form: tuple[float, float], tip: float, base: float, radius: float) -> TipEdge:
+        """A rounding of this radius. form, tip: as of `chamfered`. base: radius of the base circle [mm]."""
+        roll = math.sqrt(form[0] ** 2 - base**2)
+        γ = form[1] - math.atan(roll / base)  # of the involute's normal at the form circle
+        centre = tip - radius, γ + math.atan((roll - radius) / base)
+        begin = γ + math.pi / 2.0
+        turned = begin + ON_FLANK * (centre[1] - begin)
+        x = centre[0] * math.cos(centre[1]) + radius * math.cos(turned)
+        y = centre[0] * math.sin(centre[1]) + radius * math.sin(turned)
+        return TipEdge(form, (math.hypot(x, y), math.atan2(y, x)), (tip, centre[1]), centre, radius)
 
     def angle(self, radius: ArrayLike) -> Floats:
         """θ (…) [rad] at radii (…) [mm] from the beginning to the corner."""
@@ -89,22 +106,3 @@ class TipEdge:
         distance = first @ [math.cos(normal), math.sin(normal)]
         top = np.where(θ > end, distance / np.cos(θ - normal), tip)
         return np.asarray((tip - top) / (tip - r))
-
-
-def tip_edge(gear: GearGeometry) -> TipEdge | None:
-    """The edge of a gear with a chamfer or a rounding; None of a sharp one."""
-    if not (gear.tip_chamfer_um or gear.tip_rounding_um):
-        return None
-    tip, form = gear.tip_diameter / 2.0, gear.tip_form_diameter / 2.0
-    θ = gear.half_angle(gear.tip_form_diameter)
-    if gear.tip_chamfer_um:
-        end = tip, θ + CHAMFER - math.acos(form * math.cos(CHAMFER) / tip)
-        return TipEdge((form, θ), end, end, None, 0.0)
-    radius, base, roll = 1e-3 * gear.tip_rounding_um, gear.base_radius, gear.roll_length(gear.tip_form_diameter)
-    γ = gear.base_half_angle - roll / base
-    centre = tip - radius, γ + math.atan((roll - radius) / base)
-    begin = γ + math.pi / 2.0
-    turned = begin + ON_FLANK * (centre[1] - begin)
-    x = centre[0] * math.cos(centre[1]) + radius * math.cos(turned)
-    y = centre[0] * math.sin(centre[1]) + radius * math.sin(turned)
-    return TipEdge((form, θ), (math.hypot(x, y), math.atan2(y, x)), (tip, centre[1]), centre, radius)

@@ -1,0 +1,92 @@
+"""Limits of a gear's form and support: allowances, protuberance, tip edges, how it is held."""
+
+from __future__ import annotations
+
+import math
+
+from evolvent_meshes.gears.errors import require, require_instance, require_numbers
+from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.gear_geometry import GearGeometry
+
+LEAST_WIDTH = 0.05
+"""Smallest width of a support over the face width: a narrower one is a line, on which nothing is stiff."""
+MOST_PROTUBERANCE = 0.1
+"""Largest s_pr, in normal modules."""
+LEAST_EDGE, MOST_EDGE = 0.03, 0.3
+"""Smallest and largest chamfer or rounding of a tip, in normal modules: beside smaller ones cells are too thin."""
+LEAST_LAND = 0.05
+"""Smallest width of the tip between them, in normal modules."""
+STEEPEST_FLANK = math.radians(42.0)
+"""Largest pressure angle at the tip form circle with a chamfer: at 45° both are one line."""
+MOST_ALLOWANCE = 0.3
+"""Largest tooth thickness allowance, in normal modules."""
+
+
+def check_form_lengths(gear: GearGeometry) -> None:
+    """Protuberance and tooth thickness allowance, each alone. Raises GeometryError."""
+    excess, highest = gear.protuberance_um, 1e3 * MOST_PROTUBERANCE * gear.normal_module
+    remedy = "It is s_pr = pr − q in µm, the protuberance less the machining allowance."
+    require(0.0 <= excess <= highest, "protuberance_um", excess, f"0 to {highest:.6g} µm", remedy)
+    allowance, most = gear.tooth_thickness_allowance_um, 1e3 * MOST_ALLOWANCE * gear.normal_module
+    remedy = "It makes the tooth thinner: give it in µm and negative, for both flanks together."
+    require(-most <= allowance <= 0.0, "tooth_thickness_allowance_um", allowance, f"{-most:.6g} to 0 µm", remedy)
+
+
+def check_crossing(gear: GearGeometry) -> None:
+    """The fillet of an undercut gear or of one cut with protuberance meets its involute. Raises GeometryError."""
+    key, value = "protuberance_um", gear.protuberance_um
+    if not value:
+        key, value = "profile_shift", gear.profile_shift
+    require(
+        not math.isnan(gear.rack_form_roll_length), key, value, "a fillet that ends on the involute",
+        "Lower the protuberance, or raise the profile shift.",
+    )  # fmt: skip
+
+
+def check_tip_edge(gear: GearGeometry) -> None:
+    """Chamfer or rounding of the tip: one of the two, off the fillet, a tip land between. Raises GeometryError."""
+    chamfer, rounding, module = gear.tip_chamfer_um, gear.tip_rounding_um, 1e3 * gear.normal_module
+    least, most = LEAST_EDGE * module, MOST_EDGE * module
+    remedy = "It is a length in µm."
+    for key, value in (("tip_chamfer_um", chamfer), ("tip_rounding_um", rounding)):
+        require(value == 0.0 or least <= value <= most, key, value, f"0, or {least:.4g} to {most:.4g} µm", remedy)
+    require(not (chamfer and rounding), "tip_chamfer_um", chamfer, "one of chamfer and rounding", "Leave out one.")
+    if (edge := gear.tip_edge) is None:
+        return
+    key, value = ("tip_chamfer_um", chamfer) if chamfer else ("tip_rounding_um", rounding)
+    land, form = 2.0 * gear.tip_diameter * edge.end[1] / 2.0, gear.tip_form_diameter
+    require(
+        form > gear.root_form_diameter and land >= LEAST_LAND * gear.normal_module, key, value,
+        f"an edge that leaves an involute and a tip land of {LEAST_LAND * gear.normal_module:.4g} mm (it leaves "
+        f"{max(land, 0.0):.4g} mm)", "Make it smaller.",
+    )  # fmt: skip
+    steepest = math.acos(min(1.0, gear.base_diameter / form))
+    require(
+        not chamfer or steepest < STEEPEST_FLANK, key, value,
+        f"none where the flank leans {math.degrees(steepest):.3g}° at the tip: a chamfer of 45° cuts nothing there",
+        "Give a rounding instead.",
+    )  # fmt: skip
+
+
+def check_support(gear: GearGeometry) -> None:
+    """The support lies within the face. Raises GeometryError."""
+    support, face_width = gear.support, gear.face_width
+    require_instance(support, Support, "support", "Write Support(width=...).")
+    require_numbers(support_offset=support.offset)
+    if support.width is None:
+        remedy = "Give support_width, too, or leave the offset out."
+        require(support.offset == 0.0, "support_offset", support.offset, "0 where the whole face is held", remedy)
+        return
+    require_numbers(support_width=support.width)
+    least = LEAST_WIDTH * face_width
+    require(
+        least <= support.width <= face_width, "support_width", support.width,
+        f"{least:.6g} to {face_width:.6g} mm, the face width",
+        "Leave it out where the gear is held over its whole face.",
+    )  # fmt: skip
+    most = 0.5 * (face_width - support.width)
+    require(
+        math.isfinite(support.offset) and abs(support.offset) <= most + 1e-9 * face_width,
+        "support_offset", support.offset, f"{-most:.6g} to {most:.6g} mm: the support lies within the face",
+        "It is the middle of the support, seen from mid-face.",
+    )  # fmt: skip

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.checkout import ROOT
-from evidence.pages import he, outputs, promises, readme, studies, tutorial, yang
+from evidence.pages import he, outputs, promises, readme, tutorial, yang
+from evidence.robustness import study_page
 
 
 def generated(root: Path = ROOT) -> dict[Path, str]:
@@ -30,7 +31,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {
-            "keys": studies.keys(), "figures": studies.figures(), "measured": studies.measured(docs),
+            "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),
         },
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),

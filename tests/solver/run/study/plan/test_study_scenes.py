@@ -60,6 +60,7 @@ def test_torque_and_misalignment_share_gears(tmp_path: Path) -> None:
     assert len({each.gears for each in scenes}) == 1 and scenes[0].gears
     assert all(each.scene is not None and each.scene.load.mesh_torques_Nm == (100.0, 200.0) for each in scenes)
     alone = scenes_of(tmp_path, f"share_gears = false\n{MAP}")
+    assert not {each.name for each in scenes} & {each.name for each in alone}
     assert all(each.gears == "" and each.scene is not None and not each.scene.load.mesh_torques_Nm for each in alone)
 
 

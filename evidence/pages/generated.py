@@ -11,8 +11,9 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.checkout import ROOT
-from evidence.pages import outputs, promises, readme, studies, tutorial
+from evidence.pages import outputs, promises, readme, tutorial
 from evidence.pages.papers import he, yang, zhang
+from evidence.robustness import study_page
 
 
 def generated(root: Path = ROOT) -> dict[Path, str]:
@@ -32,7 +33,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {
-            "keys": studies.keys(), "figures": studies.figures(), "measured": studies.measured(docs),
+            "keys": study_page.keys(), "figures": study_page.figures(), "measured": study_page.measured(docs),
         },
         docs / "tutorial.md": {
             "scene": tutorial.scene_text(first), "check": tutorial.check(first), "run": tutorial.run(docs),

@@ -13,6 +13,7 @@ from mpi4py import MPI
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.load_list import LoadList
 from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.run_lock import locked
 from evolvent.run.dynamics.excitation import run_excitation
 from evolvent.run.dynamics.kept_positions import KEPT
 from evolvent.run.dynamics.vibration import run_dynamics
@@ -28,6 +29,8 @@ from evolvent.strength.results.tables import STRENGTH
 from evolvent_meshes.errors import EvolventError, InputError, ResultError
 
 DONE, FAILED, REFUSED = "done", "failed", "refused"
+GLANCE = 1.0
+"""Time between two looks at a folder that another process writes to [s]."""
 
 
 @dataclass(frozen=True)
@@ -60,14 +63,16 @@ def condense(tasks: Sequence[SceneTask]) -> LoadList:
 def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
     """Computes a scene in its folder, and leaves a record there where a repetition would find the same: it is done, or
     fails by its input or without a reliable result. gears: condensed for it, None: it condenses its own."""
-    if (known := read_record(task.folder)) is not None:
-        return known
     begin, warnings, reason, lasting = time.perf_counter(), [], "", True
     try:
+        _wait_until_free(task.folder)
+        if (known := read_record(task.folder)) is not None:
+            return known
         _require_room(task)
         warnings = COMPUTING[task.compute](task, prepare_model if gears is None else gears.prepare)
     except EvolventError as error:
-        reason, lasting = str(error), isinstance(error, (InputError, ResultError)) and not _of_folder(error)
+        reason = str(error)
+        lasting = isinstance(error, (InputError, ResultError)) and not isinstance(error, FolderError)
     except (OSError, MemoryError) as error:
         reason, lasting = str(error) or type(error).__name__, False
     record = SceneRecord(
@@ -78,8 +83,14 @@ def solve(task: SceneTask, gears: LoadList | None = None) -> SceneRecord:
     return record
 
 
-def _of_folder(error: EvolventError) -> bool:
-    return isinstance(error, FolderError)
+def _wait_until_free(folder: Path) -> None:
+    """A worker of a scheduler may still compute a scene of a study that was killed: its result is waited for."""
+    while True:
+        try:
+            with locked(folder):
+                return
+        except FolderError:
+            time.sleep(GLANCE)
 
 
 def _require_room(task: SceneTask) -> None:

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import json
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -140,11 +141,9 @@ class _Table:
         self.study, self.out, self.records = study, out, dict(records)
         self.written = time.monotonic()
         self.rows: dict[str, TableRow] = {}
-
-    @property
-    def done(self) -> int:
+        self._counts = Counter(each.name for each in study.scenes)
+        self.done = sum(self._counts[name] for name in records)
         """How many scenes are not waiting."""
-        return sum(each.name in self.records for each in self.study.scenes)
 
     def missing(self, at_once: int) -> dict[SceneTask, str]:
         """Tasks that are to be computed, each once, with the name of the gears that they share."""
@@ -158,6 +157,7 @@ class _Table:
     def add(self, record: SceneRecord) -> None:
         """A scene was computed."""
         self.records[record.name] = record
+        self.done += self._counts[record.name]
 
     def write_now_and_then(self, folder: RunFolder) -> None:
         """Writes the table where it was not for a while."""

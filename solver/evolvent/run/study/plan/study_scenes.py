@@ -59,7 +59,7 @@ def study_scenes(study: StudyFile, path: Path, overrides: Sequence[str], version
             found.append(StudyScene(parameters, scene, "", "", ""))
     if study.share_gears:
         found = _sharing(found, study.compute)
-    return [replace(each, name=_name(each, study.compute, version)) for each in found]
+    return [replace(each, name=_name(each, study, version)) for each in found]
 
 
 def base_values(study: StudyFile, path: Path, overrides: Sequence[str]) -> Values:
@@ -105,11 +105,12 @@ def _sharing(scenes: Sequence[StudyScene], compute: Computation) -> list[StudySc
     ]
 
 
-def _name(each: StudyScene, compute: Computation, version: str) -> str:
-    """Digits of a SHA-256."""
+def _name(each: StudyScene, study: StudyFile, version: str) -> str:
+    """Digits of a SHA-256. Excitations may share the search of their positions, which is not exact."""
     content: list[Any]
+    shared = study.compute == "excitation" and study.share_gears
     if each.scene is None:
         content = [sorted((name, repr(value)) for name, value in each.parameters.items())]
     else:
         content = [fingerprint(each.scene), each.scene.output.model_dump(mode="json"), each.scene.skip.off]
-    return hashlib.sha256(json.dumps([version, compute, *content]).encode()).hexdigest()[:NAME]
+    return hashlib.sha256(json.dumps([version, study.compute, shared, *content]).encode()).hexdigest()[:NAME]

@@ -6,8 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from evolvent.run.study.plan.study_file import load_study
+from evolvent.run.study.plan.study_scenes import study_scenes
+from evolvent.run.study.results.figures import gathered_figures
 from evolvent.scene.scene import SceneError
-from tests.support.running.study_cases import HEAD, TORQUES, scenes_of
+from tests.support.checkout import ROOT
+from tests.support.running.study_cases import HEAD, TORQUES, VERSION, scenes_of
 
 MAP = (
     HEAD.replace('"check"', '"excitation"').replace("zhang2023", "yang2022")
@@ -60,6 +64,7 @@ def test_torque_and_misalignment_share_gears(tmp_path: Path) -> None:
     assert len({each.gears for each in scenes}) == 1 and scenes[0].gears
     assert all(each.scene is not None and each.scene.load.mesh_torques_Nm == (100.0, 200.0) for each in scenes)
     alone = scenes_of(tmp_path, f"share_gears = false\n{MAP}")
+    assert not {each.name for each in scenes} & {each.name for each in alone}
     assert all(each.gears == "" and each.scene is not None and not each.scene.load.mesh_torques_Nm for each in alone)
 
 
@@ -72,3 +77,11 @@ def test_other_teeth_are_other_gears(tmp_path: Path) -> None:
     spur = MAP.replace("yang2022", "he2022")
     names = [each.gears for each in scenes_of(tmp_path, spur)]
     assert names[0] == names[1] != names[2] == names[3] and all(names)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "demos/studies").glob("*.toml")), ids=lambda path: path.stem)
+def test_demo_studies_have_valid_scenes(path: Path) -> None:
+    """No scene of a study that a user may start from is refused, and its figures have names."""
+    study = load_study(path)
+    assert gathered_figures(study, str(path))
+    assert [each.refusal for each in study_scenes(study, path, (), VERSION) if each.refusal] == []

@@ -4,9 +4,9 @@ Names and symbols are those of ISO 21771:2007 (flank modifications). Every amoun
 or twist with a negative sign takes it off at the opposite end or corners; nothing is ever added to the evaluated flank.
 That fixes how far the flank lies behind the involute helicoid as a whole, which is only a rotation of the gear.
 
-A measured slope deviation of ISO 1328-1:2013 has the sign of the angle: f_Hα is positive where material increases
-towards the tip, C_Hα = −f_Hα; f_Hβ is positive where the helix angle is larger, C_Hβ = −f_Hβ on the loaded flank of a
-right-hand gear and +f_Hβ on that of a left-hand one.
+A measured slope deviation of ISO 1328-1:2013 has the sign of the angle, and is measured in the transverse plane: f_Hα
+is positive where material increases towards the tip, C_Hα = −f_Hα cos β_b; f_Hβ is positive where the helix angle is
+larger, C_Hβ = −f_Hβ cos β_b on the loaded flank of a right-hand gear and +f_Hβ cos β_b on that of a left-hand one.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ FROM_CONTROL_DIAMETER = ("root_relief_um", "profile_crowning_um", "profile_slope
 class Modifications:
     """Modifications of the loaded flank: material removed, measured normal to the exact involute helicoid.
 
-    tip_relief_um: C_αa, tip relief at the tip circle [µm].
+    tip_relief_um: C_αa, tip relief at the tip form circle [µm].
     tip_relief_start_diameter: diameter at which the tip relief starts [mm]; None without tip relief.
     tip_relief_parabolic: whether it grows with the square of the roll length from there, instead of linearly.
     lead_crowning_um: C_β, crowning at both ends of the face width [µm], a parabola of z that is 0 at mid-face.
-    profile_crowning_um: C_α, crowning at the tip circle and at the profile control diameter [µm], a parabola of the
-        roll length that is 0 midway.
-    profile_slope_um: C_Hα, at the tip circle [µm], linear in the roll length from 0 at the profile control diameter;
-        negative: at the profile control diameter, from 0 at the tip circle. Positive is a larger pressure angle.
+    profile_crowning_um: C_α, crowning at the tip form circle and at the profile control diameter [µm], a parabola of
+        the roll length that is 0 midway.
+    profile_slope_um: C_Hα, at the tip form circle [µm], linear in the roll length from 0 at the profile control
+        diameter; negative: there, from 0 at the tip form circle. Positive is a larger pressure angle.
     helix_slope_um: C_Hβ, at the end z = b/2 of the face [µm], linear in z from 0 at the other one; negative: at the end
         z = −b/2.
     end_relief_um: C_βI = C_βII, end relief at both ends of the face [µm].
@@ -55,8 +55,8 @@ class Modifications:
     root_relief_parabolic: whether it grows with the square of the roll length from there, instead of linearly.
     twist_um: S_α, profile slope at z = b/2 less that at z = −b/2 [µm]. Half of it is removed at the tip's end z = b/2
         and where the profile control diameter ends at z = −b/2, 0 at the two other corners; negative: the other way.
-    profile_control_diameter: d_Cf of ISO 1328-1, where the evaluated profile begins, which ends at the tip circle [mm];
-        None: the root form circle. Below it all modifications go on as they are above.
+    profile_control_diameter: d_Cf of ISO 1328-1, where the evaluated profile begins, which ends at the tip form circle
+        [mm]; None: the root form circle. Below it all modifications go on as they are above.
     """
 
     tip_relief_um: float = 0.0

@@ -183,7 +183,7 @@ def _position(
     solved: list[Solved] = []
     for μ, history, jump in zip(frictions, histories, jumps, strict=True):
         begin = time.perf_counter()
-        near = known.frictional.get(μ) if known is not None else None
+        near = known.frictional.get(μ) if known is not None and shared.searched == known.searched else None
         result, state_at_μ = solve_position(model, shared, μ, jump, span, solved, near)
         solved.append(state_at_μ)
         contact, equilibrium = shared.contact, state_at_μ.equilibrium

@@ -154,7 +154,7 @@ def shared_position(
     stand, half_width = _at_a_multiple(model, Stand(model.pair, angle, extra)), model.half_width
     if known is not None:
         stand, half_width = Stand(model.pair, angle, known.searched.extra), known.searched.half_width
-    been: set[tuple[float, float]] = set()
+    been = set() if known is None else {known.searched.extra}
     for _ in range(ROUNDS):
         nearest = NEAREST_AGAIN if stand.extra in been else NEAREST
         been.add(stand.extra)

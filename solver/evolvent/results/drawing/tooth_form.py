@@ -32,7 +32,7 @@ def tooth_form_figure(title: str, pair: GearPair) -> Figure:
     for member, axes, colour in zip(Member, figure.subplots(1, 2), COLOURS):
         _draw_tooth(axes, pair, member, colour)
     foot(
-        figure, "Loaded flank: right. Relief, crowning and charts are left out.",
+        figure, "Seen from z < 0, loaded flank: right. Relief, crowning and charts are left out.",
         *(["Dashed: the tooth without thickness allowance."] if _are_thin(pair) else []),
     )  # fmt: skip
     return figure

@@ -27,6 +27,7 @@ from evolvent.strength.results.tables import (
     FrictionRoots,
     StrengthRow,
     formula_rows,
+    notch_warnings,
     root_stress_rows,
     strength_rows,
     write_strength,
@@ -48,7 +49,8 @@ def run_strength(
     scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
 ) -> list[str]:
     """Computes the pitch with roots finer than a run's, and the stress there, and writes tables and picture to `out`.
-    Returns a sentence where a picture could not be drawn or error bars not be estimated. Collective.
+    Returns a sentence where a picture could not be drawn, error bars not be estimated, or a factor is extrapolated.
+    Collective.
 
     scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
     calls share.
@@ -73,7 +75,7 @@ def run_strength(
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
         said = on_first(comm, lambda: _written(scene, fine.roots, None if coarse is None else coarse.roots, out))
-    return [*said, *([failure] if failure else [])]
+    return [*said, *notch_warnings(_loads_of_standard(scene)), *([failure] if failure else [])]
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:

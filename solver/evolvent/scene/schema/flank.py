@@ -62,7 +62,7 @@ class FlankKeys(SceneSection):
     )
     profile_slope_um: float = key(
         "profile slope (pressure angle) C_Hα: material taken off the flank at the tip or, if negative, at the profile "
-        "control diameter, linear in the roll distance; a measured f_Hα of ISO 1328-1 with its sign reversed",
+        "control diameter, linear in the roll distance; a measured f_Hα of ISO 1328-1 times −cos β_b",
         SIGNED,
         default=0.0,
         ge=-MOST,
@@ -82,8 +82,8 @@ class FlankKeys(SceneSection):
     )
     helix_slope_um: float = key(
         "helix slope (lead slope) C_Hβ: material taken off the flank at its end z > 0 or, if negative, at z < 0, "
-        "linear in z; a measured f_Hβ of ISO 1328-1 with its sign reversed on right-hand gears, with its sign on "
-        "left-hand ones",
+        "linear in z; a measured f_Hβ of ISO 1328-1 times −cos β_b on right-hand gears, times cos β_b on left-hand "
+        "ones",
         SIGNED,
         default=0.0,
         ge=-MOST,

@@ -24,7 +24,7 @@ def root_stress_picture(title: str, found: Sequence[FrictionRoots], rows: Sequen
 
 
 def root_stress_figure(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> Figure:
-    """Largest tension of the loaded side and pressure of the back over the rotation of a tooth, a column a gear; the
+    """Largest tension of the loaded side and compression of the back over the rotation of a tooth, a column a gear; the
     formulas at the rotation of their load.
 
     title: of the scene. rows: of both gears.
@@ -46,7 +46,7 @@ def root_stress_figure(title: str, found: Sequence[FrictionRoots], rows: Sequenc
     for each, colour in zip(found, colours):
         axes[0].plot([], [], color=colour, label=f"finite elements, μ = {each.friction:g}")
     axes[1].legend(*_named(axes), loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
-    foot(figure, "Full: largest tension of the loaded side; dashed: pressure of the back. Places: strength.csv.")
+    foot(figure, "Full: largest tension of the loaded side; dashed: compression of the back. Places: strength.csv.")
     return figure
 
 

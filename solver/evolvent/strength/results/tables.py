@@ -20,6 +20,7 @@ from evolvent.strength.standard.root_stress import (
     largest_stress,
     standard_stress,
 )
+from evolvent.strength.standard.tooth_form import NOTCH
 from evolvent_meshes.gears.member import Member
 
 STRENGTH, ROOT_STRESS = "strength.csv", "root_stress.csv"
@@ -59,17 +60,23 @@ class StrengthRow:
     """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
     mid-face section. NaN for the standard's virtual gear of helical ones."""
     radius_mm: float
-    """Of the place; of formulas that of the critical section."""
+    """Of the place; of formulas that of the critical section, as far above the reference circle of the gear as it lies
+    above that of its virtual gear."""
     height_mm: float
     """Axial position of the place, 0 at mid-face."""
     tangent_angle_deg: float
-    """Of the profile there to the tooth's centre line; 30 for formulas."""
+    """Of the profile there to the tooth's centre line in the transverse section; of formulas 30, in the normal one."""
     load_share: float
     """Part of the load on the tooth that a formula takes; NaN for finite elements."""
     form_factor: float
     """Y_F, in the edition of 2019 with f_ε; NaN for finite elements."""
     stress_correction_factor: float
     """Y_S; NaN for finite elements."""
+    notch_parameter: float
+    """q_s, for which Y_S was fitted from 1 to below 8; NaN for finite elements."""
+    other_factors: float
+    """Y_β Y_DT Y_B of the standard, 1 of other formulas; NaN for finite elements. The stress of a formula is
+    load_share · form_factor · stress_correction_factor · other_factors · F_t/(b m_n), b the common face width."""
     mean_MPa: float
     """Mean of largest and smallest stress there over a passage, in the direction of this one; NaN for formulas."""
     amplitude_MPa: float
@@ -120,28 +127,44 @@ def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: i
     for edition in editions:
         found = standard_stress(load, edition, tolerance_class)
         point = PointStress("", load.contact_ratio - 1.0, 1.0, found.stress, found.form)
-        yield _of_point(load, f"ISO 6336-3:{edition}", point, found.form_factor)
+        others = found.helix_angle_factor * found.deep_tooth_factor * found.rim_thickness_factor
+        yield _of_point(load, f"ISO 6336-3:{edition}", point, found.form_factor, others)
     if load.pair.pinion.helix_angle_deg == 0.0:
         for point in boundary_stresses(load):
             yield _of_point(load, f"equal shares, {point.name}", point)
         yield _of_point(load, "Pedrero's shares, largest over the path", largest_stress(load))
 
 
-def _of_point(load: RootLoad, method: str, point: PointStress, form_factor: float | None = None) -> StrengthRow:
-    section = point.form.section
+def _of_point(
+    load: RootLoad, method: str, point: PointStress, form_factor: float | None = None, others: float = 1.0
+) -> StrengthRow:
+    form, section, gear = point.form, point.form.section, load.pair.gears[load.member]
+    above = math.hypot(section.height, 0.5 * section.chord) - 0.5 * section.gear.reference_diameter
     return StrengthRow(
         load.member.label, method, UNKNOWN, point.stress, UNKNOWN, math.degrees(load.tooth_rotation(point.below_tip)),
-        math.hypot(section.height, 0.5 * section.chord), 0.0, 30.0, point.share,
-        point.form.form_factor if form_factor is None else form_factor, point.form.stress_correction_factor, UNKNOWN,
-        UNKNOWN,
+        0.5 * gear.reference_diameter + above, 0.0, 30.0, point.share,
+        form.form_factor if form_factor is None else form_factor, form.stress_correction_factor, form.notch_parameter,
+        others, UNKNOWN, UNKNOWN,
     )  # fmt: skip
 
 
 def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error: float) -> StrengthRow:
     return StrengthRow(
         load.member.label, method, friction, peak.stress, error, math.degrees(peak.angle), peak.radius, peak.height,
-        math.degrees(peak.tangent_angle), UNKNOWN, UNKNOWN, UNKNOWN, peak.mean, peak.amplitude,
+        math.degrees(peak.tangent_angle), UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, peak.mean, peak.amplitude,
     )  # fmt: skip
+
+
+def notch_warnings(loads: Sequence[RootLoad]) -> Iterator[str]:
+    """Sentences on gears whose Y_S lies beyond what it was fitted for."""
+    for load in loads:
+        form = load.form_at(load.contact_ratio - 1.0)
+        if not form.is_in_range:
+            low, high = NOTCH
+            yield (
+                f"{load.member.label}: Y_S is extrapolated, as its notch parameter q_s = {form.notch_parameter:.3g} is "
+                f"outside {low:g} to {high:g}; stresses of formulas are too low below, and not proven above."
+            )
 
 
 def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:

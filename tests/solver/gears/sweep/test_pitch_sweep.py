@@ -7,10 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from evolvent.contact.newton.equilibrium import InitialGuess
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.search.pairing import SearchError
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep import pitch_sweep
+from evolvent.gears.sweep.position_search import KnownSolution, SearchedAt, shared_position
 from evolvent_meshes.errors import EvolventError
 from tests.support.gear_cases import Curves, model_of, spur_scene, swept
 from tests.support.running.patches import calling_first
@@ -85,3 +87,19 @@ def test_a_position_that_always_fails_ends_the_sweep(
     with pytest.raises(NotConverged, match=r"pinion at .*°, also after 4 halvings of the step: as the test wants"):
         swept(spur, np.array([1.0, 1.2]), [0.1])
     assert np.diff(np.degrees(tried)) == pytest.approx([-0.1, -0.05, -0.025, -0.0125])
+
+
+def test_guess_of_another_search_is_left_out(spur: GearModel) -> None:
+    """A position whose search has not ended where it was made before has other nodes: a known solution of three of them
+    changes nothing."""
+    frictions, angle, extra = [0.3], float(np.radians(2.2)), (0.0, 0.0)
+    shared = shared_position(spur, angle, extra, frictions, None)
+    elsewhere = SearchedAt(angle, (1.0, 1.0), 1.0)
+    guess = InitialGuess(np.zeros((3, 2)), np.zeros(1))
+    known = {0: KnownSolution(elsewhere, guess, {0.3: guess})}
+    pitch, state = pitch_sweep.Pitch((angle,)), pitch_sweep.initial_state(frictions)
+    found, wanted = (
+        next(pitch_sweep.sweep_pitch(spur, pitch, frictions, state, common=shared, known=each)).results[0]
+        for each in (known, {})
+    )
+    assert found.transmission_error == pytest.approx(wanted.transmission_error, rel=1e-9)

@@ -23,6 +23,8 @@ from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
 from evidence.processes import Command, Cost, module_run, run
 from evolvent.scene.scene import load_scene, scene_from_values
+from evolvent.strength.standard.root_stress import RootLoad, boundary_stresses
+from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 KEPT = "zhang2023/figures.csv"
@@ -182,8 +184,9 @@ def _studies(runs: Runs) -> Named:
     """Contact ratio, tip thickness and tension over addendum and pressure angle."""
     for row in runs.study("zhang2023_addendum"):
         addendum = float(row["pinion.addendum_coefficient"])
-        yield f"addendum_{100 * addendum:.0f}_ratio", _designed(18.0, addendum).transverse_contact_ratio
-        yield from _of_scene(f"addendum_{100 * addendum:.0f}", row)
+        pair = _designed(18.0, addendum)
+        yield f"addendum_{100 * addendum:.0f}_ratio", pair.transverse_contact_ratio
+        yield from _of_scene(f"addendum_{100 * addendum:.0f}", row, pair)
     for row in runs.study("zhang2023_pressure_angle"):
         if float(row["load.torque_Nm"]) == 500.0:
             angle = float(row["pair.normal_pressure_angle_deg"])
@@ -191,7 +194,7 @@ def _studies(runs: Runs) -> Named:
             yield f"angle_{angle:.0f}_ratio", pair.transverse_contact_ratio
             for name, gear in zip(PAPER, pair.gears):
                 yield f"angle_{angle:.0f}_{name}_tip_mm", gear.normal_thickness(gear.tip_diameter)
-            yield from _of_scene(f"angle_{angle:.0f}", row)
+            yield from _of_scene(f"angle_{angle:.0f}", row, pair)
 
 
 def _designed(angle: float, addendum: float) -> GearPair:
@@ -205,10 +208,14 @@ def _designed(angle: float, addendum: float) -> GearPair:
     return scene_from_values(values).gear_pair()
 
 
-def _of_scene(head: str, row: Row) -> Iterator[tuple[str, float]]:
-    """Of a line of study.csv; NaN where the scene failed."""
-    for gear in PAPER:
+def _of_scene(head: str, row: Row, pair: GearPair) -> Iterator[tuple[str, float]]:
+    """Of a line of study.csv, NaN where the scene failed, and by the formula with the load at the outer point of single
+    or double contact."""
+    for gear, member in zip(PAPER, Member):
         yield f"{head}_{gear}_MPa", float(row[f"{gear}_tension_MPa"] or math.nan)
+        load = RootLoad(pair, member, 500e3)
+        at = {point.name: point.stress for point in boundary_stresses(load)}
+        yield f"{head}_{gear}_b_MPa", at[load.outer_point.name]
 
 
 def main() -> None:

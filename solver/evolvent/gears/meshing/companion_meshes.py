@@ -33,6 +33,7 @@ def coarser(fine: SectorResolution) -> SectorResolution:
         neck_elements=neck,
         fillet_elements=half(fine.fillet_elements, neck + 1),
         back_elements=half(fine.back_elements, neck + 1),
+        band_depth=min(COARSENING * fine.band_depth, SectorResolution.band_depth),
         core_elements=half(fine.core_elements),
         rim_elements=half(fine.rim_elements),
     )

@@ -29,7 +29,7 @@ def loaded_scene(
             overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
-            result = error
+            result = SceneError(error.problems, error.source)  # causes and tracebacks may not be fit to be sent
     result = comm.bcast(result)
     assert result is not None
     if isinstance(result, SceneError):

@@ -107,7 +107,7 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
 
 TEST = ["--force-N", "500", "--pin-diameter-mm", "6"]
 SCENE = "{scene}"
-COMMANDS = "run, loads, excitation, dynamics, strength, check, mesh"
+COMMANDS = "run, loads, excitation, dynamics, strength, study, check, mesh"
 
 # arguments of the command line; key, what was found and a part of what is allowed or of the remedy
 OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
@@ -169,7 +169,7 @@ OPTIONS: dict[str, tuple[list[str], str, str, str]] = {
     "check: empty scene": (["check", ""], "SCENE.toml", "an empty text", "the scene file"),
     "check: no such scene": (["check", "{folder}/no.toml"], "scene file", "No such file", "check the path"),
     "check: two scenes": (["check", SCENE, "b.toml"], "arguments", '"b.toml"', "leave it out"),
-    "check: folder": (["check", SCENE, "--out", "x"], "--out", "an unknown option", "--level, --set, --no-skip"),
+    "check: no picture": (["check", SCENE, "--out", "x"], "--out", "x", "a name that ends in .png"),
     "check: empty level": (["check", SCENE, "--level="], "mesh.level", '""', "quick is for orientation"),
     "check: level twice": (["check", SCENE, "--level", "quick", "--level", "3"], "mesh.level", '"3"', "quick is for"),
     "check: level by key": (["check", SCENE, "--set", "level=quick"], "level", '"quick"', "did you mean mesh.level?"),

@@ -114,6 +114,24 @@ def test_gear_dynamics_demo(run_script: Run, tmp_path: Path) -> None:
         assert float(row["stiffness_at_3500_rpm"]) == pytest.approx(258.6, abs=0.05)
 
 
+@pytest.mark.slow
+def test_root_stress_demo(run_script: Run, tmp_path: Path) -> None:
+    """Zhang's pair on coarse meshes under two torques: status 0, a picture; tension is proportional to the torque, 1 %,
+    within 10 % of the paper's at 500 N·m, and below the formula at b."""
+    done = run_script("demos/zhang2023.py", "--quick", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert (tmp_path / "zhang2023.png").stat().st_size > 20_000
+    with open(tmp_path / "table.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+    paper = {"pinion": 490.6, "wheel": 487.01}
+    for less, more in zip(rows[:4], rows[4:]):
+        tensions = [float(row["tension_MPa"]) for row in (less, more)]
+        assert tensions[1] == pytest.approx(2.5 * tensions[0], rel=0.01)
+        assert tensions[1] == pytest.approx(paper[more["gear"]], rel=0.1)
+        assert tensions[1] < float(more["equal_shares_b_MPa"])
+
+
 def test_gear_wear_demo_refuses_too_much(run_script: Run, tmp_path: Path) -> None:
     """A setting that wears the flank away: status 2 and what is allowed."""
     settings = ("--set", "wear.cycles=1e9", "--out", str(tmp_path))

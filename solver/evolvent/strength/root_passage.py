@@ -79,9 +79,8 @@ class RootPassage:
         """Where and when the smallest principal stress is smallest."""
         return self._peak(int(np.argmin(self.principal[..., 0])), 0)
 
-    def tension_at(self, angle: float) -> RootPeak:
-        """Where the largest principal stress is largest at the rotation next to an angle [rad]."""
-        k = int(np.argmin(np.abs(self.angles - angle)))
+    def tension_at(self, k: int) -> RootPeak:
+        """Where the largest principal stress is largest at rotation number k."""
         return self._peak(k * len(self.root.radii) + int(np.argmax(self.principal[k, :, 2])), 2)
 
     def _peak(self, place: int, number: int) -> RootPeak:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from mpi4py import MPI
@@ -60,7 +61,7 @@ def run_strength(
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
-    _loads_of_standard(scene)
+    loads = _loads_of_standard(scene)
     on_first(comm, lambda: _check(out, overwrite))
     on_first(comm, lambda: _check_gauges(scene))
     dolfinx_compat.silence_logs()
@@ -74,8 +75,9 @@ def run_strength(
             except EvolventError as error:  # the same on all ranks
                 failure = f"Error bars: their coarse companion could not be solved: {error}"
         progress.stage(OUTPUT)
-        said = on_first(comm, lambda: _written(scene, fine.roots, None if coarse is None else coarse.roots, out))
-    return [*said, *notch_warnings(_loads_of_standard(scene)), *([failure] if failure else [])]
+        found = _by_friction(scene, fine.roots, None if coarse is None else coarse.roots)
+        said = on_first(comm, lambda: _written(scene, loads, found, out))
+    return [*said, *notch_warnings(loads), *([failure] if failure else [])]
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
@@ -120,18 +122,20 @@ def _check_gauges(scene: Scene) -> None:
                 gauge_places(gauge, side(mesh, problem.pair.gears[member]))
 
 
-def _written(scene: Scene, fine: Roots, coarse: Roots | None, out: Path) -> list[str]:
-    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
-    section = scene.strength or StrengthSection()
-    found = [
+def _by_friction(scene: Scene, fine: Roots, coarse: Roots | None) -> list[FrictionRoots]:
+    return [
         FrictionRoots(friction, own, None if coarse is None else coarse[index], scene.mesh.order)
         for index, (friction, own) in enumerate(zip(scene.contact.friction, fine))
     ]
+
+
+def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRoots], out: Path) -> list[str]:
+    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    section = scene.strength or StrengthSection()
     tolerance = section.tolerance_class or NO_DEEP_TEETH
     rows: list[StrengthRow] = []
-    for load in _loads_of_standard(scene):
+    for load in loads:
         rows += strength_rows(load, found, section.editions, tolerance)
-
     strains = list(gauge_rows(_scene_gauges(scene), found, scene.materials()))
 
     def drawn() -> bytes:

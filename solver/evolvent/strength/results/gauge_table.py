@@ -10,8 +10,9 @@ import numpy as np
 
 from evolvent.fem.material import Material
 from evolvent.results.archive.run_folder import RunFolder
-from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, relative_difference
+from evolvent.results.error_bars.estimation import Curve
 from evolvent.results.tables.tables import csv_text
+from evolvent.strength.results.root_curves import value_errors
 from evolvent.strength.results.tables import FrictionRoots
 from evolvent.strength.strain_gauges import Gauge, gauge_strain
 from evolvent_meshes.arrays import Floats
@@ -55,14 +56,11 @@ def gauge_rows(
 
 
 def _errors(gauge: Gauge, roots: FrictionRoots, strain: Floats, material: Material) -> Floats:
-    """As those of root stress (`root_curves`)."""
     if roots.coarse is None:
         return np.full(len(strain), np.nan)
     coarse = roots.coarse[gauge.member]
-    rough = 1e6 * gauge_strain(gauge, coarse, material)
-    curves = Curve(roots.gears[gauge.member].loaded_side.angles, strain), Curve(coarse.loaded_side.angles, rough)
-    least = np.abs(strain).max() * relative_difference(*curves)
-    return np.asarray(STIFFNESS_FACTOR[roots.order] * np.maximum(np.abs(strain - rough), least))
+    rough = Curve(coarse.loaded_side.angles, 1e6 * gauge_strain(gauge, coarse, material))
+    return value_errors(Curve(roots.gears[gauge.member].loaded_side.angles, strain), rough, roots.order)
 
 
 def write_gauges(folder: RunFolder, rows: Sequence[GaugeRow]) -> None:

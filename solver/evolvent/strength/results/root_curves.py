@@ -46,9 +46,18 @@ def curve_errors(
         return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
     rough, factor = curve(coarse), STIFFNESS_FACTOR[order]
     amount, less = (replace(each, values=np.abs(each.values)) for each in (fine, rough))
-    least = amount.values.max() * relative_difference(fine, rough)  # curves cross, and errors do not scale with values
-    of_values = np.maximum(np.abs(fine.values - rough.values), least)
-    return CurveErrors(factor * of_values, factor * difference(np.max, amount, less) + _spacing_error(amount.values))
+    peak = factor * difference(np.max, amount, less) + _spacing_error(amount.values)
+    return CurveErrors(value_errors(fine, rough, order), peak)
+
+
+def value_errors(fine: Curve, rough: Curve, order: int) -> Floats:
+    """Error bars (k,) of the values of a curve by the mesh.
+
+    rough: on elements of twice the size, at the same rotations. order: of the cells.
+    """
+    # curves cross, and errors do not scale with values
+    least = np.abs(fine.values).max() * relative_difference(fine, rough)
+    return np.asarray(STIFFNESS_FACTOR[order] * np.maximum(np.abs(fine.values - rough.values), least))
 
 
 def _spacing_error(values: Floats) -> float:

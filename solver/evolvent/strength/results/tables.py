@@ -117,8 +117,8 @@ def strength_rows(
         if load.pair.pinion.helix_angle_deg == 0.0:
             angle, name = load.tooth_rotation(load.outer_point.below_tip), load.outer_point.name
             k = int(np.argmin(np.abs(own.loaded_side.angles - angle)))
-            peak = own.loaded_side.tension_at(angle)
-            yield _of_peak(load, f"finite elements, tension, {name}", each.friction, peak, float(bars[0].values[k]))
+            peak, error = own.loaded_side.tension_at(k), float(bars[0].values[k])
+            yield _of_peak(load, f"finite elements, tension, {name}", each.friction, peak, error)
 
 
 def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: int) -> Iterator[StrengthRow]:

@@ -3,7 +3,7 @@
 The commands of `evolvent` that compute run as they are typed, on narrow gears with a coarse mesh or at few positions.
 `docker run` runs the program of this checkout with the folders that it mounts; what needs an engine is run by .ci/run.
 `make` says what it would do; of a module of the evidence it is looked up that it is there, for it writes into the
-checkout.
+checkout, and of a demo, which test_demos.py runs, that it takes the line's words.
 """
 
 from __future__ import annotations
@@ -73,7 +73,10 @@ def paraview(words: list[str]) -> None:
 
 
 def python(words: list[str]) -> None:
-    """`python -m evidence.MODULE`: a module that can be run; its files are there, but for what it makes (`--out`)."""
+    """`python -m evidence.MODULE`: a module that can be run; its files are there, but for what it makes (`--out`).
+    `python demos/NAME.py`: it takes these words."""
+    if words[0].startswith("demos/"):
+        os.execv(sys.executable, [sys.executable, *words, "--help"])
     require(words[0] == "-m" and words[1].startswith("evidence."), "python -m evidence.MODULE")
     spec = find_spec(words[1])
     require(spec is not None and spec.origin is not None, f"the module {words[1]}")

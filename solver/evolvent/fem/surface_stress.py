@@ -11,6 +11,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from evolvent.fem.lagrange import node_points
 from evolvent.fem.material import Material
@@ -20,29 +21,53 @@ from evolvent_meshes.arrays import Floats
 
 BARLOW = 0.5 / np.sqrt(3.0)
 """Distance of these points from the middle of an interval, whose length is 1."""
+AT_ONCE = 64
+"""Displacements whose stresses are found together; more would take more memory and no less time."""
 
 
 def surface_stress(surface: Surface, material: Material, displacement: Floats) -> Floats:
-    """Stress tensors (n, 3, 3) [MPa] at the nodes of a free surface; in 2D of plane strain, with σ_zz = ν σ_tt.
+    """Stress tensors (..., n, 3, 3) [MPa] at the nodes of a free surface; in 2D of plane strain, with σ_zz = ν σ_tt.
 
-    displacement: (n, d) of its nodes [mm].
+    displacement: (..., n, d) of its nodes [mm].
     """
     points, continued = _sampling(surface.shape, surface.order)
-    every = np.arange(len(surface.facets))
+    every, several = np.arange(len(surface.facets)), displacement.reshape(-1, *displacement.shape[-2:])
     places = np.broadcast_to(points, (len(every), *points.shape))
-    tangents, slopes = (surface.evaluate(field, every, places)[1] for field in (surface.points, displacement))
-    sampled = _stress(np.stack(tangents, axis=-2), np.stack(slopes, axis=-2), material)
+    tangents = surface.evaluate(surface.points, every, places)[1]
     turns = _turns(_unit(area_vector(tangents)), _unit(surface.normals)[surface.facets])
-    nodal = np.einsum("kq,mkqac,mqcd,mkqbd->mkab", continued, turns, sampled, turns, optimize=True)
-    total = np.zeros((len(surface.points), 3, 3))
-    np.add.at(total, surface.facets.ravel(), nodal.reshape(-1, 3, 3))
-    count = np.bincount(surface.facets.ravel(), minlength=len(total))
-    return np.asarray(total / np.maximum(count, 1)[:, None, None])
+    a, mean = np.stack(tangents, axis=-2)[:, :, None], _nodal_mean(surface)
+    result = np.empty((*several.shape[:-1], 3, 3))
+    for first in range(0, len(several), AT_ONCE):
+        u = several[first : first + AT_ONCE]
+        slopes = surface.evaluate(np.swapaxes(u, 0, 1).reshape(len(surface.points), -1), every, places)[1]
+        change = np.stack([each.reshape(*each.shape[:2], *u.shape[::2]) for each in slopes], axis=-2)
+        sampled = _stress(a, change, material)
+        of_facets = np.einsum("kq,mkqac,mqpcd,mkqbd->mkpab", continued, turns, sampled, turns, optimize=True)
+        nodal = (mean @ of_facets.reshape(mean.shape[1], -1)).reshape(-1, len(u), 3, 3)
+        result[first : first + AT_ONCE] = np.swapaxes(nodal, 0, 1)
+    return result.reshape(*displacement.shape[:-1], 3, 3)
+
+
+def principal_stresses(stress: Floats) -> Floats:
+    """Principal stresses (..., 3), ascending [MPa], of stress tensors (..., 3, 3) of a free surface: one of them is
+    zero, and the others are the roots of λ² − tr σ λ + (sum of the principal minors) = 0."""
+    xx, yy, zz, xy, yz, zx = (stress[..., i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
+    half = 0.5 * (xx + yy + zz)
+    minors = xx * yy - xy**2 + yy * zz - yz**2 + zz * xx - zx**2
+    radius = np.sqrt(np.maximum(half**2 - minors, 0.0))
+    return np.asarray(np.sort(np.stack([half - radius, np.zeros_like(half), half + radius], axis=-1), axis=-1))
+
+
+def _nodal_mean(surface: Surface) -> csr_matrix:
+    """The matrix (n, m k) that averages values at the k nodes of m facets at each node."""
+    nodes = surface.facets.ravel()
+    share = 1.0 / np.bincount(nodes, minlength=len(surface.points))[nodes]
+    return csr_matrix((share, (nodes, np.arange(len(nodes)))), shape=(len(surface.points), len(nodes)))
 
 
 def _stress(a: Floats, change: Floats, material: Material) -> Floats:
     """Stress (..., 3, 3) from tangents a (..., dt, d) and their change (..., dt, d), without a traction on the surface:
-    in 3D plane stress in the tangent plane, in 2D plane strain along the tangent."""
+    in 3D plane stress in the tangent plane, in 2D plane strain along the tangent. The leading axes are broadcast."""
     metric = np.linalg.inv(a @ np.swapaxes(a, -1, -2))
     strain = change @ np.swapaxes(a, -1, -2)
     strain = metric @ (0.5 * (strain + np.swapaxes(strain, -1, -2))) @ metric
@@ -50,7 +75,7 @@ def _stress(a: Floats, change: Floats, material: Material) -> Floats:
     E, ν = material.youngs_modulus, material.poissons_ratio
     local = E / (1.0 - ν**2) * ((1.0 - ν) * strain + ν * trace * metric)
     d = a.shape[-1]
-    stress = np.zeros((*a.shape[:-2], 3, 3))
+    stress = np.zeros((*local.shape[:-2], 3, 3))
     stress[..., :d, :d] = np.swapaxes(a, -1, -2) @ local @ a
     if d == 2:
         stress[..., 2, 2] = ν * (stress[..., 0, 0] + stress[..., 1, 1])

@@ -1,14 +1,14 @@
 """Further positions of a pitch, where root stress is largest.
 
-Stress rises steeply where a tooth takes over the load of its neighbour: between two of twenty positions of a spur gear
-it may be larger by 6 % than at either. The intervals beside each largest value are halved until they are a hundredth of
-a pitch. A further position starts from the friction history of the one before it.
+Between two of twenty positions of a spur gear stress may be larger by 9 % than at either. Positions are added where it
+may be highest beside each largest value (`peak_bounds`), until none may be higher by half a per cent. A further
+position starts from the friction history of the one before it.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -17,13 +17,25 @@ from mpi4py import MPI
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel
 from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, sweep_pitch
+from evolvent.strength.peak_bounds import beside_largest
 from evolvent.strength.root_passage import GearRoots, root_passages
-from evolvent_meshes.arrays import Floats
 
+GAIN = 0.005
+"""Of the largest stress: as much as it may still rise between two positions."""
 NARROWEST = 0.01
-"""Largest interval beside a peak, over the pitch."""
+"""Interval that is not divided, over the pitch."""
 Roots = list[tuple[GearRoots, GearRoots]]
 """Of pinion and wheel at each friction coefficient."""
+
+
+@dataclass(frozen=True, eq=False)
+class SweptRoots:
+    """Positions of a pitch and what they do to the roots."""
+
+    positions: Sequence[SweptPosition]
+    """By ascending angle."""
+    roots: Roots
+    """Over their rotations."""
 
 
 def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
@@ -35,50 +47,48 @@ def roots_of(model: GearModel, positions: Sequence[SweptPosition]) -> Roots:
     return found
 
 
-def with_peaks(
-    model: GearModel, positions: Sequence[SweptPosition], frictions: Sequence[float], comm: MPI.Comm
-) -> list[SweptPosition]:
-    """The positions of a pitch and those around the largest stresses, by ascending angle. Collective.
-
-    Raises NotConverged, SearchError.
-    """
-    every = list(positions)
-    for _ in range(math.ceil(math.log2(max(1.0, 1.0 / (NARROWEST * len(positions)))))):
-        angles = on_first(comm, partial(_middles, model, every))
-        every = with_angles(model, every, angles, frictions, comm)
-    return every
+def with_peaks(model: GearModel, known: SweptRoots, frictions: Sequence[float], comm: MPI.Comm) -> SweptRoots:
+    """With positions around the largest stresses. Collective. Raises NotConverged, SearchError."""
+    while angles := on_first(comm, partial(_further, model, known)):
+        known = with_angles(model, known, angles, frictions, comm)
+    return known
 
 
 def with_angles(
-    model: GearModel, positions: Sequence[SweptPosition], angles: Sequence[float], frictions: Sequence[float],
-    comm: MPI.Comm,
-) -> list[SweptPosition]:  # fmt: skip
-    """The positions and those at further pinion rotations [rad], each from the state of the last one before it.
-    Collective. Raises NotConverged, SearchError."""
-    known = np.array([each.angle for each in positions])
+    model: GearModel, known: SweptRoots, angles: Sequence[float], frictions: Sequence[float], comm: MPI.Comm
+) -> SweptRoots:
+    """With further pinion rotations [rad], each from the state of the last one before it. Collective.
+
+    Raises NotConverged, SearchError.
+    """
+    if not angles:
+        return known
+    stands = np.array([each.angle for each in known.positions])
 
     def solved() -> list[SweptPosition]:
         own = angles[comm.rank :: comm.size]
-        states = (positions[int(np.searchsorted(known, angle)) - 1].state for angle in own)
+        states = (known.positions[int(np.searchsorted(stands, angle)) - 1].state for angle in own)
         return [next(sweep_pitch(model, Pitch((angle,)), frictions, state)) for angle, state in zip(own, states)]
 
     further = [each for part in comm.allgather(together(comm, solved)) for each in part]
-    return sorted([*positions, *further], key=lambda each: each.angle)
+    every = sorted([*known.positions, *further], key=lambda each: each.angle)
+    more = on_first(comm, partial(roots_of, model, further))
+    joined = [(pinion.joined(a), wheel.joined(b)) for (pinion, wheel), (a, b) in zip(known.roots, more)]
+    return SweptRoots(every, joined)
 
 
-def _middles(model: GearModel, positions: Sequence[SweptPosition]) -> list[float]:
-    """Pinion rotations in [0, pitch) midway between those of the largest stresses and the ones beside them [rad]."""
-    pitch, middles = 2.0 * np.pi / model.pair.pinion.z, set[float]()
-    for own in (gear for both in roots_of(model, positions) for gear in both):
+def _further(model: GearModel, known: SweptRoots) -> list[float]:
+    """Pinion rotations in [0, pitch) at which the largest stresses may be higher [rad]."""
+    pitch = 2.0 * np.pi / model.pair.pinion.z
+    wanted: list[float] = []
+    for own in (gear for both in known.roots for gear in both):
         loaded, back = own.loaded_side, own.back_side
         for angles, stress in ((loaded.angles, loaded.largest), (back.angles, -back.smallest)):
-            middles |= {round(float(middle % pitch), 12) for middle in _beside_peak(angles, stress)}
-    return sorted(middles)
-
-
-def _beside_peak(angles: Floats, stress: Floats) -> Iterator[float]:
-    """Midway between the angle of the largest stress and those before and after it [rad]."""
-    k = int(np.argmax(stress))
-    for a, b in ((k - 1, k), (k, k + 1)):
-        if a >= 0 and b < len(stress):
-            yield 0.5 * float(angles[a] + angles[b])
+            for peak in beside_largest(angles, stress):
+                if peak.width > NARROWEST * pitch and peak.height > (1.0 + GAIN) * stress.max():
+                    wanted.append(peak.place % pitch)
+    apart: list[float] = []
+    for angle in sorted(wanted):
+        if not apart or angle - apart[-1] > NARROWEST * pitch:
+            apart.append(angle)
+    return apart

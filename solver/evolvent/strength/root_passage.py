@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from evolvent.fem.surface_stress import surface_stress
+from evolvent.fem.surface_stress import principal_stresses, surface_stress
 from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.root_meshes import root_nodes
 from evolvent.gears.ring.ring_compliance import ChainedCompliance
@@ -57,7 +57,7 @@ class RootPassage:
     @cached_property
     def principal(self) -> Floats:
         """(k, n, 3) principal stresses, ascending [MPa]."""
-        return np.asarray(np.linalg.eigvalsh(self.stress))
+        return principal_stresses(self.stress)
 
     @property
     def largest(self) -> Floats:
@@ -83,6 +83,12 @@ class RootPassage:
         """Where the largest principal stress is largest at rotation number k."""
         return self._peak(k * len(self.root.radii) + int(np.argmax(self.principal[k, :, 2])), 2)
 
+    def joined(self, other: RootPassage) -> RootPassage:
+        """With the rotations of another passage of the same root."""
+        angles = np.concatenate([self.angles, other.angles])
+        order = np.argsort(angles)
+        return RootPassage(self.root, angles[order], np.concatenate([self.stress, other.stress])[order])
+
     def _peak(self, place: int, number: int) -> RootPeak:
         """place: of the (k, n) stresses. number: of the principal stress there."""
         k, j = divmod(place, len(self.root.radii))
@@ -103,6 +109,10 @@ class GearRoots:
     back_side: RootPassage
     """Pressed."""
 
+    def joined(self, other: GearRoots) -> GearRoots:
+        """With the rotations of other passages of the same tooth."""
+        return GearRoots(self.loaded_side.joined(other.loaded_side), self.back_side.joined(other.back_side))
+
 
 def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoots:
     """Of one gear under the results of a pitch at one friction coefficient.
@@ -119,7 +129,6 @@ def root_passages(body: GearBody, results: Sequence[PositionResult]) -> GearRoot
 
     def passage(root: RootSurface) -> RootPassage:
         own = u[order][:, np.searchsorted(every, root.surface.nodes)]
-        stress = np.array([surface_stress(root.surface, body.material, each) for each in own])
-        return RootPassage(root, angles[order], stress)
+        return RootPassage(root, angles[order], surface_stress(root.surface, body.material, own))
 
     return GearRoots(passage(tension_side(body.mesh, body.gear)), passage(compression_side(body.mesh, body.gear)))

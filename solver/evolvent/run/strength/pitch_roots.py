@@ -20,7 +20,7 @@ from evolvent.run.progress import CONDENSING, MESHING, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.strength import StrengthSection
-from evolvent.strength.peak_positions import Roots, roots_of, with_angles, with_peaks
+from evolvent.strength.peak_positions import Roots, SweptRoots, roots_of, with_angles, with_peaks
 from evolvent.strength.standard.root_stress import RootLoad
 from evolvent_meshes.gears.member import Member
 
@@ -64,12 +64,16 @@ def pitch_roots(
         swept.append(position)
         progress.advance(more=not position.closes)
     uniform = one_pitch(swept)
-    every = with_peaks(model, uniform, frictions, comm) if angles is None else uniform
-    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
-    for position in every:
+    every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
+    if angles is None:  # the outer points first: they narrow the intervals, too
+        every = with_angles(model, every, _outer_points(problem), frictions, comm)
+        every = with_peaks(model, every, frictions, comm)
+    else:
+        every = with_angles(model, every, angles, frictions, comm)
+    for position in every.positions:
         certify(position.results)
-    further = sorted({each.angle for each in every} - {each.angle for each in uniform})
-    return PitchRoots(tuple(further), on_first(comm, lambda: roots_of(model, every)))
+    further = sorted({each.angle for each in every.positions} - {each.angle for each in uniform})
+    return PitchRoots(tuple(further), every.roots)
 
 
 def _outer_points(problem: GearProblem) -> list[float]:

@@ -1,8 +1,8 @@
 """Root stress over the rotation of a tooth, and the error bars of its curves and of their largest values.
 
 The errors of the mesh are estimated as those of a run (`results.error_bars.estimation`), from the same positions on
-elements of twice the size. A largest value may lie between two positions: by how much it falls where every other
-position is left out is added to its bar.
+elements of twice the size. A largest value may lie between two positions: by how much it may be higher there is added
+to its bar.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evolvent.results.error_bars.estimation import STIFFNESS_FACTOR, Curve, difference, relative_difference
+from evolvent.strength.peak_bounds import beside_largest
 from evolvent.strength.root_passage import GearRoots
 from evolvent_meshes.arrays import Floats
 
@@ -46,7 +47,7 @@ def curve_errors(
         return CurveErrors(np.full(len(fine.values), np.nan), np.nan)
     rough, factor = curve(coarse), STIFFNESS_FACTOR[order]
     amount, less = (replace(each, values=np.abs(each.values)) for each in (fine, rough))
-    peak = factor * difference(np.max, amount, less) + _spacing_error(amount.values)
+    peak = factor * difference(np.max, amount, less) + _spacing_error(amount)
     return CurveErrors(value_errors(fine, rough, order), peak)
 
 
@@ -60,7 +61,7 @@ def value_errors(fine: Curve, rough: Curve, order: int) -> Floats:
     return np.asarray(STIFFNESS_FACTOR[order] * np.maximum(np.abs(fine.values - rough.values), least))
 
 
-def _spacing_error(values: Floats) -> float:
-    """By how much the largest of the values (k,) falls where every other one is left out; 0 of a single one."""
-    halves = [part.max() for part in (values[::2], values[1::2]) if len(part)]
-    return float(max(halves) - min(halves))
+def _spacing_error(curve: Curve) -> float:
+    """By how much the curve may be higher between its positions than at the highest of them."""
+    largest = float(curve.values.max())
+    return max([0.0, *(each.height - largest for each in beside_largest(curve.angle, curve.values))])

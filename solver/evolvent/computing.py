@@ -1,4 +1,4 @@
-"""The commands of `evolvent` that compute: `run`, `loads`, `excitation` and `dynamics`. All ranks take part in them."""
+"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `strength`. All ranks take part in them."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def loads(
         scenes = _scenes(loaded, percent, force)
         _warn(run_loads(scenes, out, resume, quiet, overwrite, scene))
         if not quiet:
-            typer.echo(f"done: figures of all loads in {out / 'loads.csv'}, {out / 'pictures/loads.png'}")
+            _done(out, "loads.csv", "pictures/loads.png")
 
 
 def excitation(
@@ -166,7 +166,7 @@ def excitation(
         require_room(torques.scene, "run", force, MPI.COMM_WORLD)
         _warn(run_excitation(torques, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            typer.echo(f"done: {out / 'excitation.csv'}, {out / 'harmonics.csv'}, {out / 'pictures/excitation.png'}")
+            _done(out, "excitation.csv", "harmonics.csv", "pictures/excitation.png")
 
 
 def dynamics(
@@ -195,8 +195,7 @@ def dynamics(
         require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_dynamics(loaded, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            pictures = f"{out / 'pictures/vibration.png'}, {out / 'pictures/waterfall.png'}"
-            typer.echo(f"done: {out / 'response.csv'}, {out / 'dynamics.json'}, {pictures}")
+            _done(out, "response.csv", "dynamics.json", "pictures/vibration.png", "pictures/waterfall.png")
 
 
 def strength(
@@ -223,7 +222,12 @@ def strength(
         require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_strength(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            typer.echo(f"done: {out / 'strength.csv'}, {out / 'root_stress.csv'}, {out / 'pictures/root_stress.png'}")
+            _done(out, "strength.csv", "root_stress.csv", "gauges.csv", "pictures/root_stress.png")
+
+
+def _done(out: Path, *names: str) -> None:
+    """Names the files that were written: pictures, and tables that a scene asks for, may be missing."""
+    typer.echo("done: " + ", ".join(str(out / name) for name in names if (out / name).exists()))
 
 
 def _unworn(scene: Scene) -> Scene:

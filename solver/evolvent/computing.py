@@ -1,4 +1,5 @@
-"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `strength`. All ranks take part in them."""
+"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `strength`. All ranks take
+part in them."""
 
 from __future__ import annotations
 

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import TypeVar
 
+from mpi4py import MPI
+
+from evolvent.fem.parallel.ranks import on_first
 from evolvent.results.archive.run_folder import LOG, FolderError, RunFolder
+from evolvent.results.archive.run_lock import locked
 from evolvent.results.archive.scene_files import SCENE_FILES, scene_texts
 from evolvent.scene.scene import GEARS, Scene
 
@@ -19,6 +26,21 @@ WRITTEN = (
 """Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
 NAMED = 10
 """Largest number of foreign files in a message."""
+
+
+T = TypeVar("T")
+
+
+@contextmanager
+def writing_to(out: Path, comm: MPI.Comm, checked: Callable[[], T]) -> Iterator[T]:
+    """Context in which no other run writes to the folder. Gives what `checked` returns, which looks at the folder on
+    rank 0 once it is this run's. Collective.
+
+    Raises FolderError where another run writes there, and what `checked` raises.
+    """
+    with ExitStack() as lock:
+        on_first(comm, lambda: lock.enter_context(locked(out)))
+        yield on_first(comm, checked)
 
 
 def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source: Path | None) -> None:

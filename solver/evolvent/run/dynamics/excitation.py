@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +22,11 @@ from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
 from evolvent.results.archive.run_folder import FolderError, RunFolder
-from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
+from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.skips import wanted_output
@@ -52,25 +52,23 @@ def run_excitation(
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     check_positions(loads.scene)
     fine, coarse = kept_positions(loads, out, resume)
-    with writing_to(out, OF_EXCITATION, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
+    with writing_results(out, OF_EXCITATION, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         progress.stage(OUTPUT)
         return said + loads.warnings + on_first(comm, lambda: _written(RunFolder(out), excitation, companion, loads))
 
 
-@contextmanager
-def writing_to(out: Path, written: Sequence[str], comm: MPI.Comm, resume: bool, overwrite: bool) -> Iterator[list[str]]:
+def writing_results(
+    out: Path, written: Sequence[str], comm: MPI.Comm, resume: bool, overwrite: bool
+) -> AbstractContextManager[list[str]]:
     """Context in which no other run writes to the folder. Gives a sentence where there is nothing to go on from.
     Collective. written: names of what is written in the end.
 
     Raises FolderError where files of others would be lost, or results unasked.
     """
-    with ExitStack() as lock:
-        on_first(comm, lambda: lock.enter_context(locked(out)))
-        said = on_first(comm, lambda: _checked(out, written, resume, overwrite))
-        dolfinx_compat.silence_logs()
-        yield said
+    dolfinx_compat.silence_logs()
+    return writing_to(out, comm, lambda: _checked(out, written, resume, overwrite))
 
 
 def _checked(out: Path, written: Sequence[str], resume: bool, overwrite: bool) -> list[str]:

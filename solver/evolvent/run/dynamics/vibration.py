@@ -39,7 +39,7 @@ from evolvent.run.dynamics.excitation import (
     companion_of,
     computed_excitation,
     write_excitation,
-    writing_to,
+    writing_results,
 )
 from evolvent.run.dynamics.kept_positions import kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques, scene_torques
@@ -76,7 +76,7 @@ def run_dynamics(
     loads = scene_torques(scene, section.torque_percents)
     fine, coarse = kept_positions(loads, out, resume)
     check_room(loads.problem, scene.sweep.positions, drive_settings(loads.problem.pair, section))
-    with writing_to(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
+    with writing_results(out, OF_DYNAMICS, comm, resume, overwrite) as said, Progress(hidden=hidden) as progress:
         excitation = computed_excitation(loads, comm, progress, fine, prepare)
         companion = companion_of(excitation, loads, comm, progress, coarse, prepare)
         written = partial(_written, excitation, companion, loads, section, out, progress)

@@ -12,8 +12,8 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.results.archive.run_folder import FolderError, RunFolder
-from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
 from evolvent.run.strength.pitch_roots import pitch_roots, scene_root_meshes
 from evolvent.scene.gear_problem import gear_problem
@@ -62,10 +62,9 @@ def run_strength(
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
     loads = _loads_of_standard(scene)
-    on_first(comm, lambda: _check(out, overwrite))
     on_first(comm, lambda: _check_gauges(scene))
     dolfinx_compat.silence_logs()
-    with Progress(hidden=hidden) as progress:
+    with writing_to(out, comm, lambda: _check(out, overwrite)), Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
         coarse, failure = None, ""
@@ -143,10 +142,9 @@ def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRo
 
         return root_stress_picture(scene.title, found, rows)
 
-    with locked(out):
-        folder = RunFolder(out)
-        folder.remove(WRITTEN)
-        write_strength(folder, rows, list(root_stress_rows(found)))
-        if strains:
-            write_gauges(folder, strains)
-        return list(draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures)
+    folder = RunFolder(out)
+    folder.remove(WRITTEN)
+    write_strength(folder, rows, list(root_stress_rows(found)))
+    if strains:
+        write_gauges(folder, strains)
+    return list(draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures)

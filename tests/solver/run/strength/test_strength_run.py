@@ -11,6 +11,7 @@ import pytest
 from evolvent.cli import main
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.run_lock import locked
 from evolvent.run.strength import strength_run
 from evolvent.run.strength.strength_run import run_strength
 from evolvent.scene.scene import Scene, SceneError, load_scene
@@ -112,6 +113,13 @@ def test_companion_that_fails_costs_the_error_bars_only(tmp_path: Path, monkeypa
     monkeypatch.setattr(strength_run, "scene_root_meshes", lambda _: (RootMesh(), refuse))
     (said,) = run_strength(scene(), tmp_path, quiet=True)
     assert said == "Error bars: their coarse companion could not be solved: too coarse"
+
+
+def test_a_folder_in_use_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another run computes into the folder: refused before anything is meshed."""
+    monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
+    with locked(tmp_path), pytest.raises(FolderError, match="computes into, found process"):
+        run_strength(scene(), tmp_path, quiet=True)
 
 
 def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:

@@ -63,8 +63,8 @@ class SectorResolution:
     fillet_elements: from the flank start to the sector's cut on the loaded side.
     back_elements: the same on the back side.
     neck_elements: of the two before, those above the middle of the fillet.
-    band_depth: depth of the cells along fillets and root at the cut, in normal modules, unless the thin layers are
-        deeper.
+    band_depth: depth of the cells along fillets and root at the cut, in normal modules.
+    band_below_layers: whether it is at least the depth of the thin layers.
     core_elements: coarse columns of the tooth between transitions and back band.
     rim_elements: from the root band to the bore.
     fine_back: whether the back flank is as fine as the loaded one, to measure the effect of a coarse one.
@@ -83,6 +83,7 @@ class SectorResolution:
     back_elements: int = 5
     neck_elements: int = 3
     band_depth: float = 0.3
+    band_below_layers: bool = True
     core_elements: int = 2
     rim_elements: int = 4
     fine_back: bool = False
@@ -133,7 +134,7 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     band = sum(resolution.layer_depths)
     fine_back = resolution.fine_back
     rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, fine_back)
-    at_cut = max(band, resolution.band_depth * gear.normal_module)
+    at_cut = max(band * resolution.band_below_layers, resolution.band_depth * gear.normal_module)
     widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
     neck = resolution.neck_elements
     loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)

@@ -1,7 +1,7 @@
 """The mesh at several misalignments under one torque: transmission error and tangent stiffness, without friction.
 
-A position is searched at the middle misalignment; at the others its search and its compliance are used again, which
-take most of its time.
+A position is searched at the middle misalignment; at the others its search and its compliance are used again as far as
+the flanks stay near, which take most of its time.
 """
 
 from __future__ import annotations
@@ -25,15 +25,25 @@ def misaligned_figures(models: Sequence[GearModel], angles: Floats) -> Iterator[
 
     Raises NotConverged, SearchError.
     """
-    middle, last = models[len(models) // 2], None
+    middle, last = len(models) // 2, None
     for angle in angles:
-        searched = _searched(middle, float(angle), last)
-        row = [
-            searched if model is middle else misaligned_on(model, searched) or _searched(model, float(angle), searched)
-            for model in models
-        ]
+        searched = _searched(models[middle], float(angle), last)
+        below = _outward(models[:middle][::-1], float(angle), searched)
+        row = [*below[::-1], searched, *_outward(models[middle + 1 :], float(angle), searched)]
         yield np.array([figures_of(model, position) for model, position in zip(models, row)])
         last = searched
+
+
+def _outward(models: Sequence[GearModel], angle: float, searched: SharedPosition) -> list[SharedPosition]:
+    """A position at misalignments that are ever farther from the one at which it was searched. Where they are too far
+    to use that search, the position is searched again, for those beyond too."""
+    found: list[SharedPosition] = []
+    for model in models:
+        position = misaligned_on(model, searched)
+        if position is None:
+            position = searched = _searched(model, angle, found[-1] if found else searched)
+        found.append(position)
+    return found
 
 
 def _searched(model: GearModel, angle: float, near: SharedPosition | None) -> SharedPosition:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
 from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear_geometry import GearGeometry, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 from evolvent_meshes.gears.modifications.modifications import Modifications
@@ -49,6 +50,7 @@ class GearParameters(GearGeometry):
         face_width: float,
         bore_diameter: float,
         support: Support | None = None,
+        web: Web | None = None,
         helix_angle_deg: float = 0.0,
         profile_shift: float = 0.0,
         tooth_thickness_allowance_um: float = 0.0,
@@ -107,5 +109,6 @@ class GearParameters(GearGeometry):
             hand=hand,
             bore_diameter=bore_diameter,
             support=Support() if support is None else support,
+            web=web,
             modifications=Modifications() if modifications is None else modifications,
         )

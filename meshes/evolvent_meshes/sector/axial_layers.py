@@ -1,4 +1,4 @@
-"""Heights of a sector's layers of cells: below the teeth they end at the faces of a web and at the ends of a support."""
+"""Heights of a sector's layers of cells: below the teeth they end at the faces of a web, at the ends of a support."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def node_heights(gear: GearParameters, heights: Floats, radius: Floats) -> Float
     heights: (levels,) of the layers' nodes on the flank, ends and middles in turn [mm].
     radius: (nodes,) of the section [mm].
     At the bore the nearest ends of layers are moved to the ends of a partial support, from the inside of the rim to the
-    hub to the faces of a web, the others evenly between. In the rim, and in the hub of a gear that has both, they change
-    in proportion to the radius. Raises MeshError for fewer than FEWEST layers.
+    hub to the faces of a web, the others evenly between. In the rim, and in the hub of a gear that has both, heights
+    change in proportion to the radius. Raises MeshError for fewer than FEWEST layers.
     """
     plain = np.repeat(heights[:, None], len(radius), axis=1)
     known = list(_moved_layers(gear, heights))
@@ -32,6 +32,11 @@ def node_heights(gear: GearParameters, heights: Floats, radius: Floats) -> Float
     top = 0.5 * gear.root_diameter - ABOVE * gear.normal_module
     at, moved = zip(*known, (top, heights))
     return _interpolated(radius, np.array(at), np.array(moved))
+
+
+def fewest_layers(gear: GearParameters) -> int:
+    """Layers that a sector needs at least for its web or its support; 0 of a full ring that is held over its face."""
+    return FEWEST if gear.thin_web is not None or gear.support.is_partial(gear.face_width) else 0
 
 
 def web_layers(gear: GearParameters, heights: Floats) -> range:

@@ -43,7 +43,7 @@ def body_blocks(
     cut = np.pi / gear.z
     depths, angles = to_polar(np.array(corners))
     rows = subdivided(graded_fractions(depths[0] - circles[0], WIDER * loaded.widths[1], rim), 2)
-    blocks = []
+    blocks: list[Piece] = []
     for side, angle, end in zip((loaded, back), angles, (cut, -cut), strict=True):
         top = side.inner(half_steps(side.neck, side.cells))
         blocks += _down_to_bore(top, circles, (angle, end), rows, below)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from evolvent.scene.plain_text import fixed
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
+from evolvent_meshes.sector.held_bore import held_ends
 
 Line = tuple[str, str, str, tuple[str, ...]]
 """Name, symbol, unit and the values of pinion and wheel, or of both."""
@@ -14,7 +16,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 def gear_lines(pair: GearPair) -> list[Line]:
     """Of each gear, where one of the two has the input from which they follow."""
-    return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_support(pair)]
+    return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_web(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
@@ -55,13 +57,31 @@ def _protuberance(pair: GearPair) -> list[Line]:
     return [_each(pair, "residual protuberance of the rack", "s_pr", "µm", 1, lambda gear: gear.protuberance_um)]
 
 
+def _web(pair: GearPair) -> list[Line]:
+    webs = [gear.thin_web for gear in pair.gears]
+    if not any(webs):
+        return []
+
+    def each(name: str, symbol: str, value: Callable[[Web], float | None]) -> Line:
+        found = [None if web is None else value(web) for web in webs]
+        return name, symbol, "mm", tuple("–" if one is None else fixed(one, 3) for one in found)
+
+    return [
+        each("rim, on a web", "s_R", lambda web: web.rim_thickness),
+        each("web thickness", "b_s", lambda web: web.thickness),
+        each("  from", "z", lambda web: web.ends[0]),
+        each("  to", "", lambda web: web.ends[1]),
+        each("hub diameter (–: no hub)", "", lambda web: web.hub_diameter),
+    ]
+
+
 def _support(pair: GearPair) -> list[Line]:
     lines = []
     if any(gear.support.is_rim for gear in pair.gears):
         rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
         lines.append(("rim, held at its inside", "s_R", "mm", rims))
     if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
-        low, high = (tuple(fixed(gear.support.ends(gear.face_width)[i], 3) for gear in pair.gears) for i in (0, 1))
+        low, high = (tuple(fixed(held_ends(gear)[i], 3) for gear in pair.gears) for i in (0, 1))
         lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
     return lines
 

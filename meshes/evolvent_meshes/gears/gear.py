@@ -25,13 +25,21 @@ def usual_rack_tip_radius(normal_module: float, normal_pressure_angle: float, de
 
 @dataclass(frozen=True, kw_only=True)
 class GearParameters(GearGeometry):
-    """An external involute gear that can be cut by its rack; fields and properties are those of `GearGeometry`.
+    """An external involute gear that can be cut by its rack; fields and properties are those of `GearGeometry`,
+    and where it is held.
 
     Raises GeometryError if no such gear can be cut.
     """
 
     def __post_init__(self) -> None:
         check_gear(self)
+
+    @property
+    def held_ends(self) -> tuple[float, float]:
+        """Heights z [mm] of the ends of the part of the bore that is held: the support, or a web that reaches it."""
+        if (web := self.thin_web) is not None and web.hub_diameter is None:
+            return web.ends
+        return self.support.ends(self.face_width)
 
     @classmethod
     def from_rack(

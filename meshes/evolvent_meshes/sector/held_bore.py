@@ -9,13 +9,6 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 
-def held_ends(gear: GearParameters) -> tuple[float, float]:
-    """Heights z [mm] of the ends of the part that is held: of the support, or of a web that reaches the bore."""
-    if (web := gear.thin_web) is not None and web.hub_diameter is None:
-        return web.ends
-    return gear.support.ends(gear.face_width)
-
-
 def with_held_bore(gear: GearParameters, mesh: MeshData) -> MeshData:
     """The mesh with its facet group bore divided, where the support is partial: bore is held, bore_free is not."""
     if not gear.support.is_partial(gear.face_width) or mesh.dimension == 2:

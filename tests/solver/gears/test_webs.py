@@ -27,8 +27,8 @@ from evolvent_meshes.sector.section import SectorResolution
 from evolvent_meshes.sector.sector import sector_mesh
 from tests.support.gear_cases import helical_scene, model_of
 from tests.support.running.processes import Run, on_ranks
+from tests.support.running.webbed_pair import WEB
 from tests.support.scene_texts import HE
-from tests.support.webbed_pair import WEB
 
 TEETH, FACE = 30, 12.0
 FEW_CELLS = SectorResolution(profile_elements=6, face_elements=5, core_elements=1, rim_elements=2)
@@ -144,7 +144,7 @@ def test_transmission_error_is_that_of_one_rank(run_script: Run, ranks: int) -> 
     """The webbed pair, two positions without friction and at μ = 0.1: the same curves on any number of ranks, 1e-9; the
     web adds to them."""
     frictions = [0.0, 0.1]
-    done = run_script("tests/support/webbed_pair.py", "2", *map(str, frictions), ranks=ranks)
+    done = run_script("tests/support/running/webbed_pair.py", "2", *map(str, frictions), ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     webbed, plain = (
         np.array([each.transmission_error for each in solve_pitches(condense(gear_problem(helical_scene(*keys)),

@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from evolvent.results.drawing.style import INK
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
-from evolvent_meshes.sector.held_bore import held_ends
 
 HELD_WIDTH = 3.0
 """Of the line along the held part of a bore [points]."""
@@ -31,7 +30,7 @@ def draw_axial_section(axes: Axes, gear: GearParameters, colour: str) -> None:
     half, root, tip = (0.5 * value for value in (gear.face_width, gear.root_diameter, gear.tip_diameter))
     axes.fill(*body_outline(gear).T, facecolor="none", edgecolor=colour, hatch="///", lw=1.4)
     axes.fill([-half, half, half, -half], [root, root, tip, tip], facecolor=colour, edgecolor=colour, alpha=0.15)
-    axes.plot(held_ends(gear), [0.5 * gear.bore_diameter] * 2, color=INK, lw=HELD_WIDTH)
+    axes.plot(gear.held_ends, [0.5 * gear.bore_diameter] * 2, color=INK, lw=HELD_WIDTH)
     axes.set_aspect("equal")
     axes.set(xlim=(-1.15 * half, 1.15 * half), ylim=(0.0, 1.04 * tip))
     axes.set_title("\n".join(_sizes(gear)), fontsize=9.0)

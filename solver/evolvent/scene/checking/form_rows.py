@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from evolvent.scene.plain_text import fixed
-from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
-from evolvent_meshes.sector.held_bore import held_ends
 
 Line = tuple[str, str, str, tuple[str, ...]]
 """Name, symbol, unit and the values of pinion and wheel, or of both."""
@@ -62,16 +60,15 @@ def _web(pair: GearPair) -> list[Line]:
     if not any(webs):
         return []
 
-    def each(name: str, symbol: str, value: Callable[[Web], float | None]) -> Line:
-        found = [None if web is None else value(web) for web in webs]
-        return name, symbol, "mm", tuple("–" if one is None else fixed(one, 3) for one in found)
+    def each(name: str, symbol: str, values: Iterable[float | None]) -> Line:
+        return name, symbol, "mm", tuple("–" if value is None else fixed(value, 3) for value in values)
 
     return [
-        each("rim, on a web", "s_R", lambda web: web.rim_thickness),
-        each("web thickness", "b_s", lambda web: web.thickness),
-        each("  from", "z", lambda web: web.ends[0]),
-        each("  to", "", lambda web: web.ends[1]),
-        each("hub diameter (–: no hub)", "", lambda web: web.hub_diameter),
+        each("rim, on a web", "s_R", (None if web is None else web.rim_thickness for web in webs)),
+        each("web thickness", "b_s", (None if web is None else web.thickness for web in webs)),
+        each("  from", "z", (None if web is None else web.ends[0] for web in webs)),
+        each("  to", "", (None if web is None else web.ends[1] for web in webs)),
+        each("hub diameter (–: no hub)", "", (None if web is None else web.hub_diameter for web in webs)),
     ]
 
 
@@ -81,7 +78,7 @@ def _support(pair: GearPair) -> list[Line]:
         rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
         lines.append(("rim, held at its inside", "s_R", "mm", rims))
     if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
-        low, high = (tuple(fixed(held_ends(gear)[i], 3) for gear in pair.gears) for i in (0, 1))
+        low, high = (tuple(fixed(gear.held_ends[i], 3) for gear in pair.gears) for i in (0, 1))
         lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
     return lines
 

@@ -15,7 +15,7 @@ from evolvent.scene.gear_problem import gear_problem
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from tests.support.gear_cases import helical_scene
-from tests.support.webbed_pair import WEB
+from tests.support.running.webbed_pair import WEB
 
 BODIES = {
     "hub": WEB,

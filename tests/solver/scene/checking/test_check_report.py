@@ -176,7 +176,8 @@ def test_webs_and_where_bores_are_held_are_told() -> None:
     reaches is held between the web's faces."""
     webbed = "wheel.rim_thickness_mm=4", "wheel.web_thickness_mm=3", "wheel.web_offset_mm=0.5"
     text = overview(helical_scene(*webbed, "wheel.hub_diameter_mm=52"))
-    for name, wheel in (("rim, on a web", "4"), ("web thickness", "3"), ("from", "-1"), ("to", "2"), ("hub diam", "52")):
+    rows = ("rim, on a web", 4), ("web thickness", 3), ("from", -1), ("to", 2), ("hub diameter", 52)
+    for name, wheel in rows:
         assert re.search(rf"^ +{name}.* – +{wheel}\.000$", text, re.MULTILINE)
     held = overview(helical_scene(*webbed, "pinion.support_width_mm=4"))
     assert re.search(r"bore held from +z +mm +-2\.000 +-1\.000\n +to +mm +2\.000 +2\.000", held)

@@ -1,4 +1,4 @@
-"""Limits of a gear's form and support: allowances, protuberance, tip edges, how it is held."""
+"""Limits of a gear's form and body: allowances, protuberance, tip edges, how it is held, its web."""
 
 from __future__ import annotations
 
@@ -6,10 +6,17 @@ import math
 
 from evolvent_meshes.gears.errors import require, require_instance, require_numbers
 from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear_geometry import GearGeometry
 
 LEAST_WIDTH = 0.05
 """Smallest width of a support over the face width: a narrower one is a line, on which nothing is stiff."""
+LEAST_WEB = 0.05
+"""Smallest thickness of a web over the face width: cells of a thinner one are too flat."""
+SMALLEST_RIM = 1.0
+"""Smallest thickness of the rim between bore or web and root, in normal modules."""
+LEAST_RADIAL = 0.5
+"""Smallest radial length of a web and of a hub, in normal modules."""
 MOST_PROTUBERANCE = 0.1
 """Largest s_pr, in normal modules."""
 LEAST_EDGE, MOST_EDGE = 0.03, 0.3
@@ -90,3 +97,51 @@ def check_support(gear: GearGeometry) -> None:
         "support_offset", support.offset, f"{-most:.6g} to {most:.6g} mm: the support lies within the face",
         "It is the middle of the support, seen from mid-face.",
     )  # fmt: skip
+
+
+def check_web(gear: GearGeometry) -> None:
+    """Rim, web and hub follow each other down to the bore, the web within the face. Raises GeometryError."""
+    web, face_width = gear.web, gear.face_width
+    if web is None:
+        return
+    require_instance(web, Web, "web", "Write Web(thickness=..., rim_thickness=...).")
+    require_numbers(web_thickness=web.thickness, rim_thickness=web.rim_thickness, web_offset=web.offset)
+    require(
+        LEAST_WEB * face_width <= web.thickness <= face_width, "web_thickness", web.thickness,
+        f"{LEAST_WEB * face_width:.6g} to {face_width:.6g} mm, the face width",
+        "It is the web's thickness along the axis; leave it out for a full ring.",
+    )  # fmt: skip
+    most = 0.5 * (face_width - web.thickness)
+    require(
+        abs(web.offset) <= most + 1e-9 * face_width, "web_offset", web.offset,
+        f"{-most:.6g} to {most:.6g} mm: the web lies within the face",
+        "It is the middle of the web, seen from mid-face.",
+    )  # fmt: skip
+    _check_radii(gear, web)
+
+
+def _check_radii(gear: GearGeometry, web: Web) -> None:
+    """Rim and hub leave room for the web. Raises GeometryError."""
+    module, bore, inner = gear.normal_module, gear.bore_diameter, gear.bore_diameter
+    if web.hub_diameter is not None:
+        require_numbers(hub_diameter=web.hub_diameter)
+        inner, least = web.hub_diameter, bore + 2.0 * LEAST_RADIAL * module
+        largest = gear.root_diameter - 2.0 * (SMALLEST_RIM + LEAST_RADIAL) * module
+        require(
+            least <= inner <= largest, "hub_diameter", inner,
+            f"{least:.6g} to {largest:.6g} mm, between the bore, {bore:.6g} mm, and the rim",
+            "Leave it out where the web reaches the bore.",
+        )  # fmt: skip
+    least, most = SMALLEST_RIM * module, 0.5 * (gear.root_diameter - inner) - LEAST_RADIAL * module
+    within = "bore" if web.hub_diameter is None else "hub"
+    require(
+        least <= web.rim_thickness <= most, "rim_thickness", web.rim_thickness,
+        f"{least:.6g} to {most:.6g} mm: outside the {within}, {inner:.6g} mm across, it leaves room for a web",
+        f"Make the rim thinner or the {within} smaller, or leave out the web.",
+    )  # fmt: skip
+    if web.hub_diameter is None:
+        require(
+            gear.support.width is None, "support_width", gear.support.width,
+            "none where the web reaches the bore: there it is held over its thickness",
+            "Leave it out, or give the diameter of the hub that sits on the shaft.",
+        )  # fmt: skip

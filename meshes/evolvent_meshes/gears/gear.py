@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from evolvent_meshes.gears.errors import require_numbers
 from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear_geometry import GearGeometry, thickness_shift
 from evolvent_meshes.gears.gear_limits import check_angles, check_gear, check_teeth
 from evolvent_meshes.gears.modifications.modifications import Modifications
@@ -24,13 +25,21 @@ def usual_rack_tip_radius(normal_module: float, normal_pressure_angle: float, de
 
 @dataclass(frozen=True, kw_only=True)
 class GearParameters(GearGeometry):
-    """An external involute gear that can be cut by its rack; fields and properties are those of `GearGeometry`.
+    """An external involute gear that can be cut by its rack; fields and properties are those of `GearGeometry`,
+    and where it is held.
 
     Raises GeometryError if no such gear can be cut.
     """
 
     def __post_init__(self) -> None:
         check_gear(self)
+
+    @property
+    def held_ends(self) -> tuple[float, float]:
+        """Heights z [mm] of the ends of the part of the bore that is held: the support, or a web that reaches it."""
+        if (web := self.thin_web) is not None and web.hub_diameter is None:
+            return web.ends
+        return self.support.ends(self.face_width)
 
     @classmethod
     def from_rack(
@@ -49,6 +58,7 @@ class GearParameters(GearGeometry):
         face_width: float,
         bore_diameter: float,
         support: Support | None = None,
+        web: Web | None = None,
         helix_angle_deg: float = 0.0,
         profile_shift: float = 0.0,
         tooth_thickness_allowance_um: float = 0.0,
@@ -107,5 +117,6 @@ class GearParameters(GearGeometry):
             hand=hand,
             bore_diameter=bore_diameter,
             support=Support() if support is None else support,
+            web=web,
             modifications=Modifications() if modifications is None else modifications,
         )

@@ -16,6 +16,7 @@ from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.form.rack_tip import PROTUBERANCE_ANGLE, RackTip
 from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.form.tip_edge import TipEdge
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.modifications.flank_depth import FlankDepth
 from evolvent_meshes.gears.modifications.modifications import Modifications
 
@@ -52,6 +53,7 @@ class GearGeometry:
     hand: of the helix, +1 right, −1 left; without effect for a spur gear.
     bore_diameter: of the bore, at which the gear is held [mm].
     support: how it is held there.
+    web: the disc between rim and hub; None: the body is a full ring.
     modifications: of the loaded flank.
     """
 
@@ -71,6 +73,7 @@ class GearGeometry:
     hand: int = 1
     bore_diameter: float
     support: Support = field(default_factory=Support)
+    web: Web | None = None
     modifications: Modifications = field(default_factory=Modifications)
 
     @property
@@ -151,9 +154,28 @@ class GearGeometry:
         return TipEdge.chamfered(form, self.tip_diameter / 2.0) if self.tip_chamfer_um else None
 
     @property
+    def thin_web(self) -> Web | None:
+        """The web where it is thinner than the face; None of a full ring."""
+        return self.web if self.web is not None and self.web.is_thinner(self.face_width) else None
+
+    @property
+    def has_rim(self) -> bool:
+        """Whether the teeth stand on a rim, held at its inside or carried by a web."""
+        return self.support.is_rim or self.thin_web is not None
+
+    @property
     def rim_thickness(self) -> float:
-        """s_R, from the bore to the root circle."""
-        return (self.root_diameter - self.bore_diameter) / 2.0
+        """s_R, of the rim that a web carries; else from the bore to the root circle."""
+        web = self.thin_web
+        return (self.root_diameter - self.bore_diameter) / 2.0 if web is None else web.rim_thickness
+
+    @property
+    def web_diameters(self) -> tuple[float, float]:
+        """Outer and inner diameter of the web, both the bore's of a full ring."""
+        if (web := self.thin_web) is None:
+            return self.bore_diameter, self.bore_diameter
+        inner = self.bore_diameter if web.hub_diameter is None else web.hub_diameter
+        return self.root_diameter - 2.0 * web.rim_thickness, inner
 
     @property
     def tip_coefficient(self) -> float:

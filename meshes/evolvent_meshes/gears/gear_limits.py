@@ -6,7 +6,14 @@ import math
 from typing import Any
 
 from evolvent_meshes.gears.errors import require, require_numbers
-from evolvent_meshes.gears.form_limits import check_crossing, check_form_lengths, check_support, check_tip_edge
+from evolvent_meshes.gears.form_limits import (
+    SMALLEST_RIM,
+    check_crossing,
+    check_form_lengths,
+    check_support,
+    check_tip_edge,
+    check_web,
+)
 from evolvent_meshes.gears.gear_geometry import GearGeometry
 from evolvent_meshes.gears.modification_limits import check_modification_types, check_modifications
 from evolvent_meshes.input_checks import is_index, shown
@@ -15,8 +22,6 @@ SMALLEST_BORE = 0.01
 """Smallest bore diameter over the root diameter: the gear is held at the bore, and cells at a point would collapse."""
 FEWEST_TEETH = 5
 """Smallest number of teeth."""
-SMALLEST_RIM = 1.0
-"""Smallest thickness of the rim between bore and root, in normal modules."""
 MOST_UNDERCUT = 0.3
 """By how many normal modules a rack may be too deep not to undercut."""
 
@@ -29,6 +34,7 @@ def check_gear(gear: GearGeometry) -> None:
     check_form_lengths(gear)
     check_diameters(gear)
     check_support(gear)
+    check_web(gear)
     check_rack(gear)
     check_tip_edge(gear)
     check_modifications(gear)

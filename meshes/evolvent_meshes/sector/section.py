@@ -2,7 +2,7 @@
 
 The tooth above the flank start lies in polar rows of constant radius: thin layers under the loaded flank, a column of
 3:1 transitions, then coarse columns to the back flank. Below, a band one cell thick follows fillets and root; under it
-lie the neck, the base and two root blocks down to the bore:
+lie the neck, the base and two root blocks down to the bore, or to the web, which goes on below them:
 
           ___________                B   back band: the last coarse column, then the band
          |B|  |  |T|S|               S   strip of thin layers     T   transition
@@ -29,16 +29,19 @@ from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.profile import Profile, polar
 from evolvent_meshes.mesh.mesh_data import REVERSED_CELL, MeshError
 from evolvent_meshes.mesh.structured_grid import boundary_facets, subdivided, transfinite, weld
+from evolvent_meshes.sector.body_blocks import body_blocks
 from evolvent_meshes.sector.root_band import RootBand
 from evolvent_meshes.sector.section_blocks import (
     Piece,
     ToothRows,
-    graded_fractions,
+    even,
     grid_piece,
     half_steps,
+    line,
     mirrored_piece,
     row_radii,
     three_to_one,
+    to_polar,
 )
 
 WELD = 1e-7
@@ -66,7 +69,9 @@ class SectorResolution:
     band_depth: depth of the cells along fillets and root at the cut, in normal modules.
     band_below_layers: whether it is at least the depth of the thin layers.
     core_elements: coarse columns of the tooth between transitions and back band.
-    rim_elements: from the root band to the bore.
+    rim_elements: from the root band to the bore, or to the inside of the rim that a web carries.
+    web_elements: from there to the hub or the bore.
+    hub_elements: from the hub's outside to the bore.
     fine_back: whether the back flank is as fine as the loaded one, to measure the effect of a coarse one.
     Raises MeshError for counts and sizes that do not make a mesh.
     """
@@ -86,6 +91,8 @@ class SectorResolution:
     band_below_layers: bool = True
     core_elements: int = 2
     rim_elements: int = 4
+    web_elements: int = 4
+    hub_elements: int = 2
     fine_back: bool = False
 
     def __post_init__(self) -> None:
@@ -94,7 +101,9 @@ class SectorResolution:
                 f"sector resolution: wanted a multiple of 3 profile elements and 3 layers (the mesh coarsens 3:1), "
                 f"found {self.profile_elements} and {len(self.layer_depths)}"
             )
-        counts = (self.profile_elements, self.face_elements, self.core_elements, self.rim_elements, self.neck_elements)
+        counts = (
+            self.profile_elements, self.face_elements, self.core_elements, self.neck_elements, *self.body_elements
+        )  # fmt: skip
         if min(counts) < 1 or min(*self.layer_depths, self.end_size_ratio) <= 0:
             raise MeshError(f"sector resolution: wanted positive counts, layer depths and end ratio, found {self}")
         if min(self.fillet_elements, self.back_elements) <= self.neck_elements:
@@ -102,6 +111,11 @@ class SectorResolution:
                 f"sector resolution: wanted more fillet and back elements than neck elements ({self.neck_elements}), "
                 f"found {self.fillet_elements} and {self.back_elements}"
             )
+
+    @property
+    def body_elements(self) -> tuple[int, int, int]:
+        """Those of rim, web and hub."""
+        return self.rim_elements, self.web_elements, self.hub_elements
 
 
 @dataclass(frozen=True)
@@ -141,7 +155,7 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     back = RootBand(profile, start, (neck, resolution.back_elements), (widths[1 - fine_back], at_cut), mirrored=True)
     pieces = [*_tooth(rows, resolution), _strip_end(loaded, resolution), loaded.band(1), back.band(int(fine_back))]
     pieces += [mirrored_piece(_strip_end(loaded, resolution))] if fine_back else []
-    pieces += [_neck(rows, loaded, back), *_rim(loaded, back, gear, rows.inner, resolution)]
+    pieces += [_neck(rows, loaded, back), *body_blocks(loaded, back, gear, rows.inner, resolution.body_elements)]
     points, cells = _joined(pieces)
     edges = _named_edges(profile, start, points[:, :2], boundary_facets("quadrilateral", 2, cells))
     return Section(points[:, :2], cells, edges, points[:, 2], start)
@@ -189,7 +203,7 @@ def _strip_end(side: RootBand, resolution: SectorResolution) -> Piece:
 
     def place(u: Floats, v: Floats) -> Floats:
         depth = (1 - v) * np.interp(u, np.arange(4), layers) + v * u / 3
-        (r, angle), (r_inner, angle_inner) = _to_polar(side.surface(v)), _to_polar(side.inner(v))
+        (r, angle), (r_inner, angle_inner) = to_polar(side.surface(v)), to_polar(side.inner(v))
         points = polar(r + depth * (r_inner - r), angle + depth * (angle_inner - angle))  # the strip's rows are arcs
         return np.column_stack([points, (1 - depth) * (1 - v)])
 
@@ -201,47 +215,8 @@ def _neck(rows: ToothRows, loaded: RootBand, back: RootBand) -> Piece:
     q = half_steps(0, loaded.neck)
     columns = half_steps(1, 1 + rows.inner)
     top = rows.points(np.zeros_like(columns), columns)
-    bottom = _line(loaded.inner(q[-1:])[0], back.inner(q[-1:])[0], _even(columns))
-    return grid_piece(transfinite(loaded.inner(q), back.inner(q), top, bottom, _even(q), _even(columns)))
-
-
-def _rim(
-    loaded: RootBand, back: RootBand, gear: GearParameters, inner: int, resolution: SectorResolution
-) -> list[Piece]:
-    """The root blocks of both sides and the base between them, down to the bore."""
-    corners = [side.inner(np.array([float(side.neck)]))[0] for side in (loaded, back)]
-    radius = gear.bore_diameter / 2
-    cut = np.pi / gear.z
-    depths, angles = _to_polar(np.array(corners))
-    length = depths[0] - radius
-    ends = subdivided(graded_fractions(length, 1.3 * loaded.widths[1], resolution.rim_elements), 2)
-    blocks = []
-    for side, angle, end in zip((loaded, back), angles, (cut, -cut), strict=True):
-        top = side.inner(half_steps(side.neck, side.cells))
-        blocks.append(_down_to_bore(top, radius, (angle, end), ends))
-    columns = _even(half_steps(0, inner))
-    blocks.append(_down_to_bore(_line(corners[0], corners[1], columns), radius, (angles[0], angles[1]), ends))
-    return blocks
-
-
-def _down_to_bore(top: Floats, radius: float, angles: tuple[float, float], ends: Floats) -> Piece:
-    """The block between a line of points (n, 2) and the arc of the bore between two angles [rad]."""
-    across = np.linspace(0, 1, len(top))
-    bore = polar(np.full(len(top), radius), angles[0] + across * (angles[1] - angles[0]))
-    west, east = (_line(top[k], bore[k], ends) for k in (0, -1))
-    return grid_piece(transfinite(top, bore, west, east, across, ends))
-
-
-def _even(numbers: Floats) -> Floats:
-    return np.linspace(0, 1, len(numbers))
-
-
-def _to_polar(points: Floats) -> tuple[Floats, Floats]:
-    return np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
-
-
-def _line(start: Floats, end: Floats, fraction: Floats) -> Floats:
-    return np.asarray(start + fraction[:, None] * (end - start))
+    bottom = line(loaded.inner(q[-1:])[0], back.inner(q[-1:])[0], even(columns))
+    return grid_piece(transfinite(loaded.inner(q), back.inner(q), top, bottom, even(q), even(columns)))
 
 
 def _joined(pieces: list[Piece]) -> tuple[Floats, Ints]:
@@ -270,7 +245,7 @@ def _with_single_middles(points: Floats, cells: Ints) -> tuple[Floats, Ints]:
 
 def _named_edges(profile: Profile, start: float, points: Floats, edges: Ints) -> dict[str, Ints]:
     """The edges of the outline, named after the curve on which their middle nodes lie."""
-    radius, angle = _to_polar(points[edges[:, 2]])
+    radius, angle = to_polar(points[edges[:, 2]])
     chosen = {
         "bore": abs(radius - profile.gear.bore_diameter / 2) < WELD,
         "tip": (abs(radius - profile.radii[2]) < WELD) | (radius > profile.corner_radius + WELD),

@@ -37,6 +37,21 @@ def half_steps(start: float, end: float) -> Floats:
     return np.linspace(start, end, round(2 * abs(end - start)) + 1)
 
 
+def even(numbers: Floats) -> Floats:
+    """As many fractions, evenly from 0 to 1."""
+    return np.linspace(0, 1, len(numbers))
+
+
+def to_polar(points: Floats) -> tuple[Floats, Floats]:
+    """Radii [mm] and angles [rad] (n,) of points (n, 2)."""
+    return np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+
+
+def line(start: Floats, end: Floats, fraction: Floats) -> Floats:
+    """Points (n, 2) between two, at fractions (n,) of the way."""
+    return np.asarray(start + fraction[:, None] * (end - start))
+
+
 def grid_piece(points: Floats, weight: Floats | float = 0.0) -> Piece:
     """A structured piece of n × m cells from points (2n + 1, 2m + 1, 2) [mm].
 

@@ -16,12 +16,16 @@ from evolvent_meshes.mesh.mesh_data import MeshData, MeshError
 from evolvent_meshes.mesh.quality import check_quality
 from evolvent_meshes.mesh.reference_cells import node_positions
 from evolvent_meshes.mesh.structured_grid import split_to_simplices
+from evolvent_meshes.sector.axial_layers import node_heights
 from evolvent_meshes.sector.flank_points import modification_angle
-from evolvent_meshes.sector.held_bore import node_heights, with_held_bore
+from evolvent_meshes.sector.held_bore import with_held_bore
+from evolvent_meshes.sector.recess import without_recess
 from evolvent_meshes.sector.section import Section, SectorResolution, section_mesh
 
 MINIMUM_QUALITY = {"quadrilateral": 0.1, "hexahedron": 0.1, "triangle": 1e-6, "tetrahedron": 1e-6}
 """Cell shape -> smallest scaled Jacobian allowed; long thin layers make long thin simplices, not inverted ones."""
+PLANE = "quadrilateral", "triangle"
+"""Cell shapes of the mid-face section."""
 
 
 def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str = "hexahedron") -> MeshData:
@@ -32,10 +36,12 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
 
     Volume group: tooth. Facet groups: flank (loaded, θ > 0, above the flank start), fillet (from there to the cut),
     back (all of θ < 0), tip, bore, cut_low (θ = −π/z), cut_high (θ = π/z), in 3D face_low and face_high (ends of z),
-    and bore_free where the gear is held on a part of its bore, which is then the group bore.
+    and bore_free where the gear is held on a part of its bore, which is then the group bore, and recess where it has a
+    web: free faces of the web, inside the rim and outside the hub.
     The nodes of cut_high are those of cut_low turned by 2π/z.
 
-    Raises MeshError for an unknown shape, a flank start off the involute, or cells of bad quality.
+    Raises MeshError for an unknown shape, a flank start off the involute, cells of bad quality, or a plane section of a
+    gear with a web.
 
     >>> gear = GearParameters.from_rack(
     ...     z=50, normal_module=3.0, normal_pressure_angle_deg=20.0, face_width=20.0, bore_diameter=60.0
@@ -46,16 +52,22 @@ def sector_mesh(gear: GearParameters, resolution: SectorResolution, shape: str =
     """
     if shape not in MINIMUM_QUALITY:
         raise MeshError(f"sector: wanted one of {', '.join(MINIMUM_QUALITY)}, found shape {shape!r}")
+    if gear.thin_web is not None and shape in PLANE:
+        raise MeshError(
+            f"sector: wanted hexahedra or tetrahedra of a gear with a web, whose sections differ along the face, found "
+            f"{shape}s; mesh it in space, or leave out the web"
+        )
     section = section_mesh(gear, resolution)
-    if shape in ("quadrilateral", "triangle"):
+    if shape in PLANE:
         mesh, heights = _flat(section), np.zeros(1)
     else:
         heights = layer_heights(gear.face_width, resolution)
         mesh = _swept(section, heights)
     points = _placed(gear, section, heights)
-    mesh = with_held_bore(gear, MeshData(points, mesh.shape, 2, mesh.cells, mesh.facets, mesh.volumes))
+    mesh, used = without_recess(gear, MeshData(points, mesh.shape, 2, mesh.cells, mesh.facets, mesh.volumes))
+    mesh = with_held_bore(gear, mesh)
     if shape in ("triangle", "tetrahedron"):
-        mesh = split_to_simplices(mesh, np.tile(_radius_rank(section), len(heights)))
+        mesh = split_to_simplices(mesh, np.tile(_radius_rank(section), len(heights))[used])
     check_quality(mesh, MINIMUM_QUALITY[shape])
     return mesh
 

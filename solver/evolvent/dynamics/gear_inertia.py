@@ -17,7 +17,7 @@ TONNE_PER_MM3 = 1e-12
 
 
 def polar_moment(gear: GearParameters, density: float) -> float:
-    """I [t·mm²] about the axis of a gear with its bore, over its whole face width; modifications are left out.
+    """I [t·mm²] about the axis of a gear with its bore and what lies beside its web left out; so are modifications.
 
     density: [kg/m³]. ∫ρr² dV = ρ b ∮ r⁴/4 dθ along the section's rim. 1 kg·m² is 1000 t·mm².
     """
@@ -29,7 +29,11 @@ def polar_moment(gear: GearParameters, density: float) -> float:
     root, _, tip = profile.radii
     half += root**4 * (profile.sector_angle - profile.root_angle) + tip**4 * profile.tip_angle
     whole = 2.0 * gear.z * half - 2.0 * np.pi * (gear.bore_diameter / 2.0) ** 4
-    return float(TONNE_PER_MM3 * density * gear.face_width * whole / 4.0)
+    moment = gear.face_width * whole / 4.0
+    if (web := gear.thin_web) is not None:
+        outer, inner = (0.5 * diameter for diameter in gear.web_diameters)
+        moment -= (gear.face_width - web.thickness) * np.pi * (outer**4 - inner**4) / 2.0
+    return float(TONNE_PER_MM3 * density * moment)
 
 
 def equivalent_mass(pair: GearPair, inertias: tuple[float, float]) -> float:

@@ -1,6 +1,6 @@
 """Stiffness of tooth pairs by ISO 6336-1:2006, clause 9, Method B: from the tooth form, without computing the gears.
 
-It is a secant at heavy load, of teeth on solid discs, per mm of face width.
+It is a secant at heavy load, of teeth on solid discs or on rims with webs, per mm of face width.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ LIGHT = 100.0
 """Line load [N/mm] below which the stiffness falls with its fourth root."""
 STEEL, LIKE_STEEL = 206e3, 0.05
 """Modulus [MPa] of the steel that the formula is for, and the part by which that of others may differ to be steel."""
+THINNEST_WEB, THINNEST_RIM = 0.2, 1.0
+"""Least b_s/b and s_R/m_n with which C_R is reckoned."""
 SHIFTS = -0.5, 2.0
 """Sums of profile shift coefficients for which the formula is made."""
 
@@ -40,16 +42,24 @@ def rack_factor(gear: GearParameters) -> float:
     return (1.0 + 0.5 * (1.2 - gear.dedendum_coefficient)) * (1.0 - 0.02 * (20.0 - gear.normal_pressure_angle_deg))
 
 
-def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
-    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_B the mean of both gears.
+def blank_factor(gear: GearParameters) -> float:
+    """C_R = 1 + ln(b_s/b) / (5 e^(s_R/5m_n)) of a gear with a web; 1 of a full ring."""
+    if (web := gear.thin_web) is None:
+        return 1.0
+    width = max(web.thickness / gear.face_width, THINNEST_WEB)
+    rim = max(web.rim_thickness / gear.normal_module, THINNEST_RIM)
+    return 1.0 + math.log(width) / (5.0 * math.exp(rim / 5.0))
 
-    C_R, of the blank, is 1: solid discs, or webs as wide as the face.
+
+def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
+    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_R and C_B the mean of both gears.
 
     line_load: K_A F_t/b [N/mm]; below 100 c' is less by (line_load/100)^0.25.
     moduli: of both gears [MPa]. Other metals than steel have c' in proportion to 2 E_1 E_2/(E_1 + E_2).
     """
     racks = 0.5 * (rack_factor(pair.pinion) + rack_factor(pair.wheel))
-    steel = MEASURED * racks * math.cos(pair.pinion.helix_angle) / flexibility(pair)
+    blanks = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
+    steel = MEASURED * blanks * racks * math.cos(pair.pinion.helix_angle) / flexibility(pair)
     light = min(line_load / LIGHT, 1.0) ** 0.25
     if all(abs(modulus / STEEL - 1.0) <= LIKE_STEEL for modulus in moduli):
         return steel * light

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from evolvent.gears.sweep.position_result import PositionResult as PositionResult
     from evolvent_meshes.gears.errors import GeometryError as GeometryError
     from evolvent_meshes.gears.form.support import Support as Support
+    from evolvent_meshes.gears.form.web import Web as Web
     from evolvent_meshes.gears.gear import GearParameters as GearParameters
     from evolvent_meshes.gears.gear_geometry import GearGeometry as GearGeometry
     from evolvent_meshes.gears.member import Member as Member

@@ -13,6 +13,7 @@ from evolvent.scene.schema.gears import ALTERNATIVES, GearSection, PairSection
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.errors import GeometryError, require
 from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters, usual_rack_tip_radius
 from evolvent_meshes.gears.gear_geometry import involute_function, thickness_shift
 from evolvent_meshes.gears.modifications.modifications import AMOUNTS
@@ -48,6 +49,10 @@ GEAR_KEYS = {
     "bore_diameter": "bore_diameter_mm",
     "support_width": "support_width_mm",
     "support_offset": "support_offset_mm",
+    "rim_thickness": "rim_thickness_mm",
+    "web_thickness": "web_thickness_mm",
+    "web_offset": "web_offset_mm",
+    "hub_diameter": "hub_diameter_mm",
     **{amount: amount for amount in AMOUNTS},
     "tip_relief_start_diameter": "tip_relief_start_diameter_mm",
     "root_relief_end_diameter": "root_relief_end_diameter_mm",
@@ -127,14 +132,27 @@ def make_gear(pair: PairSection, gear: GearSection, hand: int, alteration: float
         protuberance_um=gear.protuberance_um,
         hand=hand,
         bore_diameter=_bore_diameter(gear, root),
-        support=Support(gear.support_width_mm, gear.support_offset_mm, gear.rim_thickness_mm is not None),
+        support=Support(gear.support_width_mm, gear.support_offset_mm, _is_held_rim(gear)),
+        web=_web(gear),
     )
+
+
+def _is_held_rim(gear: GearSection) -> bool:
+    """Whether the body is a rim that is held at its inside."""
+    return gear.rim_thickness_mm is not None and gear.web_thickness_mm is None
+
+
+def _web(gear: GearSection) -> Web | None:
+    thickness, rim = gear.web_thickness_mm, gear.rim_thickness_mm
+    if thickness is None or rim is None:
+        return None
+    return Web(thickness, rim, gear.hub_diameter_mm, gear.web_offset_mm)
 
 
 def _bore_diameter(gear: GearSection, root: float) -> float:
     """Bore diameter [mm], a rim's inner one; root: diameter [mm]. Raises GeometryError for rims that fill the gear."""
     rim = gear.rim_thickness_mm
-    if rim is None:
+    if rim is None or not _is_held_rim(gear):
         return _or(gear.bore_diameter_mm, root / 2)
     allowed, remedy = f"below {root / 2:.6g} mm, half of the root diameter", "Give bore_diameter_mm for a thick body."
     require(2 * rim < root, "bore_diameter", rim, allowed, remedy)
@@ -220,8 +238,11 @@ def _in_scene_keys(
     if "." in name:
         prefix, name = f"{name.split('.')[0]}.", name.split(".")[1]
     gear, scene_key = sections[prefix[:-1]], GEAR_KEYS[name]
-    if getattr(gear, scene_key) is None and getattr(gear, ALTERNATIVES.get(scene_key, scene_key)) is not None:
-        scene_key = ALTERNATIVES[scene_key]
+    other = ALTERNATIVES.get(scene_key, scene_key)
+    if scene_key == "bore_diameter_mm" and not _is_held_rim(gear):
+        other = scene_key
+    if getattr(gear, scene_key) is None and getattr(gear, other) is not None:
+        scene_key = other
     return _named(prefix + scene_key, getattr(gear, scene_key), name, error, remedy)
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from evolvent.dynamics.gear_inertia import equivalent_mass, polar_moment
 from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 from evolvent_meshes.gears.profile import Profile, mirror, polar
@@ -42,6 +43,18 @@ def test_polar_moment_is_that_of_the_outline(teeth: int, helix: float, tip: dict
     whole = float(np.sum((x * Y - X * y) * (x * x + x * X + X * X + y * y + y * Y + Y * Y))) / 12.0
     exact = 7850e-12 * 20.0 * (abs(whole) - np.pi * 15.0**4 / 2.0)
     assert polar_moment(gear, 7850.0) == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize(("hub", "inner"), [(50.0, 50.0), (None, 30.0)])
+def test_inertia_beside_a_web_is_left_out(hub: float | None, inner: float) -> None:
+    """Exact: less than the full ring by a ring of π ρ (b − b_s)(r_o⁴ − r_i⁴)/2, from the hub or the bore to 8 mm below
+    the root circle, 1e-12."""
+    full, webbed = (
+        GearParameters.from_rack(z=50, bore_diameter=30.0, web=web, **STANDARD) for web in (None, Web(5.0, 8.0, hub))
+    )
+    outer = 0.5 * full.root_diameter - 8.0
+    ring = 7850e-12 * 15.0 * np.pi * (outer**4 - (0.5 * inner) ** 4) / 2.0
+    assert polar_moment(full, 7850.0) - polar_moment(webbed, 7850.0) == pytest.approx(ring, rel=1e-12)
 
 
 def test_inertia_of_the_paper_is_in_tonnes() -> None:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
 
-from evolvent.dynamics.iso_stiffness import flexibility, mesh_stiffness, outside_range, single_stiffness
+from evolvent.dynamics.iso_stiffness import (
+    blank_factor,
+    flexibility,
+    mesh_stiffness,
+    outside_range,
+    single_stiffness,
+)
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.pair import GearPair
 
@@ -52,6 +60,20 @@ def test_helical_example_of_the_standard() -> None:
     single = single_stiffness(pair, HEAVY)
     assert single == pytest.approx(12.37047, abs=1e-5)
     assert mesh_stiffness(single, pair.transverse_contact_ratio) == pytest.approx(17.46485, rel=2e-4)
+
+
+@pytest.mark.parametrize(("thickness", "rim", "exact"), [
+    (5.0, 6.0, 1.0 + math.log(0.25) / (5.0 * math.exp(0.4))), (2.0, 6.0, 1.0 + math.log(0.2) / (5.0 * math.exp(0.4))),
+    (5.0, 9.0, 1.0 + math.log(0.25) / (5.0 * math.exp(0.6))), (20.0, 6.0, 1.0),
+])  # fmt: skip
+def test_blank_factor_of_webs(thickness: float, rim: float, exact: float) -> None:
+    """By hand for b = 20 and m_n = 3 mm: C_R = 1 + ln(b_s/b)/(5 e^(s_R/5m_n)), with b_s/b of 0.2 at least, 1 of a web
+    as wide as the face; c' has the mean of both gears."""
+    webbed = gear(50, web=Web(thickness, rim))
+    assert blank_factor(webbed) == pytest.approx(exact, rel=1e-12)
+    assert blank_factor(gear(50)) == 1.0
+    ratio = single_stiffness(GearPair(gear(50), webbed, 150.0), HEAVY) / single_stiffness(he_pair(), HEAVY)
+    assert ratio == pytest.approx(0.5 * (1.0 + exact), rel=1e-12)
 
 
 def test_light_load_and_other_metals() -> None:

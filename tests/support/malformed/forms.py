@@ -37,7 +37,33 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
     ),
     "line support": (YANG, ["wheel.support_width_mm=0.1"], "wheel.support_width_mm", "0.1", "leave it out"),
     "offset of the whole face": (YANG, ["wheel.support_offset_mm=2"], "wheel.support_offset_mm", "2", "leave the off"),
-    "web": (YANG, ["wheel.web_thickness_mm=8"], "wheel.web_thickness_mm", "8", "delete it"),
+    "holes in the web": (YANG, ["wheel.web_holes=6"], "wheel.web_holes", "6", "delete it"),
+    "web without a rim": (YANG, ["wheel.web_thickness_mm=8"], "wheel.web_thickness_mm", "8", "of the rim on the web"),
+    "hub without a web": (YANG, ["wheel.hub_diameter_mm=90"], "wheel.hub_diameter_mm", "90", "give web_thickness_mm"),
+    "offset without a web": (YANG, ["wheel.web_offset_mm=-2"], "wheel.web_offset_mm", "-2", "give web_thickness_mm"),
+    "web wider than the face": (
+        YANG, ["wheel.web_thickness_mm=18", "wheel.rim_thickness_mm=6"], "wheel.web_thickness_mm", "18", "leave it out",
+    ),
+    "web beside the face": (
+        YANG, ["wheel.web_thickness_mm=8", "wheel.rim_thickness_mm=6", "wheel.web_offset_mm=5"], "wheel.web_offset_mm",
+        "5", "seen from mid-face",
+    ),
+    "rim that leaves no web": (
+        YANG, ["wheel.web_thickness_mm=8", "wheel.rim_thickness_mm=33"], "wheel.rim_thickness_mm", "33",
+        "make the rim thinner",
+    ),
+    "hub in the bore": (
+        YANG, ["wheel.web_thickness_mm=8", "wheel.rim_thickness_mm=6", "wheel.hub_diameter_mm=70"],
+        "wheel.hub_diameter_mm", "70", "reaches the bore",
+    ),
+    "bore up to the rim": (
+        YANG, ["wheel.web_thickness_mm=8", "wheel.rim_thickness_mm=6", "wheel.bore_diameter_mm=135"],
+        "wheel.bore_diameter_mm", "135", "make the bore smaller",
+    ),
+    "support of a web": (
+        YANG, ["wheel.web_thickness_mm=8", "wheel.rim_thickness_mm=6", "wheel.support_width_mm=8"],
+        "wheel.support_width_mm", "8", "diameter of the hub",
+    ),
     "chamfer and rounding": (
         YANG, ["pinion.tip_chamfer_um=100", "pinion.tip_rounding_um=100"], "pinion.tip_chamfer_um", "100",
         "leave out one",

@@ -151,7 +151,7 @@ class DriveSummary:
     iso_single_stiffness_N_per_mm_um: float
     """c' of ISO 6336-1:2006, clause 9, per mm of face width, like the next one."""
     iso_mesh_stiffness_N_per_mm_um: float
-    """c_γα of the same; a secant of solid discs, not the stiffness that was computed."""
+    """c_γα of the same; a secant of teeth on solid discs or, by C_R, on webs, not the stiffness that was computed."""
     iso_resonance_speed_rpm: float
     """n_E1 of ISO 6336-1:2006, clause 6: of the pinion, by that stiffness and the mass above."""
     iso_relief_term: float

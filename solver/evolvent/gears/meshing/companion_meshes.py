@@ -36,6 +36,8 @@ def coarser(fine: SectorResolution) -> SectorResolution:
         band_depth=min(COARSENING * fine.band_depth, SectorResolution.band_depth),
         core_elements=half(fine.core_elements),
         rim_elements=half(fine.rim_elements),
+        web_elements=half(fine.web_elements),
+        hub_elements=half(fine.hub_elements),
     )
 
 

@@ -139,6 +139,8 @@ def _fine_everywhere(resolution: SectorResolution) -> SectorResolution:
         fine_back=True,
         core_elements=3 * resolution.core_elements,
         rim_elements=3 * resolution.rim_elements,
+        web_elements=3 * resolution.web_elements,
+        hub_elements=3 * resolution.hub_elements,
         fillet_elements=3 * resolution.fillet_elements,
         back_elements=3 * resolution.back_elements,
         neck_elements=3 * resolution.neck_elements,

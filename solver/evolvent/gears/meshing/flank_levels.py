@@ -18,6 +18,7 @@ from evolvent.gears.meshing.element_sizes import (
 )  # fmt: skip
 from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.sector.axial_layers import fewest_layers
 from evolvent_meshes.sector.section import SectorResolution
 
 BODY_ROWS = 13
@@ -60,7 +61,7 @@ def levelled_sector(problem: GearProblem, member: Member) -> LevelledSector:
     wanted = max(LEAST_LAYERS[level], math.ceil(needs.shear / SHEAR[level]))
     coarsest = math.ceil(gear.face_width / (BODY_LAYER * gear.normal_module))
     factor = max(1, round((wanted / coarsest) ** (1 / count)))
-    layers = max(coarsest, math.ceil(wanted / factor**count))
+    layers = max(coarsest, math.ceil(wanted / factor**count), 2 * fewest_layers(gear))  # a companion has half of them
     depths = LAYER_DEPTHS * DEEPEST * gear.normal_module / float(LAYER_DEPTHS.sum())
     coarse = replace(
         sector_resolution(problem, member), profile_elements=rows, face_elements=layers, end_size_ratio=1.0,

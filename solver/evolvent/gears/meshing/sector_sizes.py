@@ -8,8 +8,11 @@ from math import prod
 from evolvent.gears.meshing.element_sizes import sector_resolutions
 from evolvent.gears.meshing.flank_levels import LevelledSector, levelled_sector
 from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
+from evolvent_meshes.sector.axial_layers import web_layers
 from evolvent_meshes.sector.section import SectorResolution
+from evolvent_meshes.sector.sector import layer_heights
 
 
 @dataclass(frozen=True)
@@ -28,9 +31,12 @@ class SectorSize:
         return SectorSize(sectors * self.dofs, flanks * self.flank, 0)
 
 
-def sector_size(resolution: SectorResolution, order: int, plane: bool) -> SectorSize:
+def sector_size(
+    resolution: SectorResolution, order: int, plane: bool, gear: GearParameters | None = None
+) -> SectorSize:
     """The exact size of a sector mesh of order 1 or 2; cutting hexahedra into tetrahedra adds no node.
 
+    gear: whose web leaves cells out; None: a full ring. Raises MeshError for too few layers beside a web.
     A section without holes has corners − edges + cells = 1 (Euler), and 4 cells + outline = 2 edges.
     """
     counts = resolution
@@ -47,13 +53,26 @@ def sector_size(resolution: SectorResolution, order: int, plane: bool) -> Sector
     nodes = 1 + 4 * cells + outline if order == 2 else 1 + cells + outline // 2
     levels = 2 if plane else 3 * (order * counts.face_elements + 1)
     flank, cuts = order * counts.profile_elements + 1, 2 * (order * cut + 1)
-    return SectorSize(levels * nodes, levels * flank, levels * cuts)
+    more = 0 if gear is None else _below_rim(resolution, order, gear)
+    return SectorSize(levels * nodes + (order * below + 1) * more, levels * flank, levels * cuts + 2 * more)
+
+
+def _below_rim(resolution: SectorResolution, order: int, gear: GearParameters) -> int:
+    """Degrees of freedom of one line of nodes from the rim of a web down to the bore, without that on the rim."""
+    if gear.thin_web is None:
+        return 0
+    hub = 0 if gear.thin_web.hub_diameter is None else order * resolution.hub_elements + 1
+    web = order * resolution.web_elements - (hub > 0)  # the hub has the nodes where both meet
+    layers = len(web_layers(gear, layer_heights(gear.face_width, resolution)))
+    return 3 * (web * (order * layers + 1) + hub * (order * resolution.face_elements + 1))
 
 
 def one_mesh_sizes(problem: GearProblem) -> tuple[SectorSize, SectorSize]:
     """Sizes of (pinion's, wheel's) sector where each is one mesh, fine on the flank."""
     order, plane = problem.mesh.order, problem.is_plane
-    pinion, wheel = (sector_size(each, order, plane) for each in sector_resolutions(problem))
+    pinion, wheel = (
+        sector_size(each, order, plane, gear) for each, gear in zip(sector_resolutions(problem), problem.pair.gears)
+    )
     return pinion, wheel
 
 
@@ -67,10 +86,10 @@ class LevelledSize:
     """Of the flank's finest level."""
 
     @staticmethod
-    def of(levelled: LevelledSector) -> LevelledSize:
-        """The exact size of second-order meshes."""
+    def of(levelled: LevelledSector, gear: GearParameters | None = None) -> LevelledSize:
+        """The exact size of second-order meshes. gear: as of `sector_size`."""
         rows, layers = finest_cells(levelled)
-        return LevelledSize(sector_size(levelled.coarse, 2, plane=False), 3 * (2 * rows + 1) * (2 * layers + 1))
+        return LevelledSize(sector_size(levelled.coarse, 2, False, gear), 3 * (2 * rows + 1) * (2 * layers + 1))
 
 
 def finest_cells(levelled: LevelledSector) -> tuple[int, int]:
@@ -81,5 +100,5 @@ def finest_cells(levelled: LevelledSector) -> tuple[int, int]:
 
 def levelled_sizes(problem: GearProblem) -> tuple[LevelledSize, LevelledSize]:
     """Sizes of (pinion's, wheel's) sector in levels."""
-    pinion, wheel = (LevelledSize.of(levelled_sector(problem, member)) for member in Member)
+    pinion, wheel = (LevelledSize.of(levelled_sector(problem, member), problem.pair.gears[member]) for member in Member)
     return pinion, wheel

@@ -148,12 +148,12 @@ class GearProblem:
     @cached_property
     def has_equal_sections(self) -> bool:
         """Whether all transverse sections are alike: a spur pair of one face width, without lead variation, whose
-        bores are held over it."""
+        bores are held over it and whose bodies have no web."""
         gears = self.pair.gears
         varies = (
             self.pair.pinion.helix_angle_deg, self.pair.misalignment_um,
             *(gear.modifications.varies_over_the_face for gear in gears),
-            *(gear.support.is_partial(gear.face_width) for gear in gears),
+            *(gear.support.is_partial(gear.face_width) or gear.thin_web is not None for gear in gears),
             *(chart is not None and chart.varies_over_the_face for chart in self.flanks),
         )  # fmt: skip
         return not any(varies) and gears[0].face_width == gears[1].face_width

@@ -1,4 +1,4 @@
-"""Picture of the tooth forms of a pair: transverse profiles at mid-face with their key diameters."""
+"""Picture of the tooth forms of a pair: transverse profiles at mid-face with their key diameters, axial sections."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evolvent.results.drawing.axial_section import draw_axial_section
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, foot, png, sheet, styled
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.gear import GearParameters
@@ -27,15 +28,27 @@ def tooth_form_picture(title: str, pair: GearPair) -> bytes:
 
 
 def tooth_form_figure(title: str, pair: GearPair) -> Figure:
-    """A tooth of pinion and wheel, each in its own scale. title: of the scene."""
-    figure = sheet("Tooth forms in the transverse section", title, (11.0, 6.2))
-    for member, axes, colour in zip(Member, figure.subplots(1, 2), COLOURS):
+    """A tooth of pinion and wheel, each in its own scale; below, their axial sections where a body is no full ring that
+    is held over its face. title: of the scene."""
+    has_sections = any(_has_form(gear) for gear in pair.gears)
+    name = "Tooth forms in the transverse section" + (", bodies in the axial section" if has_sections else "")
+    figure = sheet(name, title, (11.0, 11.4 if has_sections else 6.2))
+    grid = figure.subplots(1 + has_sections, 2, squeeze=False)
+    for member, axes, colour in zip(Member, grid[0], COLOURS):
         _draw_tooth(axes, pair, member, colour)
+    for member, axes, colour in zip(Member, grid[1] if has_sections else (), COLOURS):
+        draw_axial_section(axes, pair.gears[member], colour)
     foot(
         figure, "Seen from z < 0, loaded flank: right. Relief, crowning and charts are left out.",
         *(["Dashed: the tooth without thickness allowance."] if _are_thin(pair) else []),
+        *(["Thick: where the bore is held."] if has_sections else []),
     )  # fmt: skip
     return figure
+
+
+def _has_form(gear: GearParameters) -> bool:
+    """Whether a body is a rim, has a web, or is held on a part of its face."""
+    return gear.has_rim or gear.support.is_partial(gear.face_width)
 
 
 def key_diameters(pair: GearPair, member: Member) -> dict[str, float]:

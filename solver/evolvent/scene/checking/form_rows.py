@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from evolvent.scene.plain_text import fixed
 from evolvent_meshes.gears.gear import GearParameters
@@ -14,7 +14,7 @@ Line = tuple[str, str, str, tuple[str, ...]]
 
 def gear_lines(pair: GearPair) -> list[Line]:
     """Of each gear, where one of the two has the input from which they follow."""
-    return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_support(pair)]
+    return [*_tip_edge(pair), *_protuberance(pair), *_thickness(pair), *_web(pair), *_support(pair)]
 
 
 def pair_lines(pair: GearPair) -> list[Line]:
@@ -55,13 +55,30 @@ def _protuberance(pair: GearPair) -> list[Line]:
     return [_each(pair, "residual protuberance of the rack", "s_pr", "µm", 1, lambda gear: gear.protuberance_um)]
 
 
+def _web(pair: GearPair) -> list[Line]:
+    webs = [gear.thin_web for gear in pair.gears]
+    if not any(webs):
+        return []
+
+    def each(name: str, symbol: str, values: Iterable[float | None]) -> Line:
+        return name, symbol, "mm", tuple("–" if value is None else fixed(value, 3) for value in values)
+
+    return [
+        each("rim, on a web", "s_R", (None if web is None else web.rim_thickness for web in webs)),
+        each("web thickness", "b_s", (None if web is None else web.thickness for web in webs)),
+        each("  from", "z", (None if web is None else web.ends[0] for web in webs)),
+        each("  to", "", (None if web is None else web.ends[1] for web in webs)),
+        each("hub diameter (–: no hub)", "", (None if web is None else web.hub_diameter for web in webs)),
+    ]
+
+
 def _support(pair: GearPair) -> list[Line]:
     lines = []
     if any(gear.support.is_rim for gear in pair.gears):
         rims = tuple(fixed(gear.rim_thickness, 3) if gear.support.is_rim else "–" for gear in pair.gears)
         lines.append(("rim, held at its inside", "s_R", "mm", rims))
     if any(gear.support.is_partial(gear.face_width) for gear in pair.gears):
-        low, high = (tuple(fixed(gear.support.ends(gear.face_width)[i], 3) for gear in pair.gears) for i in (0, 1))
+        low, high = (tuple(fixed(gear.held_ends[i], 3) for gear in pair.gears) for i in (0, 1))
         lines += [("bore held from", "z", "mm", low), ("  to", "", "mm", high)]
     return lines
 

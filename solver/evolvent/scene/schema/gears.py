@@ -66,7 +66,7 @@ ALTERNATIVES = {
     "root_diameter_mm": "dedendum_coefficient",
     "bore_diameter_mm": "rim_thickness_mm",
 }
-"""Key of a diameter -> key that may be given instead."""
+"""Key of a diameter -> key that may be given instead; a rim with a web has a bore, too."""
 
 
 class BodyKeys(SceneSection):
@@ -163,10 +163,35 @@ class BodyKeys(SceneSection):
         le=LONGEST,
     )
     rim_thickness_mm: float | None = key(
-        "in place of the bore: thickness s_R of a rim below the root circle; it is held rigidly at its inside, web and "
-        "hub are left out",
+        "thickness s_R of a rim below the root circle, on a web; without web_thickness_mm it is in place of the bore, "
+        "held rigidly at its inside, web and hub are left out",
         LENGTH,
         "delete the key for a gear with a bore",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    web_thickness_mm: float | None = key(
+        "axial thickness b_s of the web, a disc from the rim, rim_thickness_mm, to the hub or the bore; by default the "
+        "body is as wide as the face",
+        LENGTH,
+        "delete the key for a full ring",
+        default=None,
+        gt=0,
+        le=LONGEST,
+    )
+    web_offset_mm: float = key(
+        "axial position of the web's middle, from mid-face towards z > 0",
+        "a number from -500 to 500, in mm",
+        default=0.0,
+        ge=-500,
+        le=500,
+    )
+    hub_diameter_mm: float | None = key(
+        "outer diameter of the hub, which is as wide as the face; by default the web reaches the bore, which is held "
+        "over its thickness",
+        LENGTH,
+        "delete the key for a web that reaches the bore",
         default=None,
         gt=0,
         le=LONGEST,
@@ -191,9 +216,24 @@ class BodyKeys(SceneSection):
     def _one_of_two(self) -> Self:
         for first, second in ALTERNATIVES.items():
             one, two = getattr(self, first), getattr(self, second)
-            if one is not None and two is not None:
+            has_both = second == "rim_thickness_mm" and self.web_thickness_mm is not None
+            if one is not None and two is not None and not has_both:
                 found = f"{shown(one)} and also {second} = {shown(two)}"
                 raise validation_error(InputProblem(first, found, "one of the two", f"delete {first} or {second}"))
+        return self
+
+    @model_validator(mode="after")
+    def _whole_web(self) -> Self:
+        """Rim, web and hub are given together."""
+        if self.web_thickness_mm is not None:
+            if self.rim_thickness_mm is None:
+                allowed, remedy = "with rim_thickness_mm", "give rim_thickness_mm, of the rim on the web"
+                raise validation_error(InputProblem("web_thickness_mm", shown(self.web_thickness_mm), allowed, remedy))
+            return self
+        for name in ("hub_diameter_mm", "web_offset_mm"):
+            if value := getattr(self, name):
+                remedy = f"give web_thickness_mm, or delete {name}"
+                raise validation_error(InputProblem(name, shown(value), "with web_thickness_mm", remedy))
         return self
 
 

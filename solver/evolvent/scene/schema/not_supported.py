@@ -13,7 +13,7 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"bearing|housing", "bearings and shafts are not modelled: bores are held rigidly, "
      "pair.misalignment_um takes what tilts them"),
     (r"shaft|key_?way|hub", "shafts are not modelled: the bore, bore_diameter_mm, is held rigidly over "
-     "support_width_mm"),
+     "support_width_mm; hub_diameter_mm is where a web ends"),
     (r"lubric|oil|viscosity|film|ehl|additive|grease", "lubrication is not supported, but by its friction coefficient, "
      "contact.friction"),
     (r"temperature|thermal|heat|flash|conductivity|expansion", "temperatures are not computed"),
@@ -31,8 +31,8 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
       "tooth_thickness_allowance_um"),
     (r"(pair|pinion|wheel)\.((gear|pair)_?)?(type|kind)|(gear|pair)_?(type|kind)", "spur and helical external pairs "
      "only, told apart by pair.helix_angle_deg"),
-    (r"web|spoke", "webs are not modelled: the body is a full ring from bore_diameter_mm to the root, or a rim, "
-     "rim_thickness_mm, held at its inside"),
+    (r"web|spoke|rib|hole", "a web is a full disc, web_thickness_mm, between rim_thickness_mm and hub_diameter_mm, "
+     "without holes, ribs and spokes"),
 )  # fmt: skip
 """Regular expression for the name of an unknown key, perhaps behind its section's, and what to answer."""
 

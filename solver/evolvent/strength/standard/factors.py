@@ -36,7 +36,7 @@ def rim_thickness_factor(rim: float, tooth_height: float) -> float:
     if backup <= THINNEST_RIM:
         raise InputError(
             f"rim thickness: wanted more than {THINNEST_RIM:g} tooth heights, found {backup:.3g}; the standard has no "
-            "factor below, and finite elements hold the rim's inside rigidly: give a bore, or a thicker rim"
+            "factor below, and finite elements hold the inside of a rim without a web rigidly: give a thicker rim"
         )
     return 1.0 if backup >= THIN_RIM else 1.6 * math.log(2.242 / backup)
 

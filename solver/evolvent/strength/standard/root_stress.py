@@ -104,11 +104,13 @@ class RootLoad:
 
     @property
     def rim_factor(self) -> float:
-        """Y_B of a gear whose body is a rim; 1 of others. Raises InputError for rims that the standard does not cover.
+        """Y_B of a gear with a rim, held at its inside or on a web; 1 of others.
+
+        Raises InputError for rims that the standard does not cover.
         """
         gear = self.pair.gears[self.member]
         height = 0.5 * (gear.tip_diameter - gear.root_diameter)
-        return rim_thickness_factor(gear.rim_thickness, height) if gear.support.is_rim else 1.0
+        return rim_thickness_factor(gear.rim_thickness, height) if gear.has_rim else 1.0
 
     def tooth_rotation(self, below_tip: float) -> float:
         """Pinion rotation [rad] of a spur tooth that is loaded at a point, 0 at the pitch point; NaN for helical gears,

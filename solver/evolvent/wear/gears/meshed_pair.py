@@ -20,7 +20,7 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.input_checks import Words, refuse
 from evolvent_meshes.mesh.mesh_data import MeshData
 
-HELD = "bore", "bore_free", "cut_low", "cut_high", "fillet", "back", "tip"
+HELD = "bore", "bore_free", "recess", "cut_low", "cut_high", "fillet", "back", "tip"
 """Facet groups of a sector that stay at rest when its mesh follows the wear; plane end faces slide in themselves."""
 MESHABLE_SLOPE = 0.01
 """Largest slope of the depth that a mesh follows: half a degree. Steeper is only the wear of a tip edge, narrow as a

@@ -13,7 +13,7 @@ import pytest
 from evolvent.scene.checking.check_report import overview
 from evolvent.scene.scene import load_scene, scene_from_text
 from tests.support.checkout import ROOT
-from tests.support.gear_cases import spur_scene
+from tests.support.gear_cases import helical_scene, spur_scene
 from tests.support.scene_texts import DEMOS, HE, YANG
 
 SCENES = ("yang2022", "he2022", "zhang2023")
@@ -169,3 +169,16 @@ def test_wear_depth_is_estimated() -> None:
     assert row is not None
     wanted = 7.25 * 2.0 / scene.gear_pair().transverse_contact_ratio
     assert float(row[1]) == pytest.approx(wanted, rel=2e-3) and float(row[2]) == 0.0
+
+
+def test_webs_and_where_bores_are_held_are_told() -> None:
+    """Of a webbed wheel rim, thickness, both faces and hub; beside a pinion that is held in part, a bore that a web
+    reaches is held between the web's faces."""
+    webbed = "wheel.rim_thickness_mm=4", "wheel.web_thickness_mm=3", "wheel.web_offset_mm=0.5"
+    text = overview(helical_scene(*webbed, "wheel.hub_diameter_mm=52"))
+    rows = ("rim, on a web", 4), ("web thickness", 3), ("from", -1), ("to", 2), ("hub diameter", 52)
+    for name, wheel in rows:
+        assert re.search(rf"^ +{name}.* – +{wheel}\.000$", text, re.MULTILINE)
+    held = overview(helical_scene(*webbed, "pinion.support_width_mm=4"))
+    assert re.search(r"bore held from +z +mm +-2\.000 +-1\.000\n +to +mm +2\.000 +2\.000", held)
+    assert "on a web" not in overview(helical_scene())

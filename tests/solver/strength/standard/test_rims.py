@@ -1,4 +1,4 @@
-"""Y_B of gears whose body is a rim, in the standard's root stress."""
+"""Y_B of gears whose teeth stand on a rim, held at its inside or on a web, in the standard's root stress."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from evolvent.strength.standard.root_stress import RootLoad, standard_stress
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -33,6 +34,21 @@ def test_thin_rim_raises_the_stress() -> None:
     assert thin / bored == pytest.approx(1.6 * math.log(2.242), rel=1e-12)
     thick, alike = (standard_stress(rimmed(1.3, is_rim), 2006) for is_rim in (True, False))
     assert (thick.stress, thick.rim_thickness_factor) == (alike.stress, 1.0)
+
+
+def test_rims_on_webs() -> None:
+    """A web of a quarter of the face below a rim as thick as the teeth are high: Y_B as of a rim alone, 1.2918 times
+    the stress of the full ring; of a web as wide as the face none."""
+    pair = he()
+    height = 0.5 * (pair.pinion.tip_diameter - pair.pinion.root_diameter)
+
+    def stress(web: Web | None) -> float:
+        pinion = replace(pair.pinion, web=web)
+        load = RootLoad(GearPair(pinion, pair.wheel, pair.centre_distance), Member.PINION, 170e3)
+        return standard_stress(load, 2019).stress
+
+    assert stress(Web(5.0, height)) / stress(None) == pytest.approx(1.6 * math.log(2.242), rel=1e-12)
+    assert stress(Web(20.0, height)) == stress(None)
 
 
 def test_rims_beyond_the_standard_are_refused() -> None:

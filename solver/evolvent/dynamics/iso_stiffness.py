@@ -52,13 +52,14 @@ def blank_factor(gear: GearParameters) -> float:
 
 
 def single_stiffness(pair: GearPair, line_load: float, moduli: tuple[float, float] = (STEEL, STEEL)) -> float:
-    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_R and C_B the mean of both gears.
+    """c' [N/(mm µm)] = C_M C_R C_B cos β / q' of a tooth pair, C_B the mean of both gears, C_R the smaller one: it is
+    meant for a mate that is as stiff or stiffer.
 
     line_load: K_A F_t/b [N/mm]; below 100 c' is less by (line_load/100)^0.25.
     moduli: of both gears [MPa]. Other metals than steel have c' in proportion to 2 E_1 E_2/(E_1 + E_2).
     """
     racks = 0.5 * (rack_factor(pair.pinion) + rack_factor(pair.wheel))
-    blanks = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
+    blanks = min(blank_factor(pair.pinion), blank_factor(pair.wheel))
     steel = MEASURED * blanks * racks * math.cos(pair.pinion.helix_angle) / flexibility(pair)
     light = min(line_load / LIGHT, 1.0) ** 0.25
     if all(abs(modulus / STEEL - 1.0) <= LIKE_STEEL for modulus in moduli):

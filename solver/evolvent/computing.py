@@ -223,7 +223,11 @@ def strength(
         require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_strength(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            _done(out, "strength.csv", "root_stress.csv", "gauges.csv", "pictures/root_stress.png")
+            from evolvent.strength.results.summary_lines import summary_lines
+
+            for line in summary_lines(out):
+                typer.echo(line)
+            _done(out, "strength.toml", "strength.csv", "root_stress.csv", "gauges.csv", "pictures/root_stress.png")
 
 
 def _done(out: Path, *names: str) -> None:

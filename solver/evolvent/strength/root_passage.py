@@ -59,29 +59,39 @@ class RootPassage:
         """(k, n, 3) principal stresses, ascending [MPa]."""
         return principal_stresses(self.stress)
 
+    @cached_property
+    def highest(self) -> Floats:
+        """(k, n) largest principal stress [MPa]; -inf where it may be that of a contact (`is_below_flank`)."""
+        return np.where(self.root.is_below_flank, self.principal[..., 2], -np.inf)
+
+    @cached_property
+    def lowest(self) -> Floats:
+        """(k, n) smallest principal stress [MPa]; inf where it may be that of a contact."""
+        return np.where(self.root.is_below_flank, self.principal[..., 0], np.inf)
+
     @property
     def largest(self) -> Floats:
-        """Largest principal stress (k,) of the nodes [MPa]."""
-        return np.asarray(self.principal[..., 2].max(axis=1))
+        """Largest principal stress (k,) of the fillet's nodes [MPa]."""
+        return np.asarray(self.highest.max(axis=1))
 
     @property
     def smallest(self) -> Floats:
-        """Smallest principal stress (k,) of the nodes [MPa]."""
-        return np.asarray(self.principal[..., 0].min(axis=1))
+        """Smallest principal stress (k,) of the fillet's nodes [MPa]."""
+        return np.asarray(self.lowest.min(axis=1))
 
     @property
     def tension(self) -> RootPeak:
         """Where and when the largest principal stress is largest."""
-        return self._peak(int(np.argmax(self.principal[..., 2])), 2)
+        return self._peak(int(np.argmax(self.highest)), 2)
 
     @property
     def compression(self) -> RootPeak:
         """Where and when the smallest principal stress is smallest."""
-        return self._peak(int(np.argmin(self.principal[..., 0])), 0)
+        return self._peak(int(np.argmin(self.lowest)), 0)
 
     def tension_at(self, k: int) -> RootPeak:
         """Where the largest principal stress is largest at rotation number k."""
-        return self._peak(k * len(self.root.radii) + int(np.argmax(self.principal[k, :, 2])), 2)
+        return self._peak(k * len(self.root.radii) + int(np.argmax(self.highest[k])), 2)
 
     def joined(self, other: RootPassage) -> RootPassage:
         """With the rotations of another passage of the same root."""

@@ -8,9 +8,12 @@ import numpy as np
 
 from evolvent.fem.surface import Surface, surface_of
 from evolvent.gears.meshing.root_meshes import BACK_ROOT, LOADED_ROOT
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Bools, Floats
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.mesh.mesh_data import MeshData
+
+ROUNDING = 1e-9
+"""Of a radius: a node at the root form circle lies within it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,12 @@ class RootSurface:
     def radii(self) -> Floats:
         """(n,) [mm]."""
         return np.hypot(self.surface.points[:, 0], self.surface.points[:, 1])
+
+    @property
+    def is_below_flank(self) -> Bools:
+        """(n,) whether a node lies within the root form circle. Beyond it the involute begins, which the other gear's
+        tip may touch: stress there is that of a contact."""
+        return 2.0 * self.radii <= self.gear.root_form_diameter * (1.0 + ROUNDING)
 
     @property
     def tangent_angles(self) -> Floats:

@@ -13,7 +13,7 @@ from evolvent.fem.material import Material
 from evolvent.gears.gear_model import Mesher, prepare_model
 from evolvent.gears.meshing.root_meshes import adapted_root_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
-from evolvent.strength.root_passage import GearRoots, root_passages
+from evolvent.strength.root_passage import GearRoots, RootPassage, root_passages
 from evolvent_meshes.gears.member import Member
 from tests.support.gear_cases import swept
 from tests.support.paper_pairs import zhang
@@ -91,3 +91,16 @@ def test_free_surface_bears_no_traction() -> None:
     normals = np.pad(passage.root.surface.normals, ((0, 0), (0, 1)))
     traction = np.einsum("knab,nb->kna", passage.stress, normals)
     assert np.abs(traction).max() < 1e-9 * np.abs(passage.stress).max()
+
+
+@pytest.mark.parametrize("member", Member)
+def test_stress_of_a_contact_is_not_that_of_the_root(member: Member) -> None:
+    """The tip of the other gear presses on the start of the flank: 10 GPa at the nodes beyond the root form circle, of
+    which each root has some, change neither tension nor compression."""
+    own = roots()[member].loaded_side
+    beyond = 2.0 * own.root.radii > own.root.gear.root_form_diameter + 1e-6
+    assert beyond.any() and not beyond.all()
+    pressed = RootPassage(own.root, own.angles, own.stress + 1e4 * beyond[:, None, None] * np.diag([1.0, -1.0, 0.0]))
+    assert (pressed.tension, pressed.compression) == (own.tension, own.compression)
+    assert np.array_equal(pressed.largest, own.largest) and np.array_equal(pressed.smallest, own.smallest)
+    assert pressed.tension_at(3) == own.tension_at(3)

@@ -41,7 +41,9 @@ from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 
 PICTURE = "root_stress.png"
-WRITTEN = STRENGTH, ROOT_STRESS, GAUGES, f"pictures/{PICTURE}"
+SCENE = "strength.toml"
+"""The scene that was computed, with all its defaults: beside a run's scene.toml, which may have other values."""
+WRITTEN = SCENE, STRENGTH, ROOT_STRESS, GAUGES, f"pictures/{PICTURE}"
 NO_DEEP_TEETH = 12
 """Tolerance class that is taken where the scene names none: Y_DT is 1."""
 
@@ -49,9 +51,9 @@ NO_DEEP_TEETH = 12
 def run_strength(
     scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
 ) -> list[str]:
-    """Computes the pitch with roots finer than a run's, and the stress there, and writes tables and picture to `out`.
-    Returns a sentence where a picture could not be drawn, error bars not be estimated, or a factor is extrapolated.
-    Collective.
+    """Computes the pitch with roots finer than a run's, and the stress there, and writes scene, tables and picture to
+    `out`. Returns a sentence where a picture could not be drawn, error bars not be estimated, or a factor is
+    extrapolated. Collective.
 
     scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
     calls share.
@@ -144,6 +146,7 @@ def _written(scene: Scene, loads: Sequence[RootLoad], found: Sequence[FrictionRo
 
     folder = RunFolder(out)
     folder.remove(WRITTEN)
+    folder.write_text(SCENE, scene.resolved_toml())
     write_strength(folder, rows, list(root_stress_rows(found)))
     if strains:
         write_gauges(folder, strains)

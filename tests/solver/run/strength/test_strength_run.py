@@ -44,6 +44,11 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+def test_folder_has_the_scene(out: Path) -> None:
+    """strength.toml with all its defaults is the scene that was computed."""
+    assert load_scene(out / "strength.toml") == scene()
+
+
 @pytest.mark.parametrize(("gear", "paper", "b"), [("pinion", 490.6, 530.1), ("wheel", 487.01, 546.5)])
 def test_all_ways_stand_side_by_side(out: Path, gear: str, paper: float, b: float) -> None:
     """Both editions, six points of load, the largest over the path, tension and compression, tension at b: the paper's

@@ -1,0 +1,37 @@
+"""What a reader looks for first in strength.csv, a line a gear."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from evolvent.strength.results.tables import STRENGTH
+from evolvent_meshes.gears.member import Member
+
+STANDARD, TENSION, COMPRESSION = "ISO 6336-3:", "finite elements, tension", "finite elements, compression"
+Row = Mapping[str, str]
+
+
+def summary_lines(folder: Path) -> Iterator[str]:
+    """Stresses by the standard and by finite elements, of the latter with their error bars, from the folder's table."""
+    with open(folder / STRENGTH, encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    for member in Member:
+        own = [row for row in rows if row["gear"] == member.label]
+        yield f"{member.label}: {'; '.join([*_of_standard(own), *_of_elements(own)])}"
+
+
+def _of_standard(rows: Iterable[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["method"].startswith(STANDARD):
+            yield f"{row['method']} {float(row['stress_MPa']):.0f} MPa"
+
+
+def _of_elements(rows: Iterable[Row]) -> Iterator[str]:
+    for row in rows:
+        if row["method"] in (TENSION, COMPRESSION):
+            stress, error = float(row["stress_MPa"]), float(row["stress_MPa_error"])
+            bar = "" if math.isnan(error) else f" ± {error:.0f}"
+            yield f"{row['method']} {stress:.0f}{bar} MPa (μ = {float(row['friction']):g})"

@@ -223,7 +223,7 @@ def strength(
         require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
         _warn(run_strength(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            from evolvent.strength.results.summary_lines import summary_lines
+            from evolvent.run.strength.summary_lines import summary_lines
 
             for line in summary_lines(out):
                 typer.echo(line)

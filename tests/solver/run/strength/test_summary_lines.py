@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evolvent.strength.results.summary_lines import summary_lines
+from evolvent.run.strength.summary_lines import summary_lines
 from evolvent.strength.results.tables import STRENGTH
 
 ROWS = """gear,method,friction,stress_MPa,stress_MPa_error

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from evidence.benchmarks.accuracy.error_bars import FIGURES, SCENES, BarRow, solved
+from evidence.benchmarks.accuracy.error_bars import FIGURES, SCENES, BarRow, known, solved
 from evidence.checkout import DEMOS
 from evolvent.results.tables.figure_rows import friction_rows
 from evolvent.results.tables.summary_rows import FrictionRow
@@ -56,16 +56,16 @@ def relief(depth: float) -> list[str]:
 
 
 def measure_spacing(problem: SpacingProblem, counts: Sequence[int], many: int) -> list[BarRow]:
-    """One row a number of positions, figure and friction coefficient; a figure that is exactly zero without friction is
-    left out. The reference's own error is its own bar."""
+    """One row a number of positions, figure and friction coefficient, without those that are `known`. The reference's
+    own error is its own bar."""
     exact = problem.rows(many)
-    return [
+    rows = [
         _row(f"{problem.name}, {count} positions", figure, row, best)
         for count in counts
         for row, best in zip(problem.rows(count), exact)
         for figure in FIGURES
-        if not (figure == "loss_percent" and row.friction == 0.0)
     ]
+    return [row for row in rows if not known(row)]
 
 
 def _row(case: str, figure: str, row: FrictionRow, best: FrictionRow) -> BarRow:

@@ -37,6 +37,8 @@ class FigureErrors:
     """Error of the secant stiffness."""
     loss_percent: float
     """Error of the loss."""
+    face_load_factor: float
+    """Error of the face load factor."""
 
 
 def summed_errors(one: FigureErrors, other: FigureErrors) -> FigureErrors:

@@ -13,6 +13,10 @@ relative root mean square difference of the curves.
   Both meshes are evaluated between the tip-edge zones of the run's mesh, as the figure is: on the companion's larger
   cells these zones are wider, but the loads within them are known.
 
+- Face load factor: D/(2^p − 1) as of the loads; the curves are those over the face, averaged over the layers of the
+  companion. Where the load rises towards an end of the face the largest one is that of an end layer, and D is by how
+  much it falls if the layer is twice as long: as much as the limit at the end of the face exceeds it.
+
 Both meshes are solved at the same positions. The error of sampling the pitch at these positions is estimated by
 `position_spacing` and added. Errors of the model, such as effects that the scene leaves out, are in neither.
 """
@@ -35,6 +39,7 @@ from evolvent.results.archive.error_bar_data import (
 )
 from evolvent.results.engagement import engagement, with_hertz, with_line_loads
 from evolvent.results.error_bars.position_spacing import spacing_errors
+from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.run_data import RunData
 from evolvent_meshes.arrays import Floats
@@ -47,7 +52,8 @@ STIFFNESS_FACTOR = {1: 2.0, 2: 0.5}
 LOSS_FACTOR = {1: 2.0, 2: 1.0}
 """The same for the loss, which depends on the distribution of pressure and of tooth forces; p = 0.6 and 1."""
 LOAD_FACTOR = {1: 2.0, 2: 1.0}
-"""The same for the loads of slices; with 1 at order 1, 3 of 24 bars of pressures were too small, by 2 %."""
+"""The same for the loads of slices and over the face; with 1 at order 1, 3 of 24 bars of pressures were too small, by
+2 %."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +124,7 @@ def _errors(run: RunData, coarse: RunData, index: int) -> FigureErrors:
         mesh_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *tangent),
         secant_stiffness_N_per_mm_um=STIFFNESS_FACTOR[order] * difference(np.mean, *secant),
         loss_percent=LOSS_FACTOR[order] * difference(np.mean, *loss),
+        face_load_factor=LOAD_FACTOR[order] * _face_difference(face_load(run, index), face_load(coarse, index)),
     )
 
 
@@ -125,6 +132,13 @@ def _pressure_error(figure: Reduction, factor: float, fitted: Curve, hertz: Curv
     """Error of the fitted peaks for the computed loads, plus the error of the loads. fine, coarse: peaks that
     depend on the line loads alone, on both meshes, tip edges included."""
     return difference(figure, fitted, hertz) + factor * difference(figure, fine, coarse)
+
+
+def _face_difference(fine: FaceLoad, coarse: FaceLoad) -> float:
+    """Difference D of the face load factor, with the root mean square of the loads averaged over the coarse layers."""
+    curves = Curve(coarse.z, fine.on_layers(coarse.ends)), Curve(coarse.z, coarse.relative())
+    value = fine.factor()
+    return max(abs(value - coarse.factor()), value * relative_difference(*curves))
 
 
 def difference(figure: Reduction, first: Curve, second: Curve) -> float:

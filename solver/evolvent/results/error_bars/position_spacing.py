@@ -37,6 +37,7 @@ import numpy as np
 
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.engagement import Engagement, EngagementPeak, engagement
+from evolvent.results.face_load import FaceLoad, face_load
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.relief_kinks import ReliefKink, relief_kinks
 from evolvent.results.run_data import RunData, SolvedPosition
@@ -81,6 +82,7 @@ def spacing_errors(run: RunData, index: int) -> FigureErrors:
         mesh_stiffness_N_per_mm_um=_larger(thinned_mean(tangent), JUMP * pitch_bends(tangent)),
         secant_stiffness_N_per_mm_um=_larger(thinned_mean(secant), KINK * pitch_bends(secant)),
         loss_percent=_larger(thinned_mean(loss), KINK * pitch_bends(loss)),
+        face_load_factor=_of_face(face_load(run, index)),
     )
 
 
@@ -103,6 +105,15 @@ def thinned_mean(values: Floats) -> float:
     count = len(values)
     sets = [every_other(count, first) for first in range(count)]
     return _apart(float(np.mean(values)), [float(values[kept] @ shares(kept, count)) for kept in sets])
+
+
+def _of_face(face: FaceLoad) -> float:
+    """Error of the face load factor: of the mean load of the layer that bears most, over that of the face."""
+    count = len(face.mean)
+    sets = [every_other(count, first) for first in range(count)]
+    thinned = [face.factor(kept, shares(kept, count)) for kept in sets]
+    most = face.load[:, int(np.argmax(face.relative()))] / np.mean(face.mean)
+    return _larger(_apart(face.factor(), thinned), KINK * pitch_bends(most))
 
 
 def missed_peaks(values: Floats) -> float:

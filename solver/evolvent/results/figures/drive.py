@@ -12,6 +12,7 @@ from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.results.archive.error_bar_data import plus_minus
 from evolvent.results.drawing.style import FAINT, INK, PINION, WHEEL, dot_size, foot, friction_colours, sheet
 from evolvent.results.engagement import engagements
+from evolvent.results.face_load import face_load
 from evolvent.results.figures.stress import TOOTH_ANGLE
 from evolvent.results.position_figures import loss_percent
 from evolvent.results.run_data import RunData
@@ -148,7 +149,8 @@ def line_load(run: RunData, index: int = 0) -> Figure:
     )
     inside = load[(ξ > start) & (ξ < end) & ~edge]
     subtitle = f"Away from the tip edges {inside.min():.0f} to {inside.max():.0f} N/mm"
-    subtitle += f", at most {inside.max() / mean:.2f} times the uniform line load (μ = {run.frictions[index]:g})."
+    subtitle += f", at most {inside.max() / mean:.2f} times the uniform line load (μ = {run.frictions[index]:g})"
+    subtitle += "." if run.plane else f"; face load factor {_face_load_factor(run, index)}."
     figure = sheet("Line load and sliding along the path of contact", subtitle, (10.0, 6.2))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     upper.plot(
@@ -174,6 +176,12 @@ def line_load(run: RunData, index: int = 0) -> Figure:
         xlim=(ends[0] - margin, ends[1] + margin),
     )
     return figure
+
+
+def _face_load_factor(run: RunData, index: int) -> str:
+    """K_Hβ with its error bar."""
+    bar = run.errors.bar("face_load_factor", index)
+    return f"$K_{{Hβ}}$ {plus_minus(face_load(run, index).factor(), bar, 2)}"
 
 
 def _sliding(axes: Axes, run: RunData) -> None:

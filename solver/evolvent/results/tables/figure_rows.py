@@ -11,6 +11,7 @@ from evolvent.gears.pressure.line_peaks import line_peak
 from evolvent.gears.solution.certificates import balance_error, pitch_imbalance
 from evolvent.results.engagement import Engagement, crossing, engagements
 from evolvent.results.error_bars.position_spacing import spacing_errors
+from evolvent.results.face_load import face_load
 from evolvent.results.mesh_facts import few_cells_across
 from evolvent.results.position_figures import loss_percent, mesh_stiffness, secant_stiffness, transmission_error_um
 from evolvent.results.relief_kinks import peak_over_kink
@@ -84,6 +85,7 @@ def _friction_row(run: RunData, index: int, curve: Engagement, lowest: Engagemen
         mesh_stiffness_N_per_mm_um=float(np.mean([mesh_stiffness(run, each[index]) for each in run.positions])),
         secant_stiffness_N_per_mm_um=float(np.mean([secant_stiffness(run, each[index]) for each in run.positions])),
         loss_percent=100.0 * loss,
+        face_load_factor=face_load(run, index).factor(),
         crossing_deg=degrees(crossing(lowest, curve)) if crosses else math.nan,
         balance_error=pitch_imbalance(results),
         forces_on_pinion=shaft_forces(run, Member.PINION, index),

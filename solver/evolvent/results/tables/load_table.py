@@ -56,6 +56,10 @@ class LoadRow:
     """Friction work over input work of the pitch."""
     loss_percent_error: float
     """Its estimated error."""
+    face_load_factor: float
+    """K_Hβ of ISO 6336-1, as in summary.json."""
+    face_load_factor_error: float
+    """Its estimated error."""
     tip_edge_positions: int
     """Number of positions at which a tooth bears on a tip edge."""
     cells_across_contact_width: float
@@ -101,7 +105,7 @@ def _result(summary: Mapping[str, Any], row: Mapping[str, Any]) -> LoadResult:
     }
     for name in [each.name for each in fields(LoadRow) if each.name not in known]:
         figure = name.removesuffix(ERROR)
-        known[name] = _number(row[name] if name == figure else bars.get(figure))
+        known[name] = _number(row.get(name) if name == figure else bars.get(figure))
     return LoadResult(LoadRow(**known), angle, error)
 
 

@@ -28,11 +28,12 @@ LARGE_BAR = 0.5
 SPACING_SAID = 0.03
 """Largest ratio of spacing error and figure without a warning."""
 NAMES = {
-    "max_pressure_MPa": ("largest pressure", "MPa"),
-    "mean_pressure_MPa": ("mean pressure", "MPa"),
-    "transmission_error_peak_to_peak_um": ("peak-to-peak transmission error", "µm"),
-    "mesh_stiffness_N_per_mm_um": ("mesh stiffness", "N/(mm·µm)"),
-    "loss_percent": ("loss", "% of the input"),
+    "max_pressure_MPa": ("largest pressure", " MPa"),
+    "mean_pressure_MPa": ("mean pressure", " MPa"),
+    "transmission_error_peak_to_peak_um": ("peak-to-peak transmission error", " µm"),
+    "mesh_stiffness_N_per_mm_um": ("mesh stiffness", " N/(mm·µm)"),
+    "loss_percent": ("loss", " % of the input"),
+    "face_load_factor": ("face load factor", ""),
 }
 """Key of a figure with an error bar -> its name and unit in messages; the secant stiffness follows the tangent."""
 
@@ -150,7 +151,7 @@ def _unknown(row: FrictionRow, name: str) -> str:
     if bars is None or not getattr(bars, name) > LARGE_BAR * abs(value) > 0.0:
         return ""
     label, unit = NAMES[name]
-    return f"{label} {brief(value)} ± {brief(getattr(bars, name))} {unit} (μ = {row.friction:g})"
+    return f"{label} {brief(value)} ± {brief(getattr(bars, name))}{unit} (μ = {row.friction:g})"
 
 
 def _about_error_bars(run: RunData) -> Iterator[str]:
@@ -177,7 +178,7 @@ def _spaced(row: FrictionRow, name: str) -> str:
     if not _share(row, name) > SPACING_SAID or (bars is not None and part < 0.5 * getattr(bars, name)):
         return ""
     label, unit = NAMES[name]
-    return f"± {brief(part)} {unit} of the {label} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
+    return f"± {brief(part)}{unit} of the {label} ({brief(100.0 * _share(row, name))} %, μ = {row.friction:g})"
 
 
 def _share(row: FrictionRow, name: str) -> float:

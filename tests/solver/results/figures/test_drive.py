@@ -69,7 +69,7 @@ def test_peak_to_peak_transmission_error_is_given_once(bar: float) -> None:
     positions in one sentence, as a part of the error bar where there is one; the legend takes none of the width."""
     run = synthetic_run("contact.friction=[0.0, 0.1, 0.2]", file=YANG)
     if np.isfinite(bar):
-        run = replace(run, errors=EstimatedErrors((FigureErrors(*[bar] * 6),) * 3, "made up", ""))
+        run = replace(run, errors=EstimatedErrors((FigureErrors(*[bar] * 7),) * 3, "made up", ""))
     with styled():
         figure = transmission_error(run)
         FigureCanvasAgg(figure).draw()

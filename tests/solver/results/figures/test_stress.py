@@ -30,7 +30,7 @@ BAR = 40.0  # [MPa]
 @pytest.fixture(scope="module")
 def steep() -> RunData:
     """A spur pair whose largest pressure lies between two positions, with an error bar."""
-    errors = FigureErrors(BAR, *[1.0] * 5)
+    errors = FigureErrors(BAR, *[1.0] * 6)
     return replace(steep_run(FRICTION), errors=EstimatedErrors((errors, errors), "made up", ""))
 
 

@@ -26,7 +26,7 @@ from tests.support.gear_cases import spur_scene
 from tests.support.run_parts import FACTS, GOOD
 from tests.support.synthetic_run import synthetic_run
 
-BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 0.1, 0.1, 0.1, 0.1),), "", "")
+BARS = EstimatedErrors((FigureErrors(1.0, 1.0, 0.1, 0.1, 0.1, 0.1, 0.01),), "", "")
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +87,7 @@ def test_warning_of_a_coarse_mesh_agrees_with_the_error_bar(quiet: RunData) -> N
     """1.7 elements across and a bar of 4.6 % of the largest pressure: the sentence says what the bar is of, with its
     number, and what it is not of."""
     peak = friction_rows(quiet)[0].max_pressure_MPa
-    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, 1e-3, 1e-3, 1e-3, 1e-3),), "", "")
+    bars = EstimatedErrors((FigureErrors(0.046 * peak, 1.0, *[1e-3] * 5),), "", "")
     (said,) = warnings_of(replace(quiet, errors=bars), MeshFacts(0.3, 1.7, 1.2))
     assert "pressures of single positions may be off by 15 %" in said
     assert "the largest one is known within its error bar, 4.6 %, but not where it occurs" in said
@@ -97,7 +97,7 @@ def test_figures_with_large_error_bars_are_warned_of(quiet: RunData) -> None:
     """A bar of 1.1 times the largest pressure, of 0.4 times the mean one: the first is said not to be known, with both
     numbers; the second is not mentioned."""
     row = friction_rows(quiet)[0]
-    bars = FigureErrors(1.1 * row.max_pressure_MPa, 0.4 * row.mean_pressure_MPa, 1e-3, 1e-3, 1e-3, 1e-3)
+    bars = FigureErrors(1.1 * row.max_pressure_MPa, 0.4 * row.mean_pressure_MPa, *[1e-3] * 5)
     (said,) = warnings_of(replace(quiet, errors=EstimatedErrors((bars,), "", "")), GOOD)
     known = f"largest pressure {brief(row.max_pressure_MPa)} ±"
     assert said.startswith(f"Not known, since the error bar exceeds half of the value: {known}")

@@ -93,7 +93,8 @@ CATALOGUE: Mapping[Computation, list[Figure]] = {
 DEFAULTS: Mapping[Computation, tuple[str, ...]] = {
     "check": ("transverse_contact_ratio", "total_contact_ratio", "pitch_point_pressure_MPa", "pinion_tip_thickness_mm",
               "wheel_tip_thickness_mm"),
-    "run": ("transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent"),
+    "run": ("transmission_error_peak_to_peak_um", "max_pressure_MPa", "mesh_stiffness_N_per_mm_um", "loss_percent",
+            "face_load_factor"),
     "excitation": ("transmission_error_peak_to_peak_um", "tangent_stiffness_mean_N_per_um"),
     "dynamics": ("largest_dynamic_factor", "largest_equivalent_amplitude_um", "natural_speed_rpm"),
     "strength": tuple(f"{gear}_{name}_MPa" for gear in ("pinion", "wheel") for name in ("tension", "compression",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
@@ -57,13 +59,20 @@ def grid_of(values: StudyValues, name: str) -> Floats:
     return grid
 
 
+def exponent(value: float) -> int:
+    """Power of ten of a number's first digit; value: above 0."""
+    return math.floor(math.log10(value))
+
+
 def _numbers(axes: Axes, grid: Floats, norm: Normalize) -> None:
-    """Writes the values into their cells."""
+    """Writes the values into their cells, with as many decimals as give the largest three digits."""
     size = 9.0 if grid.shape[1] <= 10 else 7.0
+    known = grid[np.isfinite(grid)]
+    decimals = 0 if np.all(known == np.round(known)) else max(0, 2 - exponent(float(np.abs(known).max())))
     for (j, i), value in np.ndenumerate(grid):
         if np.isfinite(value):
             colour = "white" if norm(value) > DARK else INK
-            axes.text(i + 0.5, j + 0.5, f"{value:.3g}", ha="center", va="center", fontsize=size, color=colour)
+            axes.text(i + 0.5, j + 0.5, f"{value:.{decimals}f}", ha="center", va="center", fontsize=size, color=colour)
 
 
 def _range(values: StudyValues, grid: Floats) -> str:

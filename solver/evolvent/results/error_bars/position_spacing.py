@@ -108,12 +108,13 @@ def thinned_mean(values: Floats) -> float:
 
 
 def _of_face(face: FaceLoad) -> float:
-    """Error of the face load factor: of the mean load of the layer that bears most, over that of the face."""
+    """Error of the face load factor: of the mean load of the layer that bears most, less K_Hβ times that of the face."""
     count = len(face.mean)
     sets = [every_other(count, first) for first in range(count)]
     thinned = [face.factor(kept, shares(kept, count)) for kept in sets]
-    most = face.load[:, int(np.argmax(face.relative()))] / np.mean(face.mean)
-    return _larger(_apart(face.factor(), thinned), KINK * pitch_bends(most))
+    whole, most = face.factor(), face.load[:, int(np.argmax(face.relative()))]
+    excess = (most - whole * face.mean) / np.mean(face.mean)
+    return _larger(_apart(whole, thinned), KINK * pitch_bends(excess))
 
 
 def missed_peaks(values: Floats) -> float:

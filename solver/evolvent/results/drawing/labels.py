@@ -10,6 +10,9 @@ UNITS = {
 }  # fmt: skip
 """Ending of a name -> unit."""
 
+SYMBOLS = {"face_load_factor": "K_Hβ"}
+"""Name of a figure -> symbol that stands behind it."""
+
 
 def ending(name: str) -> str:
     """The part of a name that says its unit; empty where there is none."""
@@ -21,5 +24,11 @@ def label(name: str, unit: bool = True) -> str:
     unit: with it."""
     last = ending(name)
     section, _, own = name.removesuffix(last).rpartition(".")
-    words = f"{section if section in ('pinion', 'wheel') else ''} {own.replace('_', ' ')}".strip()
+    gear = section if section in ("pinion", "wheel") else ""
+    words = f"{gear} {own.replace('_', ' ')} {SYMBOLS.get(own, '')}".strip()
     return f"{words} [{UNITS[last]}]" if unit and last else words
+
+
+def heading(words: str) -> str:
+    """Words as a title: the first letter is a capital."""
+    return words[:1].upper() + words[1:]

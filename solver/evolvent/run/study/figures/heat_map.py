@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.labels import label
+from evolvent.results.drawing.labels import heading, label
 from evolvent.results.drawing.style import FAINT, INK, PRESSURE_MAP, foot, png, sheet, styled
 from evolvent.run.study.figures.study_values import StudyValues
 from evolvent_meshes.arrays import Floats
@@ -19,6 +19,10 @@ MOST_NUMBERS = 150
 DARK = 0.55
 """Part of the colour scale from which numbers are white."""
 MOST_TICKS = 20
+SIZES = (5, 12.0), (10, 9.5)
+"""Most cells in a row, and the size of the numbers in them, on a slide as large as the labels of the axes."""
+LEAST_PART = 0.01
+"""Smallest value over the largest one for which all are written with the same decimals."""
 
 
 def map_picture(values: StudyValues, name: str) -> bytes:
@@ -31,7 +35,7 @@ def map_figure(values: StudyValues, name: str) -> Figure:
     """A cell for each scene, equally large, with its value; cells of scenes without one are hatched."""
     grid, (first, second) = grid_of(values, name), values.axes
     words, space, friction = name.partition(" (")
-    figure = sheet(label(words) + space + friction, f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
+    figure = sheet(heading(label(words) + space + friction), f"{values.title}. {_range(values, grid)}", (9.6, 6.6))
     axes = figure.subplots()
     axes.grid(visible=False)
     axes.set_facecolor("#f4f4f4")
@@ -59,26 +63,32 @@ def grid_of(values: StudyValues, name: str) -> Floats:
     return grid
 
 
-def exponent(value: float) -> int:
-    """Power of ten of a number's first digit; value: above 0."""
-    return math.floor(math.log10(value))
+def cell_texts(grid: Floats) -> list[list[str]]:
+    """(n, m) the values in words, with as many decimals as give the largest one three digits; empty where there is
+    none. Values of which the least have no digit left then have three digits each."""
+    known = np.abs(grid[np.isfinite(grid)])
+    form = ".3g"
+    if np.all(known == np.round(known)):
+        form = ".0f"
+    elif known.min() >= LEAST_PART * known.max():
+        form = f".{max(0, 2 - math.floor(math.log10(known.max())))}f"
+    return [[f"{value:{form}}".replace("-", "−") if np.isfinite(value) else "" for value in row] for row in grid]
 
 
 def _numbers(axes: Axes, grid: Floats, norm: Normalize) -> None:
-    """Writes the values into their cells, with as many decimals as give the largest three digits."""
-    size = 9.0 if grid.shape[1] <= 10 else 7.0
-    known = grid[np.isfinite(grid)]
-    decimals = 0 if np.all(known == np.round(known)) else max(0, 2 - exponent(float(np.abs(known).max())))
-    for (j, i), value in np.ndenumerate(grid):
-        if np.isfinite(value):
-            colour = "white" if norm(value) > DARK else INK
-            axes.text(i + 0.5, j + 0.5, f"{value:.{decimals}f}", ha="center", va="center", fontsize=size, color=colour)
+    """Writes the values into their cells."""
+    size = next((size for most, size in SIZES if grid.shape[1] <= most), 7.0)
+    for (j, i), text in np.ndenumerate(cell_texts(grid)):
+        if text:
+            colour = "white" if norm(grid[j, i]) > DARK else INK
+            axes.text(i + 0.5, j + 0.5, text, ha="center", va="center", fontsize=size, color=colour)
 
 
 def _range(values: StudyValues, grid: Floats) -> str:
     """Where the figure is least and largest."""
-    said = []
+    said, texts = [], cell_texts(grid)
     for word, place in (("least", np.nanargmin(grid)), ("largest", np.nanargmax(grid))):
         j, i = np.unravel_index(int(place), grid.shape)
-        said.append(f"{word} {grid[j, i]:.4g} at ({values.axes[0].texts[i]}, {values.axes[1].texts[j]})")
-    return f"{said[0].capitalize()}, {said[1]}."
+        first, second = values.axes
+        said.append(f"{word} {texts[j][i]} at {first.said(int(i))} and {second.said(int(j))}")
+    return f"{heading(said[0])}, {said[1]}."

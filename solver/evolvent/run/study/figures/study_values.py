@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from evolvent.results.drawing.labels import label
+from evolvent.results.drawing.labels import UNITS, ending, label
 from evolvent.run.study.results.gathering import ERROR
 from evolvent.run.study.results.study_table import DONE, TableRow, written
 from evolvent_meshes.arrays import Floats, Ints
@@ -42,8 +42,15 @@ class DrawnAxis:
 
     @property
     def texts(self) -> list[str]:
-        """Its values as text."""
-        return [f"{value:.4g}" if isinstance(value, float) else str(value) for value in self.values]
+        """Its values as text; a minus is U+2212."""
+        shown = [f"{value:.4g}" if isinstance(value, float) else str(value) for value in self.values]
+        return [text.replace("-", "−") for text in shown] if self.is_numeric else shown
+
+    def said(self, number: int) -> str:
+        """The value with this number in a sentence: with its unit, or with its name where it has none."""
+        unit = UNITS.get(ending(self.keys[0]), "")
+        text = self.texts[number]
+        return f"{text}{'' if unit == '°' else ' '}{unit}" if unit else f"{label(self.keys[0])} {text}"
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from evolvent.results.drawing.labels import heading, label
 from evolvent.run.study.figures.all import study_pictures
 from evolvent.run.study.figures.curves import curves_figure
-from evolvent.run.study.figures.heat_map import grid_of, map_figure
+from evolvent.run.study.figures.heat_map import cell_texts, grid_of, map_figure
 from evolvent.run.study.figures.parallel_coordinates import parallel_figure
 from evolvent.run.study.figures.study_values import StudyValues
 from evolvent.run.study.results.study_table import TableRow
@@ -82,6 +83,41 @@ def test_map_has_a_cell_a_scene() -> None:
     assert [text.get_text() for text in axes.texts] == ["1", "2", "6", "7", "11"]
     assert len(axes.patches) == 1 and axes.patches[0].get_hatch() == "///"
     assert [tick.get_text() for tick in axes.get_xticklabels()] == ["1", "2"]
+
+
+def test_map_says_where_a_figure_is_least_and_largest() -> None:
+    """With the numbers of the cells, and the units of the axes; a minus is U+2212. An axis without a unit is named."""
+    points = [(t, m) for t in (2.0, 1.0) for m in (-5.0, 9.0)]
+    figure = map_figure(values([("load.torque_Nm",), ("pair.misalignment_um",)], [*points, (9.0, 9.0)]), "peak_MPa")
+    assert [text.get_text() for text in figure.texts[:2]] == [
+        "Peak [MPa]", "a study. Least −4 at 1 N·m and −5 µm, largest 11 at 2 N·m and 9 µm."
+    ]  # fmt: skip
+    assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["−5", "9"]
+    named = values([("pinion.profile_shift",), ("mesh.level",)], [(0.5, "fine"), (1.0, "quick"), (2.0, "quick")])
+    said = map_figure(named, "peak_MPa").texts[1].get_text()
+    assert "least 0.50 at pinion profile shift 0.5 and level fine, largest 1.00 at" in said.lower()
+
+
+@pytest.mark.parametrize(
+    ("numbers", "texts"),
+    [
+        ([1.0821, 1.2, 1.35, math.nan], ["1.08", "1.20", "1.35", ""]),
+        ([1318.4, 995.2, 1204.0], ["1318", "995", "1204"]),
+        ([12345.6, 9876.5], ["12346", "9876"]),
+        ([-0.0123, 0.0456], ["−0.0123", "0.0456"]),
+        ([0.0012, 3.4], ["0.0012", "3.4"]),
+        ([3.0, -2.0], ["3", "−2"]),
+    ],
+)
+def test_numbers_of_a_map_have_the_same_decimals(numbers: list[float], texts: list[str]) -> None:
+    """Three digits of the largest one and no power of ten below 1000 times the least; whole numbers stay whole."""
+    assert cell_texts(np.array([numbers])) == [texts]
+
+
+def test_face_load_factor_has_its_symbol() -> None:
+    """Behind its name, in titles and at colour bars; a title begins with a capital."""
+    assert heading(label("face_load_factor")) == "Face load factor K_Hβ"
+    assert label("pinion.tension_MPa") == "pinion tension [MPa]"
 
 
 def test_parallel_lines_are_of_complete_scenes() -> None:

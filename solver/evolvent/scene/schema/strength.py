@@ -59,6 +59,7 @@ class StrengthSection(SceneSection):
     editions: Annotated[tuple[Edition, ...], BeforeValidator(as_tuple)] = key(
         "editions of ISO 6336-3 by which root stress is computed beside that of finite elements",
         EDITIONS,
+        "write strength.editions = [2006, 2019], or one of the two",
         default=(2006, 2019), min_length=1,
     )  # fmt: skip
     tolerance_class: int | None = key(
@@ -72,6 +73,8 @@ class StrengthSection(SceneSection):
         "elements around the fillets and across the core of a tooth over those of a run, which has six around a fillet",
         "a whole number from 1 to 8",
         "raise it where the error bar of the stress is too wide",
+        too_small="give 1 for the roots of a run, 2 for results",
+        too_large="lower it: 8 are 48 elements around a fillet",
         default=2, ge=1, le=8,
     )  # fmt: skip
 

@@ -106,8 +106,8 @@ def _scene_gauges(scene: Scene) -> list[Gauge]:
         return []
     columns = given.gear, given.side, given.angle_deg, given.height_mm, given.length_mm
     return [
-        Gauge(Member.PINION if gear == "pinion" else Member.WHEEL, side == "loaded", math.radians(angle), z, length)
-        for gear, side, angle, z, length in zip(*columns, strict=True)
+        Gauge(Member.named(gear), side == "loaded", math.radians(angle), z, length, number)
+        for number, (gear, side, angle, z, length) in enumerate(zip(*columns, strict=True), 1)
     ]
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
+from evolvent_meshes.gears.member import MemberName
 
 EDITIONS = "a list of 2006, 2019 or both"
 Edition = Literal[2006, 2019]
@@ -33,8 +35,8 @@ class GaugesSection(SceneSection):
         min_length=1,
     )
     height_mm: Annotated[tuple[Height, ...], BeforeValidator(as_tuple)] = key(
-        "axial position of each gauge, 0 at mid-face",
-        "a list of numbers from -500 to 500, in mm, as long as gear",
+        "axial position of each gauge, 0 at mid-face; where the pair is solved in 2D (plane strain) it does not count",
+        "a list of numbers from -500 to 500, on the face of the gear, in mm, as long as gear",
         min_length=1,
     )
     length_mm: Annotated[tuple[Length, ...], BeforeValidator(as_tuple)] = key(
@@ -51,6 +53,20 @@ class GaugesSection(SceneSection):
                 allowed = f"as many as gear has, {len(self.gear)}"
                 raise validation_error(InputProblem(name, f"{found} values", allowed, "give one for each gauge"))
         return self
+
+    def beside_the_face(self, face_widths: Mapping[MemberName, float]) -> InputProblem | None:
+        """The problem with the first gauge that lies beside the face of its gear, None where there is none.
+
+        face_widths: of both gears [mm].
+        """
+        for number, (gear, height) in enumerate(zip(self.gear, self.height_mm), 1):
+            half = 0.5 * face_widths[gear]
+            if abs(height) > half:
+                found = f"{shown(height)} of gauge {number}, on the {gear}"
+                allowed = f"from {-half:g} to {half:g} mm, the face of the {gear}"
+                remedy = "give the height from mid-face, half of the face width at most"
+                return InputProblem("strength.gauges.height_mm", found, allowed, remedy)
+        return None
 
 
 class StrengthSection(SceneSection):

@@ -38,7 +38,7 @@ def writing_to(out: Path, comm: MPI.Comm, checked: Callable[[], T]) -> Iterator[
     """Context in which no other run writes to the folder. Gives what `checked` returns, which looks at the folder on
     rank 0 once it is this run's. Collective.
 
-    Raises FolderError where another run writes there or has computed a study, and what `checked` raises.
+    Raises FolderError where another run writes there or the folder is that of a study, and what `checked` raises.
     """
     with ExitStack() as lock:
         on_first(comm, lambda: lock.enter_context(locked(out)))

@@ -58,7 +58,7 @@ class StrengthRow:
     (`output.error_bars`)."""
     tooth_rotation_deg: float
     """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
-    mid-face section. NaN for the standard's virtual gear of helical ones."""
+    mid-face section, above 0 later in the engagement. NaN for the standard's virtual gear of helical ones."""
     radius_mm: float
     """Of the place; of formulas that of the critical section, as far above the reference circle of the gear as it lies
     above that of its virtual gear."""
@@ -92,7 +92,8 @@ class RootStressRow:
     friction: float
     """Friction coefficient."""
     tooth_rotation_deg: float
-    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
+    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section, above 0 later
+    in the engagement."""
     tension_MPa: float
     """Largest principal stress at the root of the loaded side."""
     tension_MPa_error: float

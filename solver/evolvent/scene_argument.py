@@ -25,7 +25,7 @@ def loaded_scene(
     result: Scene | SceneError | None = None
     if comm.rank == 0:
         try:
-            overrides = [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
+            overrides = with_level(settings, level)
             overrides += [f"skip.off={json.dumps(no_skip)}"] if no_skip else []
             result = load_scene(path, overrides)
         except SceneError as error:
@@ -35,6 +35,11 @@ def loaded_scene(
     if isinstance(result, SceneError):
         raise result
     return result
+
+
+def with_level(settings: Sequence[str] | None, level: str | None) -> list[str]:
+    """Overrides of --set, and that of --level where it is given."""
+    return [*(settings or ()), *([f"mesh.level={json.dumps(level)}"] if level is not None else ())]
 
 
 def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:

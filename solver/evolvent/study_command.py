@@ -11,13 +11,16 @@ import typer
 from mpi4py import MPI
 
 from evolvent.failures import STATUSES, reported
-from evolvent.options import Force, Overrides, Quiet, given_path
-from evolvent.scene_argument import require
+from evolvent.options import Force, LevelOption, Overrides, Quiet, given_path
+from evolvent.scene_argument import require, with_level
 
 STUDY_EPILOG = f"""\b
 Examples:
   evolvent study demos/studies/zhang2023_torque.toml --out out/torque --workers 2
   evolvent study demos/studies/zhang2023_torque.toml --out out/torque --scheduler tcp://10.0.0.1:8786
+
+Exit status 0 also where some scenes were refused or have failed: a warning counts them, study.csv says why. 3 where
+none is done.
 
 {STATUSES}"""
 
@@ -36,6 +39,7 @@ def study(
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Use the workers of a running Dask scheduler.")
     ] = None,
+    level: LevelOption = None,
     settings: Overrides = None,
     force: Force = False,
     overwrite: Annotated[
@@ -64,8 +68,8 @@ def study(
         from evolvent.run.study.workers import local_workers, scheduled_workers
 
         loaded, count = load_study(file), workers or 1
-        figures = gathered_figures(loaded, str(file))
-        planned = Study(loaded, study_scenes(loaded, file, settings or (), versions()["evolvent"]), figures)
+        figures, overrides = gathered_figures(loaded, str(file)), with_level(settings, level)
+        planned = Study(loaded, study_scenes(loaded, file, overrides, versions()["evolvent"]), figures)
         if scheduler is not None:
             at_once, context = 1, partial(scheduled_workers, scheduler, out.resolve())
         else:

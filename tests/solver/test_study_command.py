@@ -117,6 +117,14 @@ def test_wrong_options(tmp_path: Path, run_script: Run, options: tuple[str, ...]
     assert not list(out.glob("scenes/*"))
 
 
+def test_level_is_that_of_all_scenes(tmp_path: Path, run_script: Run) -> None:
+    """--level as of the other commands."""
+    study, out = written(tmp_path, TORQUES.replace("[100.0, 200.0, 300.0]", "[100.0]")), tmp_path / "out"
+    done = run_script("-c", CODE, "study", str(study), "--out", str(out), "--quiet", "--level", "quick")
+    assert done.returncode == 0, done.stderr
+    assert "quick" in next(out.glob("scenes/*/check.txt")).read_text(encoding="utf-8")
+
+
 @pytest.mark.mpi
 def test_mpirun_is_refused(tmp_path: Path, run_script: Run) -> None:
     """Two ranks: status 2, and what to do instead."""

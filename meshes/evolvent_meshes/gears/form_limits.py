@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from evolvent_meshes.gears.errors import require, require_instance, require_numbers
-from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear_geometry import GearGeometry
 
@@ -78,7 +77,6 @@ def check_tip_edge(gear: GearGeometry) -> None:
 def check_support(gear: GearGeometry) -> None:
     """The support lies within the face. Raises GeometryError."""
     support, face_width = gear.support, gear.face_width
-    require_instance(support, Support, "support", "Write Support(width=...).")
     require_numbers(support_offset=support.offset)
     if support.width is None:
         remedy = "Give support_width, too, or leave the offset out."

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from evolvent_meshes.gears.errors import require, require_numbers
+from evolvent_meshes.gears.errors import require, require_instance, require_numbers
+from evolvent_meshes.gears.form.support import Support
 from evolvent_meshes.gears.form_limits import (
     SMALLEST_RIM,
     check_crossing,
@@ -54,8 +55,9 @@ def check_angles(pressure: float, helix: float) -> None:
 
 
 def check_types(gear: GearGeometry) -> None:
-    """Numbers and modifications are such, and no texts. Raises GeometryError."""
+    """Numbers, modifications and support are such, and no texts. Raises GeometryError."""
     check_modification_types(gear.modifications)
+    require_instance(gear.support, Support, "support", "Write Support(width=...).")
     require_numbers(
         normal_module=gear.normal_module, normal_pressure_angle_deg=gear.normal_pressure_angle_deg,
         helix_angle_deg=gear.helix_angle_deg, profile_shift=gear.profile_shift, face_width=gear.face_width,
@@ -89,6 +91,8 @@ def check_diameters(gear: GearGeometry) -> None:
         f"above the base circle, {gear.base_diameter:.6g} mm",
         "Raise it: below the base circle there is no involute.",
     )
+    if gear.support.is_rim:
+        _check_rim(gear)
     largest = root - 2.0 * SMALLEST_RIM * gear.normal_module
     require(
         largest > 0.0,
@@ -118,6 +122,16 @@ def check_diameters(gear: GearGeometry) -> None:
         f"a tooth that is thicker than 0 at its tip (it is {gear.transverse_thickness(tip):.4g} mm: pointed)",
         "Lower the tip diameter or the profile shift.",
     )
+
+
+def _check_rim(gear: GearGeometry) -> None:
+    """A rim that is held at its inside: a module at least, and a bore within. Raises GeometryError."""
+    rim, least, root = gear.rim_thickness, SMALLEST_RIM * gear.normal_module, gear.root_diameter
+    allowed = f"at least {least:.6g} mm, one module"
+    require(rim >= least * (1.0 - 1e-9), "rim_thickness", rim, allowed, "Make the rim thicker.")
+    most = 0.5 * (1.0 - SMALLEST_BORE) * root
+    allowed = f"up to {most:.6g} mm: within is a bore of a hundredth of the root diameter, {root:.6g} mm"
+    require(rim <= most, "rim_thickness", rim, allowed, "Give bore_diameter_mm for a thick body.")
 
 
 def check_rack(gear: GearGeometry) -> None:

@@ -24,6 +24,8 @@ WRITTEN = (
     "results/cost.json",
 )  # fmt: skip
 """Files that a run writes for every scene. Fields and pictures are checked one by one when they are written."""
+STUDY = "study.json"
+"""In the folder of a study: what its table is of."""
 NAMED = 10
 """Largest number of foreign files in a message."""
 
@@ -36,11 +38,21 @@ def writing_to(out: Path, comm: MPI.Comm, checked: Callable[[], T]) -> Iterator[
     """Context in which no other run writes to the folder. Gives what `checked` returns, which looks at the folder on
     rank 0 once it is this run's. Collective.
 
-    Raises FolderError where another run writes there, and what `checked` raises.
+    Raises FolderError where another run writes there or the folder is that of a study, and what `checked` raises.
     """
     with ExitStack() as lock:
         on_first(comm, lambda: lock.enter_context(locked(out)))
+        on_first(comm, lambda: require_no_study(out))
         yield on_first(comm, checked)
+
+
+def require_no_study(out: Path) -> None:
+    """Raises FolderError where the folder is that of a study: results of one scene would stand beside its table."""
+    if (out / STUDY).exists():
+        raise FolderError(
+            f"{out}: found a study ({STUDY}); allowed: a folder without; remedy: --out names another folder; each "
+            "scene of the study has a folder below scenes"
+        )
 
 
 def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source: Path | None) -> None:
@@ -49,6 +61,7 @@ def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source:
     source: file that `scene` was read from, None where there is none.
     """
     folder = RunFolder(out)
+    require_no_study(out)
     _keep_sources(scene, folder, source)
     folder.require_free(WRITTEN)
     results = [name for name in COMPUTED if (out / name).exists()]

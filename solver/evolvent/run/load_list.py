@@ -15,7 +15,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.tables.load_table import LOADS, load_results, write_loads
-from evolvent.run.folder_checks import check_folder
+from evolvent.run.folder_checks import check_folder, require_no_study
 from evolvent.run.scene_run import run_scene
 from evolvent.run.start import resume_point, scene_to_solve
 from evolvent.scene.gear_problem import gear_problem
@@ -42,6 +42,7 @@ def run_loads(
     comm = MPI.COMM_WORLD
 
     def check() -> None:
+        require_no_study(out)
         RunFolder(out).require_free([LOADS, f"pictures/{PICTURE}"])
         for name, each in scenes.items():
             check_folder(each, out / name, resume, overwrite, source)

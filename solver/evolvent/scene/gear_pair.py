@@ -155,7 +155,7 @@ def _bore_diameter(gear: GearSection, root: float) -> float:
     if rim is None or not _is_held_rim(gear):
         return _or(gear.bore_diameter_mm, root / 2)
     allowed, remedy = f"below {root / 2:.6g} mm, half of the root diameter", "Give bore_diameter_mm for a thick body."
-    require(2 * rim < root, "bore_diameter", rim, allowed, remedy)
+    require(2 * rim < root, "rim_thickness", rim, allowed, remedy)
     return root - 2 * rim
 
 
@@ -238,9 +238,7 @@ def _in_scene_keys(
     if "." in name:
         prefix, name = f"{name.split('.')[0]}.", name.split(".")[1]
     gear, scene_key = sections[prefix[:-1]], GEAR_KEYS[name]
-    other = ALTERNATIVES.get(scene_key, scene_key)
-    if scene_key == "bore_diameter_mm" and not _is_held_rim(gear):
-        other = scene_key
+    other = scene_key if scene_key == "bore_diameter_mm" else ALTERNATIVES.get(scene_key, scene_key)
     if getattr(gear, scene_key) is None and getattr(gear, other) is not None:
         scene_key = other
     return _named(prefix + scene_key, getattr(gear, scene_key), name, error, remedy)

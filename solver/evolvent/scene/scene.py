@@ -115,6 +115,14 @@ class Scene(SceneSection):
         return self
 
     @model_validator(mode="after")
+    def _gauges_lie_on_faces(self) -> Self:
+        gauges = None if self.strength is None else self.strength.gauges
+        widths = {name: getattr(self, name).face_width_mm for name in GEARS}
+        if gauges is not None and (problem := gauges.beside_the_face(widths)):
+            raise validation_error(problem)
+        return self
+
+    @model_validator(mode="after")
     def _teeth_are_left(self) -> Self:
         if self.wear is None:
             return self

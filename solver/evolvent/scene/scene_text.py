@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,9 @@ class FileKind:
 
 
 SCENE = FileKind("scene file", "demos/yang2022.toml is a complete example")
+STUDY = FileKind("study file", "demos/studies/yang2022_misalignment.toml is a complete example")
+OF_STUDIES = frozenset({"compute", "set", "grid", "list", "latin_hypercube"})
+"""Keys and sections that studies have, and scenes have not."""
 LARGEST = 1
 """Largest size of a scene file [MB]."""
 DEEPEST = 8
@@ -48,6 +51,7 @@ def nested_values(text: str, overrides: Sequence[str], folder: Path) -> dict[str
     overrides are relative to the current folder. Raises SceneError.
     """
     values = toml_values(text)
+    require_kind(values, SCENE)
     for section in (values.get("pinion"), values.get("wheel")):
         if isinstance(section, dict) and isinstance(section.get("flank_csv"), str):
             section["flank_csv"] = str(folder / section["flank_csv"]) if section["flank_csv"] else ""
@@ -92,6 +96,18 @@ def number_hint(text: str) -> str:
     """How a number is written, where a text begins with one that has a comma or a unit; else empty."""
     wrong = re.match(r"\s*[-+]?\d[\d_.]*([eE][-+]?\d+)?(,\d|\s*[^\W\d_]|\s*[°%])", text)
     return "a decimal point, not a comma; no unit after a number" if wrong else ""
+
+
+def require_kind(values: Mapping[str, Any], kind: FileKind) -> None:
+    """Raises SceneError where the values of a scene file are those of a study, or the other way round."""
+    names = sorted(OF_STUDIES & values.keys())
+    if kind is SCENE and isinstance(values.get("scene"), str) and names and "pair" not in values:
+        found, remedy = f"a study, with scene and {names[0]}", "use `evolvent study` for it, or give the scene it names"
+        raise SceneError([InputProblem(kind.name, found, "a scene (docs/scene.md)", remedy)])
+    if kind is STUDY and isinstance(values.get("pair"), dict) and "scene" not in values and not names:
+        remedy = 'use `evolvent check` or `evolvent run` for it; a study names it with scene = "..."'
+        problem = InputProblem(kind.name, "a scene, with a section [pair]", "a study (docs/studies.md)", remedy)
+        raise SceneError([problem])
 
 
 def require_shallow(values: dict[str, Any]) -> None:

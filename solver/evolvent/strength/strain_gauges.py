@@ -37,6 +37,8 @@ class Gauge:
     """Its axial position, 0 at mid-face [mm]."""
     length: float
     """Along the profile [mm]."""
+    number: int = 1
+    """In the scene, from 1; messages name it."""
 
 
 def gauge_strain(gauge: Gauge, roots: GearRoots, material: Material) -> Floats:
@@ -89,11 +91,13 @@ class _Profile:
         low, high = float(self.root.heights.min()), float(self.root.heights.max())
         lies = angles[0] <= gauge.angle <= angles[-1] and places[0] >= 0.0 and places[-1] <= arcs[-1]
         if not lies or not (self.is_plane or low <= gauge.height <= high):
+            at, between = f"with angle_deg = {np.degrees(gauge.angle):g}", np.degrees(angles[[0, -1]])
+            heights = "" if self.is_plane else f", height_mm from {low:g} to {high:g}"
             raise InputError(
-                f"strain gauge: found one of {gauge.length:g} mm at {np.degrees(gauge.angle):g}° and z = "
-                f"{gauge.height:g} mm on the {gauge.member.label}; allowed: middles from {np.degrees(angles[0]):.1f} "
-                f"to {np.degrees(angles[-1]):.1f}° and from {low:g} to {high:g} mm, wholly on the {arcs[-1]:.2f} mm of "
-                "the root's mesh; remedy: move it, or take a shorter one"
+                f"strength.gauges: found strain gauge {gauge.number}, on the {gauge.member.label}, {at}, height_mm = "
+                f"{gauge.height:g} and length_mm = {gauge.length:g}; allowed: angle_deg from {between[0]:.1f} to "
+                f"{between[1]:.1f}{heights}, all of it on the {arcs[-1]:.2f} mm of the root's mesh; remedy: move it, "
+                "or take a shorter one"
             )
         return places
 

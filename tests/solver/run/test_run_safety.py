@@ -14,6 +14,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.drawing.style import png, sheet, styled
+from evolvent.run.folder_checks import STUDY
 from evolvent_meshes.files import WriteError
 from evolvent_meshes.mesh.mesh_data import MeshError
 from tests.support.run_parts import hashes
@@ -93,6 +94,15 @@ def test_foreign_results_are_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
         assert run(tmp_path, *more) == 2
         assert "results/state.npz" in capsys.readouterr().err
     assert hashes(tmp_path) == before
+
+
+def test_the_folder_of_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of all commands that compute a scene: status 2 with what to do, nothing is written."""
+    (tmp_path / STUDY).write_text("{}")
+    for command in ("run", "loads", "excitation"):
+        assert main([command, "demos/he2022.toml", "--out", str(tmp_path), "--level", "quick", "--overwrite"]) == 2
+        assert "found a study (study.json); allowed: a folder without" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [STUDY]
 
 
 def test_scene_is_not_written_over_its_source(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -47,6 +47,7 @@ def test_at_least_45_malformed_scenes() -> None:
         ("pinion.bore", "pinion.bore_diameter_mm"), ("material.e_gpa", "material.E_GPa"),
         ("pinion.TEETH", "pinion.teeth"), ("wheel.Profile_Shift", "wheel.profile_shift"),
         ("material.poissons_ratio", "material.nu"), ("pair.a", "pair.centre_distance_mm"),
+        ("wheel.inner_diameter_mm", "wheel.bore_diameter_mm"), ("pinion.outer_diameter", "pinion.tip_diameter_mm"),
     ],
 )  # fmt: skip
 def test_unknown_key_suggests_the_key_that_was_meant(written: str, meant: str) -> None:
@@ -62,6 +63,36 @@ def test_independent_errors_are_reported_together() -> None:
     keys = [problem.key for problem in caught.value.problems]
     assert sorted(keys) == ["load.torque_Nm", "mesh.order", "pinion.teeth"]
     assert all(line.startswith("mine.toml: ") for line in str(caught.value).splitlines())
+
+
+def test_a_wrong_entry_of_a_list_is_one_error() -> None:
+    """Of a list that has no other entries, too."""
+    for settings in (["strength.editions=[2016]"], ["contact.friction=[-1]"]):
+        with pytest.raises(SceneError) as caught:
+            scene_from_text(YANG, settings)
+        assert [problem.key for problem in caught.value.problems] == [f"{settings[0].split('=')[0]}[0]"]
+
+
+def test_a_study_is_no_scene() -> None:
+    """One line that names the command; so has a file that a study takes for its base scene."""
+    with pytest.raises(SceneError, match=r"^scene file: found a study, with scene and compute; .*`evolvent study`"):
+        scene_from_text('scene = "yang.toml"\ncompute = "check"\n[grid]\nload.torque_Nm = [1.0]\n')
+    with pytest.raises(SceneError, match=r"^scene: found an unknown key"):
+        scene_from_text(f'scene = "yang.toml"\n{YANG}')
+
+
+@pytest.mark.parametrize(("heights", "wrong"), [([10.0, -10.0], ""), ([10.0, -10.1], "-10.1 of gauge 2, on the wheel")])
+def test_gauges_lie_on_the_face_of_their_gear(heights: list[float], wrong: str) -> None:
+    """He's pair has faces of 20 mm and is solved in plane strain, where a height does not count: beside the face it is
+    refused all the same."""
+    gauges = 'gear=["pinion", "wheel"], side=["back", "loaded"], angle_deg=[30, 30], length_mm=[0.5, 0.5]'
+    settings = [f"strength.gauges={{{gauges}, height_mm={heights}}}"]
+    if not wrong:
+        assert scene_from_text(HE, settings).strength is not None
+        return
+    with pytest.raises(SceneError, match=r"strength\.gauges\.height_mm: found .* from -10 to 10 mm") as caught:
+        scene_from_text(HE, settings)
+    assert wrong in caught.value.problems[0].found
 
 
 def test_misspelled_section_is_not_missing_too() -> None:

@@ -93,5 +93,17 @@ def test_a_long_gauge_finds_less_than_the_peak() -> None:
 )  # fmt: skip
 def test_gauges_off_the_root_are_refused(wrong: Gauge) -> None:
     """Above the fillet, beyond the middle of the space, longer than the root, beside the face."""
-    with pytest.raises(InputError, match=r"strain gauge: found one of .* remedy: move it, or take a shorter one"):
-        gauge_places(wrong, root("hexahedron"))
+    said = (
+        r"strength\.gauges: found strain gauge 3, on the pinion, with angle_deg = .*, height_mm = .* and length_mm = "
+        r".*; allowed: angle_deg from .* to .*, height_mm from -5 to 5, .* remedy: move it, or take a shorter one"
+    )
+    with pytest.raises(InputError, match=said):
+        gauge_places(replace(wrong, number=3), root("hexahedron"))
+
+
+def test_heights_do_not_count_in_a_section() -> None:
+    """A gauge beside the face has the places of one at mid-face, and a message on its angle names no heights."""
+    plane = root("quadrilateral")
+    assert gauge_places(replace(GAUGE, height=5.1), plane) == pytest.approx(gauge_places(GAUGE, plane), rel=1e-15)
+    with pytest.raises(InputError, match=r"allowed: angle_deg from \S+ to \S+, all of it on"):
+        gauge_places(replace(GAUGE, angle=0.0), plane)

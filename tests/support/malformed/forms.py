@@ -24,9 +24,17 @@ WRONG_FORMS: dict[str, tuple[str, list[str], str, str, str]] = {
         without(YANG, "bore_diameter_mm"), ["pinion.rim_thickness_mm=18"], "pinion.rim_thickness_mm", "18",
         "for a thick body",
     ),
+    "allowance in mm": (
+        YANG, ["pinion.tooth_thickness_allowance_um=-0.08"], "pinion.tooth_thickness_allowance_um", "-0.08",
+        "give it in µm: -80 where",
+    ),
+    "rim beyond the bore's least": (
+        without(YANG, "bore_diameter_mm"), ["pinion.rim_thickness_mm=17.8"], "pinion.rim_thickness_mm", "17.8",
+        "for a thick body",
+    ),
     "rim thinner than a module": (
         without(YANG, "bore_diameter_mm"), ["pinion.rim_thickness_mm=2"], "pinion.rim_thickness_mm",
-        "2 (so bore diameter 31.66)", "make the bore smaller",
+        "2", "make the rim thicker",
     ),
     "support beside the face": (
         YANG, ["wheel.support_width_mm=8", "wheel.support_offset_mm=6"], "wheel.support_offset_mm", "6",

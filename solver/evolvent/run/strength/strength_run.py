@@ -28,7 +28,7 @@ from evolvent.strength.results.tables import (
     FrictionRoots,
     StrengthRow,
     formula_rows,
-    notch_warnings,
+    formula_warnings,
     root_stress_rows,
     strength_rows,
     write_strength,
@@ -78,7 +78,7 @@ def run_strength(
         progress.stage(OUTPUT)
         found = _by_friction(scene, fine.roots, None if coarse is None else coarse.roots)
         said = on_first(comm, lambda: _written(scene, loads, found, out))
-    return [*said, *notch_warnings(loads), *([failure] if failure else [])]
+    return [*said, *formula_warnings(loads), *([failure] if failure else [])]
 
 
 def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
@@ -106,8 +106,8 @@ def _scene_gauges(scene: Scene) -> list[Gauge]:
         return []
     columns = given.gear, given.side, given.angle_deg, given.height_mm, given.length_mm
     return [
-        Gauge(Member.PINION if gear == "pinion" else Member.WHEEL, side == "loaded", math.radians(angle), z, length)
-        for gear, side, angle, z, length in zip(*columns, strict=True)
+        Gauge(Member.named(gear), side == "loaded", math.radians(angle), z, length, number)
+        for number, (gear, side, angle, z, length) in enumerate(zip(*columns, strict=True), 1)
     ]
 
 

@@ -17,6 +17,7 @@ from distributed import Client
 from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.results.drawing.picture_files import draw
+from evolvent.run.folder_checks import STUDY
 from evolvent.run.progress import OUTPUT, Progress
 from evolvent.run.study.figures.all import study_pictures
 from evolvent.run.study.figures.study_values import StudyValues
@@ -40,8 +41,6 @@ from evolvent_meshes.errors import ResultError
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
 """Time after which the table is written again while scenes are computed [s]."""
-CONTENT = "study.json"
-"""What the table is of: written first, so that another study does not replace it unasked."""
 PICTURES = "pictures/*.png"
 Workers = Callable[[], AbstractContextManager[Client]]
 
@@ -80,7 +79,8 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
     """
     with locked(out):
         folder = RunFolder(out)
-        folder.require_free([TABLE, PARQUET, CONTENT, PICTURES])
+        folder.require_free([TABLE, PARQUET, STUDY, PICTURES])
+        _require_no_other(folder)
         _require_same(study, folder, overwrite)
         records = {each.name: record for each in study.scenes if (record := _known(each, out)) is not None}
         table = _Table(study, out, records)
@@ -89,6 +89,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
             missing = table.missing(at_once)
             if missing:
                 with workers() as client:
+                    table.write(folder)
                     for record in finished(client, missing):
                         table.add(record)
                         progress.reach(table.done)
@@ -101,16 +102,30 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
         return [*said, *drawn.failures]
 
 
+def _require_no_other(folder: RunFolder) -> None:
+    """Raises FolderError where the folder has results of a single scene."""
+    if (folder.out / STUDY).exists():
+        return
+    names = [path.relative_to(folder.out).as_posix() for path in folder.written_files()]
+    others = [name for name in names if name not in (TABLE, PARQUET) and not name.startswith("pictures/")]
+    if others:
+        raise FolderError(
+            f"{folder.out}: found {others[0]}, which a command for a single scene has written; allowed: a new folder, "
+            "or that of a study; remedy: --out names another folder"
+        )
+
+
 def _require_same(study: Study, folder: RunFolder, overwrite: bool) -> None:
-    """Notes what the table is of. Raises FolderError where the folder has the table of another study."""
-    path = folder.out / CONTENT
+    """Notes what the table is of, before it is written: so another study does not replace it unasked. Raises
+    FolderError where the folder has the table of another study."""
+    path = folder.out / STUDY
     if path.exists() and _names(path.read_text(encoding="utf-8")) != _names(study.content) and not overwrite:
         raise FolderError(
-            f"{folder.out}: found the table of another study, or of other values ({CONTENT}); allowed: a folder "
+            f"{folder.out}: found the table of another study, or of other values ({STUDY}); allowed: a folder "
             "without, or the same study; remedy: --overwrite replaces table and pictures, and computes no scene again "
             "that both have; --out names another folder"
         )
-    folder.write_text(CONTENT, study.content)
+    folder.write_text(STUDY, study.content)
 
 
 def _names(content: str) -> object:
@@ -166,8 +181,8 @@ class _Table:
             self.written = time.monotonic()
 
     def write(self, folder: RunFolder) -> tuple[list[TableRow], list[str]]:
-        """Writes the table of all scenes, and returns its rows and the columns of its figures. Raises WriteError,
-        FolderError."""
+        """Writes the table of all scenes, waiting ones too; returns its rows and the columns of its figures. Raises
+        WriteError, FolderError."""
         rows = self.all_rows()
         columns = figure_columns(rows, self.study.figures)
         write_table(folder, rows, columns)

@@ -46,7 +46,14 @@ def _tip_edge(pair: GearPair) -> list[Line]:
         if any(value(gear) for gear in pair.gears)
     ]
     form = _each(pair, "tip form diameter", "d_Fa", "mm", 3, lambda gear: gear.tip_form_diameter)
-    return [*lines, form] if lines else []
+    land = _each(pair, "normal land between chamfers or roundings", "", "mm", 4, _tip_land)
+    return [*lines, form, land] if lines else []
+
+
+def _tip_land(gear: GearParameters) -> float:
+    """Normal width of what is left of the tip circle [mm]: s_an of a sharp tip."""
+    whole, edge = gear.normal_thickness(gear.tip_diameter), gear.tip_edge
+    return whole if edge is None else whole * edge.end[1] / gear.half_angle(gear.tip_diameter)
 
 
 def _protuberance(pair: GearPair) -> list[Line]:

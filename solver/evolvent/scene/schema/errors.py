@@ -71,13 +71,19 @@ def validation_error(problem: InputProblem) -> PydanticCustomError:
 
 def problems_of(error: ValidationError, model: type[SceneSection]) -> list[InputProblem]:
     """The problems of a failed validation, with the texts of the schema `model`: all, or the first `MOST`."""
-    details = error.errors(include_url=False)
+    details = _without_emptied_lists(error.errors(include_url=False))
     problems = _without_consequences([_problem(each, model) for each in details[:MOST]])
     if len(details) > MOST:
         more, remedy = len(details) - MOST, f"mend these first; is this a {model.kind} file at all?"
         wanted = f"a {model.kind} ({model.page})"
         problems.append(InputProblem(f"{model.kind} file", f"{more} more errors", wanted, remedy))
     return problems
+
+
+def _without_emptied_lists(details: list[ErrorDetails]) -> list[ErrorDetails]:
+    """The errors without those on lists that are too short for pydantic once their wrong entries are left out."""
+    wrong = {each["loc"][:-1] for each in details}
+    return [each for each in details if each["type"] != "too_short" or each["loc"] not in wrong]
 
 
 def _without_consequences(problems: list[InputProblem]) -> list[InputProblem]:

@@ -12,6 +12,9 @@ from evolvent.scene.schema.section import SceneSection, key
 
 LEAST_HELIX = 1e-3
 """Smallest helix angle [°]: 0.3 µm over a face of 20 mm. A gear with less is a spur gear."""
+LEAST_ALLOWANCE = 1.0
+"""Smallest amount of a tooth thickness allowance [µm]: less is one in mm."""
+ALLOWANCE = f"0, or a number from -15000 to -{LEAST_ALLOWANCE:g}, at most 0.3 m_n, in µm"
 EDGE = "0, or a number from 0.03 to 0.3 m_n, in µm"
 
 
@@ -88,7 +91,7 @@ class BodyKeys(SceneSection):
     tooth_thickness_allowance_um: float = key(
         "tooth thickness allowance A_sn: normal tooth thickness at the reference circle less that of x; half of it is "
         "taken off either flank, the rack cuts at x_E = x + A_sn / (2 m_n tan α_n)",
-        "a number from -15000 to 0, at most 0.3 m_n, in µm",
+        ALLOWANCE,
         "give it negative, it makes the tooth thinner",
         default=0.0,
         ge=-15000,
@@ -211,6 +214,14 @@ class BodyKeys(SceneSection):
         ge=-500,
         le=500,
     )
+
+    @field_validator("tooth_thickness_allowance_um")
+    @classmethod
+    def _in_micrometres(cls, value: float) -> float:
+        if -LEAST_ALLOWANCE < value < 0.0:
+            remedy = f"give it in µm: {1e3 * value:g} where {value:g} mm is meant"
+            raise validation_error(InputProblem("", shown(value), ALLOWANCE, remedy))
+        return value
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
+from evolvent_meshes.gears.member import MemberName
 
 EDITIONS = "a list of 2006, 2019 or both"
 Edition = Literal[2006, 2019]
@@ -33,8 +35,8 @@ class GaugesSection(SceneSection):
         min_length=1,
     )
     height_mm: Annotated[tuple[Height, ...], BeforeValidator(as_tuple)] = key(
-        "axial position of each gauge, 0 at mid-face",
-        "a list of numbers from -500 to 500, in mm, as long as gear",
+        "axial position of each gauge, 0 at mid-face; where the pair is solved in 2D (plane strain) it does not count",
+        "a list of numbers from -500 to 500, on the face of the gear, in mm, as long as gear",
         min_length=1,
     )
     length_mm: Annotated[tuple[Length, ...], BeforeValidator(as_tuple)] = key(
@@ -52,6 +54,20 @@ class GaugesSection(SceneSection):
                 raise validation_error(InputProblem(name, f"{found} values", allowed, "give one for each gauge"))
         return self
 
+    def beside_the_face(self, face_widths: Mapping[MemberName, float]) -> InputProblem | None:
+        """The problem with the first gauge that lies beside the face of its gear, None where there is none.
+
+        face_widths: of both gears [mm].
+        """
+        for number, (gear, height) in enumerate(zip(self.gear, self.height_mm), 1):
+            half = 0.5 * face_widths[gear]
+            if abs(height) > half:
+                found = f"{shown(height)} of gauge {number}, on the {gear}"
+                allowed = f"from {-half:g} to {half:g} mm, the face of the {gear}"
+                remedy = "give the height from mid-face, half of the face width at most"
+                return InputProblem("strength.gauges.height_mm", found, allowed, remedy)
+        return None
+
 
 class StrengthSection(SceneSection):
     """[strength]: `evolvent strength` reads it."""
@@ -59,6 +75,7 @@ class StrengthSection(SceneSection):
     editions: Annotated[tuple[Edition, ...], BeforeValidator(as_tuple)] = key(
         "editions of ISO 6336-3 by which root stress is computed beside that of finite elements",
         EDITIONS,
+        "write strength.editions = [2006, 2019], or one of the two",
         default=(2006, 2019), min_length=1,
     )  # fmt: skip
     tolerance_class: int | None = key(
@@ -72,6 +89,8 @@ class StrengthSection(SceneSection):
         "elements around the fillets and across the core of a tooth over those of a run, which has six around a fillet",
         "a whole number from 1 to 8",
         "raise it where the error bar of the stress is too wide",
+        too_small="give 1 for the roots of a run, 2 for results",
+        too_large="lower it: 8 are 48 elements around a fillet",
         default=2, ge=1, le=8,
     )  # fmt: skip
 

@@ -15,6 +15,8 @@ from evolvent_meshes.gears.member import Member
 
 MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}
 """First word of a method -> its marker."""
+LINES = {"2006": ":", "2019": "-."}
+"""Edition of the standard -> style of its line."""
 
 
 def root_stress_picture(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> bytes:
@@ -55,7 +57,7 @@ def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
     for row in rows:
         word = row.method.split()[0].split("'")[0]
         if np.isnan(row.tooth_rotation_deg):
-            axes.axhline(row.stress_MPa, color=INK, lw=0.8, ls=":", label=row.method)
+            axes.axhline(row.stress_MPa, color=INK, lw=0.9, ls=LINES[row.method[-4:]], label=row.method)
         else:
             filled = INK if row.method.endswith("2019") or word == "Pedrero" else "none"
             axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=5.5,

@@ -33,7 +33,8 @@ class GaugeRow:
     friction: float
     """Friction coefficient."""
     tooth_rotation_deg: float
-    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
+    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section, above 0 later
+    in the engagement."""
     strain_um_per_m: float
     """Mean strain along the profile over the length of the gauge."""
     strain_um_per_m_error: float

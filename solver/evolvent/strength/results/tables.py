@@ -58,7 +58,7 @@ class StrengthRow:
     (`output.error_bars`)."""
     tooth_rotation_deg: float
     """Pinion rotation of the tooth at which the stress occurs; 0 where its flanks touch at the pitch point of the
-    mid-face section. NaN for the standard's virtual gear of helical ones."""
+    mid-face section, above 0 later in the engagement. NaN for the standard's virtual gear of helical ones."""
     radius_mm: float
     """Of the place; of formulas that of the critical section, as far above the reference circle of the gear as it lies
     above that of its virtual gear."""
@@ -92,7 +92,8 @@ class RootStressRow:
     friction: float
     """Friction coefficient."""
     tooth_rotation_deg: float
-    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section."""
+    """Pinion rotation of the tooth; 0 where its flanks touch at the pitch point of the mid-face section, above 0 later
+    in the engagement."""
     tension_MPa: float
     """Largest principal stress at the root of the loaded side."""
     tension_MPa_error: float
@@ -155,9 +156,16 @@ def _of_peak(load: RootLoad, method: str, friction: float, peak: RootPeak, error
     )  # fmt: skip
 
 
-def notch_warnings(loads: Sequence[RootLoad]) -> Iterator[str]:
-    """Sentences on gears whose Y_S lies beyond what it was fitted for."""
+def formula_warnings(loads: Sequence[RootLoad]) -> Iterator[str]:
+    """Sentences on gears whose Y_S lies beyond what it was fitted for, or whose Y_B stands for what finite elements
+    leave out."""
     for load in loads:
+        if load.rim_factor > 1.0 and load.pair.gears[load.member].support.is_rim:
+            yield (
+                f"{load.member.label}: the inside of its rim is held rigidly, so that finite elements leave out how it "
+                "bends: with a thinner rim their stress does not rise as the standard's does, here by Y_B = "
+                f"{load.rim_factor:.3g}; give web_thickness_mm for a rim that bends."
+            )
         form = load.form_at(load.contact_ratio - 1.0)
         if not form.is_in_range:
             low, high = NOTCH

@@ -29,14 +29,19 @@ def helix_angle_factor(helix_angle: float, overlap_ratio: float, edition: Editio
     return factor if edition == 2006 else factor / math.cos(β) ** 3
 
 
-def rim_thickness_factor(rim: float, tooth_height: float) -> float:
-    """Y_B = 1.6 ln(2.242 h_t/s_R) of external gears, 1 from s_R = 1.2 h_t on (clause 9). Lengths in one unit. Raises
-    InputError for rims that the standard does not cover."""
+def rim_thickness_factor(rim: float, tooth_height: float, gear: str = "gear") -> float:
+    """Y_B = 1.6 ln(2.242 h_t/s_R) of external gears, 1 from s_R = 1.2 h_t on (clause 9).
+
+    rim, tooth_height: s_R and h_t [mm]. gear: name in the message.
+
+    Raises InputError for rims that the standard does not cover.
+    """
     backup = rim / tooth_height
     if backup <= THINNEST_RIM:
         raise InputError(
-            f"rim thickness: wanted more than {THINNEST_RIM:g} tooth heights, found {backup:.3g}; the standard has no "
-            "factor below, and finite elements hold the inside of a rim without a web rigidly: give a thicker rim"
+            f"{gear}.rim_thickness_mm: found {rim:.4g} mm, {backup:.3g} tooth heights; allowed: above "
+            f"{THINNEST_RIM * tooth_height:.4g} mm, half a tooth height, below which the standard has no factor, and "
+            "finite elements hold the inside of a rim without a web rigidly; remedy: give a thicker rim"
         )
     return 1.0 if backup >= THIN_RIM else 1.6 * math.log(2.242 / backup)
 

@@ -110,7 +110,7 @@ class RootLoad:
         """
         gear = self.pair.gears[self.member]
         height = 0.5 * (gear.tip_diameter - gear.root_diameter)
-        return rim_thickness_factor(gear.rim_thickness, height) if gear.has_rim else 1.0
+        return rim_thickness_factor(gear.rim_thickness, height, self.member.label) if gear.has_rim else 1.0
 
     def tooth_rotation(self, below_tip: float) -> float:
         """Pinion rotation [rad] of a spur tooth that is loaded at a point, 0 at the pitch point; NaN for helical gears,

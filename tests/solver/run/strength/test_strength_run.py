@@ -12,6 +12,7 @@ from evolvent.cli import main
 from evolvent.gears.meshing.root_meshes import RootMesh
 from evolvent.results.archive.run_folder import FolderError
 from evolvent.results.archive.run_lock import locked
+from evolvent.run.folder_checks import STUDY
 from evolvent.run.strength import strength_run
 from evolvent.run.strength.strength_run import run_strength
 from evolvent.scene.scene import Scene, SceneError, load_scene
@@ -125,6 +126,14 @@ def test_a_folder_in_use_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
     with locked(tmp_path), pytest.raises(FolderError, match="computes into, found process"):
         run_strength(scene(), tmp_path, quiet=True)
+
+
+def test_the_folder_of_a_study_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before anything is meshed, also with --overwrite: the table of the study is of other scenes."""
+    monkeypatch.setattr(strength_run, "pitch_roots", lambda *_, **__: pytest.fail("meshed"))
+    (tmp_path / STUDY).write_text("{}")
+    with pytest.raises(FolderError, match=r"found a study \(study\.json\); allowed: a folder without"):
+        run_strength(scene(), tmp_path, overwrite=True, quiet=True)
 
 
 def test_results_are_not_replaced_unasked(out: Path, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from evolvent.results.archive.run_folder import FolderError
+from evolvent.results.archive.run_folder import FolderError, RunFolder
 from evolvent.results.archive.run_lock import locked
 from evolvent.run.study import study_run
 from evolvent.run.study.results.scene_record import SceneRecord
@@ -73,6 +73,28 @@ def test_scenes_that_are_there_are_not_computed_again(tmp_path: Path, computed: 
     assert len(computed) == 4 and len(table(tmp_path / "out")) == 4
     run(tmp_path, overwrite=True)
     assert len(computed) == 4 and (tmp_path / "out/study.csv").read_bytes() == before
+
+
+def test_the_table_is_there_from_the_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the first scene is done: all of them wait, one that is refused says so."""
+
+    def stopped(*_: object) -> Iterator[SceneRecord]:
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr(study_run, "finished", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, FAILING)
+    assert [row["status"] for row in table(tmp_path / "out")] == ["refused", "waiting"]
+
+
+def test_a_folder_with_results_of_one_scene_is_refused(tmp_path: Path, computed: list[str]) -> None:
+    """A table that another command has written there: refused, and nothing is written."""
+    out = tmp_path / "out"
+    RunFolder(out).write_text("strength.csv", "gear")
+    with pytest.raises(FolderError, match=r"found strength\.csv, which a command for a single scene has written"):
+        run(tmp_path, overwrite=True)
+    assert computed == [] and sorted(path.name for path in out.iterdir()) == ["results", "strength.csv"]
 
 
 def test_another_study_does_not_replace_the_table(tmp_path: Path, computed: list[str]) -> None:

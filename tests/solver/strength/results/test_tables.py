@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from evolvent.strength.results.tables import formula_rows, notch_warnings
+from evolvent.strength.results.tables import formula_rows, formula_warnings
 from evolvent.strength.standard.root_stress import RootLoad
+from evolvent_meshes.gears.form.support import Support
+from evolvent_meshes.gears.form.web import Web
 from evolvent_meshes.gears.gear import GearParameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
@@ -43,8 +46,23 @@ def test_stress_is_the_product_of_its_columns(helix_angle: float, member: Member
 
 def test_factors_beyond_their_range_are_said() -> None:
     """A rack with a sharp tip leaves a sharp fillet on 300 teeth, q_s = 8 and more; the usual one does not."""
-    assert list(notch_warnings([load(Member.PINION), load(Member.WHEEL)])) == []
+    assert list(formula_warnings([load(Member.PINION), load(Member.WHEEL)])) == []
     sharp = load(Member.PINION, times=10, rack_tip_radius=0.0)
     assert sharp.form_at(sharp.contact_ratio - 1.0).notch_parameter >= 8.0
-    (said,) = notch_warnings([sharp])
+    (said,) = formula_warnings([sharp])
     assert said.startswith("pinion: Y_S is extrapolated")
+
+
+@pytest.mark.parametrize(("rim", "web", "said"), [(6.0, None, True), (9.0, None, False), (6.0, 5.0, False)])
+def test_rims_that_do_not_bend_are_said(rim: float, web: float | None, said: bool) -> None:
+    """Teeth 6.75 mm high on a rim that is held at its inside: with 6 mm Y_B is above 1, which finite elements do not
+    find; with 9 mm it is 1. A rim of 6 mm on a web bends."""
+    own = load(Member.WHEEL)
+    gear, bore = own.pair.wheel, own.pair.wheel.root_diameter - 2.0 * rim
+    held = replace(gear, bore_diameter=bore, support=Support(is_rim=True))
+    wheel = held if web is None else replace(gear, web=Web(web, rim))
+    pair = replace(own.pair, wheel=wheel)
+    found = list(formula_warnings([RootLoad(pair, Member.PINION, 150e3), RootLoad(pair, Member.WHEEL, 150e3)]))
+    assert len(found) == said
+    assert all(sentence.startswith("wheel: the inside of its rim is held rigidly") for sentence in found)
+    assert all("Y_B = 1.48; give web_thickness_mm" in sentence for sentence in found)

@@ -31,8 +31,9 @@ def test_rim_thickness_factor() -> None:
     assert rim_thickness_factor(1.2, 1.0) == 1.0
     assert rim_thickness_factor(1.2 - STEP, 1.0) == pytest.approx(1.0, abs=1e-4)
     assert rim_thickness_factor(5.0, 5.0) == pytest.approx(1.6 * math.log(2.242), rel=1e-12)
-    with pytest.raises(InputError, match=r"more than 0\.5 tooth heights, found 0\.4"):
-        rim_thickness_factor(2.0, 5.0)
+    said = r"wheel\.rim_thickness_mm: found 2 mm, 0\.4 tooth heights; allowed: above 2\.5 mm, half a tooth height"
+    with pytest.raises(InputError, match=said):
+        rim_thickness_factor(2.0, 5.0, "wheel")
 
 
 def test_deep_tooth_factor() -> None:

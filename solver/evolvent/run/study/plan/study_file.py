@@ -12,11 +12,10 @@ from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
 from evolvent.scene.scene import Scene, SceneError
-from evolvent.scene.scene_text import FileKind, require_shallow, scene_text, toml_values
+from evolvent.scene.scene_text import STUDY, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, key
 
-STUDY = FileKind("study file", "demos/studies/yang2022_misalignment.toml is a complete example")
 Computation = Literal["check", "run", "excitation", "dynamics", "strength", "wear"]
 COMPUTATIONS: tuple[Computation, ...] = get_args(Computation)
 MOST_SCENES = 1_000_000
@@ -217,6 +216,7 @@ def load_study(path: Path) -> StudyFile:
     try:
         values = toml_values(scene_text(path, STUDY), STUDY)
         require_shallow(values)
+        require_kind(values, STUDY)
         return StudyFile.model_validate(values)
     except ValidationError as error:
         raise SceneError(problems_of(error, StudyFile), str(path)) from error

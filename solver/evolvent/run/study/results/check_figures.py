@@ -31,7 +31,7 @@ class CheckFigures:
     normal_backlash_um: float
     """j_bn."""
     pinion_tip_thickness_mm: float
-    """Normal tooth thickness at the tip, s_an."""
+    """Normal tooth thickness at the tip, s_an, without chamfer or rounding, which leave less."""
     wheel_tip_thickness_mm: float
     """The same of the wheel."""
     pitch_point_pressure_MPa: float

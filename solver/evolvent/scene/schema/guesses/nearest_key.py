@@ -17,6 +17,12 @@ CONVERSIONS = {
     ("m", "mm"): "multiply by 1000", ("cm", "mm"): "multiply by 10", ("rad", "deg"): "multiply by 180/π",
 }  # fmt: skip
 """Unit given, unit wanted -> what to do."""
+SYNONYMS = {
+    "inner_diameter": "bore_diameter", "inside_diameter": "bore_diameter", "hole_diameter": "bore_diameter",
+    "outer_diameter": "tip_diameter", "outside_diameter": "tip_diameter", "addendum_diameter": "tip_diameter",
+    "dedendum_diameter": "root_diameter",
+}  # fmt: skip
+"""Other name of a key, without unit -> its own."""
 GREEK = {"alpha": "α", "beta": "β", "mu": "μ", "nu": "ν", "rho": "ρ"}
 
 
@@ -29,6 +35,8 @@ def nearest_key(name: str, here: Mapping[str, str], everywhere: Mapping[str, str
     """
     if len(name) > LONGEST:
         return ""
+    if meant := SYNONYMS.get(_stem(name)):
+        return next((key for keys in (here, everywhere) for key in keys if _stem(key) == meant), "")
     for keys in (here, everywhere):
         if same := [key for key in keys if key.rsplit(".", 1)[-1].lower() == name.lower()]:
             return same[0]

@@ -8,6 +8,7 @@ import pytest
 
 from evolvent.run.study.plan.study_file import MOST_SCENES, load_study
 from evolvent.scene.scene import SceneError
+from tests.support.checkout import ROOT
 from tests.support.running.study_cases import HEAD, TORQUES, written
 
 HYPERCUBE = "[latin_hypercube]\nsamples = 5\n[latin_hypercube.ranges]\n"
@@ -74,6 +75,15 @@ def test_a_million_scenes_are_the_most(tmp_path: Path) -> None:
             continue
         with pytest.raises(SceneError, match="found 1,001,000 scenes; allowed: up to 1,000,000 scenes"):
             load_study(path)
+
+
+def test_a_scene_is_no_study(tmp_path: Path) -> None:
+    """One line that names the commands for it."""
+    text = (ROOT / "demos/zhang2023.toml").read_text(encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_study(written(tmp_path, text))
+    (problem,) = caught.value.problems
+    assert problem.found == "a scene, with a section [pair]" and "`evolvent check`" in problem.remedy
 
 
 def test_no_toml(tmp_path: Path) -> None:

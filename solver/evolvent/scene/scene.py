@@ -117,7 +117,7 @@ class Scene(SceneSection):
     @model_validator(mode="after")
     def _gauges_lie_on_faces(self) -> Self:
         gauges = None if self.strength is None else self.strength.gauges
-        widths = {name: getattr(self, name).face_width_mm for name in GEARS}
+        widths: dict[str, float] = {name: getattr(self, name).face_width_mm for name in GEARS}
         if gauges is not None and (problem := gauges.beside_the_face(widths)):
             raise validation_error(problem)
         return self

@@ -108,7 +108,7 @@ def thinned_mean(values: Floats) -> float:
 
 
 def _of_face(face: FaceLoad) -> float:
-    """Error of the face load factor: of what the layer that bears most has beyond K_Hβ times the load of the face."""
+    """Error of the face load factor: of the mean load of the layer that bears most, less K_Hβ times the face's."""
     count = len(face.mean)
     sets = [every_other(count, first) for first in range(count)]
     thinned = [face.factor(kept, shares(kept, count)) for kept in sets]

@@ -9,7 +9,6 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import InputProblem, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, as_tuple, key
-from evolvent_meshes.gears.member import MemberName
 
 EDITIONS = "a list of 2006, 2019 or both"
 Edition = Literal[2006, 2019]
@@ -54,7 +53,7 @@ class GaugesSection(SceneSection):
                 raise validation_error(InputProblem(name, f"{found} values", allowed, "give one for each gauge"))
         return self
 
-    def beside_the_face(self, face_widths: Mapping[MemberName, float]) -> InputProblem | None:
+    def beside_the_face(self, face_widths: Mapping[str, float]) -> InputProblem | None:
         """The problem with the first gauge that lies beside the face of its gear, None where there is none.
 
         face_widths: of both gears [mm].

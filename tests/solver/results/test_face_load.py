@@ -151,6 +151,20 @@ def test_errors_grow_with_what_meshes_and_positions_do_not_know() -> None:
     assert np.isnan(spacing_errors(replace(alone, positions=alone.positions[:1]), 0).face_load_factor)
 
 
+def test_ripple_that_positions_leave_along_the_face_is_an_error() -> None:
+    """Problem: a mean load with a ripple of 0.2 over the face, and one of 0.1 between its crests that alternates from
+    position to position. Exact: every other position has a largest load that is larger by 0.024 only, but another
+    curve over the face: 1.2 times 0.1/√2, over the root mean square of the load, 1.01."""
+    run = helical()
+    b = run.pair.face_width
+
+    def load(z: Floats, position: int) -> Floats:
+        place = 6.0 * np.pi * z / b
+        return 100.0 * (1.0 + 0.2 * np.cos(place) + 0.1 * (-1.0) ** position * np.sin(place))
+
+    assert spacing_errors(loaded(run, load), 0).face_load_factor == pytest.approx(0.084, rel=0.1)
+
+
 def narrow(*settings: str) -> Scene:
     """A narrow helical pair."""
     return load_scene(SCENES / "narrow_helical.toml", [*COARSE, *settings])

@@ -108,13 +108,16 @@ def thinned_mean(values: Floats) -> float:
 
 
 def _of_face(face: FaceLoad) -> float:
-    """Error of the face load factor: of the mean load of the layer that bears most, less K_Hβ times the face's."""
-    count = len(face.mean)
-    sets = [every_other(count, first) for first in range(count)]
-    thinned = [face.factor(kept, shares(kept, count)) for kept in sets]
-    whole, most = face.factor(), face.load[:, int(np.argmax(face.relative()))]
-    excess = (most - whole * face.mean) / np.mean(face.mean)
-    return _larger(_apart(whole, thinned), KINK * pitch_bends(excess))
+    """Error of the face load factor. With few positions the mean load of a helical pair ripples along the face; its
+    largest value hardly depends on their number, so that thinning compares all of the curve, as between meshes."""
+    count, load, whole = len(face.mean), face.relative(), face.factor()
+    apart = []
+    for kept in (every_other(count, first) for first in range(count)):
+        thinned = face.relative(kept, shares(kept, count))
+        ripple = float(np.linalg.norm(thinned - load) / np.linalg.norm(load))
+        apart.append(max(abs(float(thinned.max()) - whole), whole * ripple))
+    excess = (face.load[:, int(np.argmax(load))] - whole * face.mean) / np.mean(face.mean)
+    return _larger(float(np.mean(apart)), KINK * pitch_bends(excess))
 
 
 def missed_peaks(values: Floats) -> float:

@@ -20,7 +20,7 @@ FIGURES = (
 UNEVEN = 1.2
 """Largest face load factor that is not printed. Pressure grows with its square root: this one is 10 % more pressure
 than of an even load, and misalignment and helix modifications deserve a look. Yang's pair, aligned and without
-modifications, has 1.17 under its torque."""
+modifications, has 1.1 under its torque."""
 
 
 def headlines(summary: Path) -> list[str]:

@@ -75,6 +75,7 @@ FILES = (
     ("dynamics.json", "`evolvent dynamics`: what the vibration is computed from, and its jumps"),
     ("operation.json", "`evolvent run` at an operating speed: the vibration under whose force contact was computed"),
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
+    ("strength.toml", "`evolvent strength`: the scene that was computed, with all its defaults"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
     ("gauges.csv", "`evolvent strength` with `strength.gauges`: a line per strain gauge, coefficient and rotation"),

@@ -39,9 +39,13 @@ class RootSurface:
 
     @property
     def is_below_flank(self) -> Bools:
-        """(n,) whether a node lies within the root form circle. Beyond it the involute begins, which the other gear's
-        tip may touch: stress there is that of a contact."""
-        return 2.0 * self.radii <= self.gear.root_form_diameter * (1.0 + ROUNDING)
+        """(n,) whether all facets of a node lie within the root form circle. Beyond it the involute begins, which the
+        other gear's tip may touch: stress there is that of a contact, and facets under pressure are not free."""
+        beyond = 2.0 * self.radii > self.gear.root_form_diameter * (1.0 + ROUNDING)
+        facets = self.surface.facets
+        below = np.ones(len(beyond), dtype=bool)
+        below[facets[beyond[facets].any(axis=1)]] = False
+        return below
 
     @property
     def tangent_angles(self) -> Floats:

@@ -148,7 +148,8 @@ def section_mesh(gear: GearParameters, resolution: SectorResolution) -> Section:
     band = sum(resolution.layer_depths)
     fine_back = resolution.fine_back
     rows = ToothRows(profile, radii, band, resolution.tip_depth_share, resolution.core_elements + 2, fine_back)
-    at_cut = max(band * resolution.band_below_layers, resolution.band_depth * gear.normal_module)
+    least = band if resolution.band_below_layers else 0.0
+    at_cut = max(least, resolution.band_depth * gear.normal_module)
     widths = (float(rows.strip_width(radii[:1])[0]), float(rows.column_width(radii[:1])[0]))
     neck = resolution.neck_elements
     loaded = RootBand(profile, start, (neck, resolution.fillet_elements), (widths[0], at_cut), mirrored=False)

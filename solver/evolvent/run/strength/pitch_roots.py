@@ -65,11 +65,9 @@ def pitch_roots(
         progress.advance(more=not position.closes)
     uniform = one_pitch(swept)
     every = SweptRoots(uniform, on_first(comm, lambda: roots_of(model, uniform)))
-    if angles is None:  # the outer points first: they narrow the intervals, too
-        every = with_angles(model, every, _outer_points(problem), frictions, comm)
+    every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
+    if angles is None:  # after the outer points, which narrow the intervals, too
         every = with_peaks(model, every, frictions, comm)
-    else:
-        every = with_angles(model, every, angles, frictions, comm)
     for position in every.positions:
         certify(position.results)
     further = sorted({each.angle for each in every.positions} - {each.angle for each in uniform})

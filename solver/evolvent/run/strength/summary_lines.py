@@ -7,10 +7,9 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from evolvent.strength.results.tables import STRENGTH
+from evolvent.strength.results.tables import COMPRESSION, STANDARD, STRENGTH, TENSION
 from evolvent_meshes.gears.member import Member
 
-STANDARD, TENSION, COMPRESSION = "ISO 6336-3:", "finite elements, tension", "finite elements, compression"
 Row = Mapping[str, str]
 
 

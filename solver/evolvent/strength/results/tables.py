@@ -24,6 +24,8 @@ from evolvent.strength.standard.tooth_form import NOTCH
 from evolvent_meshes.gears.member import Member
 
 STRENGTH, ROOT_STRESS = "strength.csv", "root_stress.csv"
+STANDARD, TENSION, COMPRESSION = "ISO 6336-3:", "finite elements, tension", "finite elements, compression"
+"""Methods of strength.csv: the standard, with its edition behind; the largest of the loaded side, and of the back."""
 UNKNOWN = math.nan
 
 
@@ -113,13 +115,13 @@ def strength_rows(
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
         bars = [curve_errors(curve, own, coarse, each.order) for curve in (tension_curve, pressure_curve)]
         peaks = own.loaded_side.tension, own.back_side.compression
-        for name, peak, bar in zip(("tension", "compression"), peaks, bars):
-            yield _of_peak(load, f"finite elements, {name}", each.friction, peak, bar.peak)
+        for method, peak, bar in zip((TENSION, COMPRESSION), peaks, bars):
+            yield _of_peak(load, method, each.friction, peak, bar.peak)
         if load.pair.pinion.helix_angle_deg == 0.0:
             angle, name = load.tooth_rotation(load.outer_point.below_tip), load.outer_point.name
             k = int(np.argmin(np.abs(own.loaded_side.angles - angle)))
             peak, error = own.loaded_side.tension_at(k), float(bars[0].values[k])
-            yield _of_peak(load, f"finite elements, tension, {name}", each.friction, peak, error)
+            yield _of_peak(load, f"{TENSION}, {name}", each.friction, peak, error)
 
 
 def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: int) -> Iterator[StrengthRow]:
@@ -129,7 +131,7 @@ def formula_rows(load: RootLoad, editions: Sequence[Edition], tolerance_class: i
         found = standard_stress(load, edition, tolerance_class)
         point = PointStress("", load.contact_ratio - 1.0, 1.0, found.stress, found.form)
         others = found.helix_angle_factor * found.deep_tooth_factor * found.rim_thickness_factor
-        yield _of_point(load, f"ISO 6336-3:{edition}", point, found.form_factor, others)
+        yield _of_point(load, f"{STANDARD}{edition}", point, found.form_factor, others)
     if load.pair.pinion.helix_angle_deg == 0.0:
         for point in boundary_stresses(load):
             yield _of_point(load, f"equal shares, {point.name}", point)

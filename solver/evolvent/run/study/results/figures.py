@@ -14,7 +14,7 @@ from evolvent.run.study.results.check_figures import CHECK, CheckFigures
 from evolvent.run.study.results.gathering import ERROR, Figure
 from evolvent.scene.schema.errors import InputProblem, SceneError
 from evolvent.scene.schema.guesses.nearest_key import nearest_key
-from evolvent.strength.results.tables import STRENGTH
+from evolvent.strength.results.tables import COMPRESSION, STANDARD, STRENGTH, TENSION
 from evolvent_meshes.gears.member import Member
 
 SUMMARY, WEAR = "summary.json", "wear.json"
@@ -65,10 +65,10 @@ def _of_strength() -> list[Figure]:
     found = []
     for gear in (member.label for member in Member):
         found += [
-            of(gear, "tension", "finite elements, tension", f"stress_MPa{ERROR}"),
-            of(gear, "compression", "finite elements, compression", f"stress_MPa{ERROR}"),
-            of(gear, "ISO_2006", "ISO 6336-3:2006"),
-            of(gear, "ISO_2019", "ISO 6336-3:2019"),
+            of(gear, "tension", TENSION, f"stress_MPa{ERROR}"),
+            of(gear, "compression", COMPRESSION, f"stress_MPa{ERROR}"),
+            of(gear, "ISO_2006", f"{STANDARD}2006"),
+            of(gear, "ISO_2019", f"{STANDARD}2019"),
             of(gear, "equal_shares_b", "equal shares, outer point of double contact (b)"),
             of(gear, "Pedrero", "Pedrero's shares, largest over the path"),
         ]

@@ -1,5 +1,5 @@
-"""Errors of root stress, and how often its error bars hold them: largest tension and pressure of both gears' roots, and
-the stress at every rotation, on many meshes and fillets.
+"""Errors of root stress, and how often its error bars hold them: largest tension and compression of both gears' roots,
+and the stress at every rotation, on many meshes and fillets.
 
 The reference of a problem is one mesh for all its cases, cells halved, at twice the positions, those of the cases among
 them. Its own error is estimated by the same mesh before the cells were halved for the last time.
@@ -24,7 +24,7 @@ from evolvent.results.error_bars.estimation import Curve
 from evolvent.run.progress import Progress
 from evolvent.run.strength.pitch_roots import PitchRoots, pitch_roots
 from evolvent.scene.scene import Scene, load_scene, scene_from_text
-from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
+from evolvent.strength.results.root_curves import compression_curve, curve_errors, tension_curve
 from evolvent.strength.root_passage import GearRoots
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -37,7 +37,7 @@ OUTLINE = 4
 """Elements around a fillet of a reference over those of a run, before its cells are halved."""
 FINER = 2
 """Positions of the reference over those of the cases."""
-CURVES: dict[str, Callable[[GearRoots], Curve]] = {"tension": tension_curve, "pressure": pressure_curve}
+CURVES: dict[str, Callable[[GearRoots], Curve]] = {"tension": tension_curve, "compression": compression_curve}
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class RootBarRow:
     friction: float
     gear: str
     side: str
-    """"tension" or "pressure"."""
+    """"tension" or "compression"."""
     value_MPa: float
     """Its largest amount."""
     bar_MPa: float

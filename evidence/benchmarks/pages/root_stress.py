@@ -44,9 +44,9 @@ def _said(rows: Sequence[RootBarRow]) -> list[str]:
         "The same of root stress (`evolvent strength`), on meshes with one, two and four times the elements of a run "
         "around their fillets (the command has twice), against a mesh with four times the elements around its fillets "
         "and all cells halved, at twice the positions: the bars hold the true error of "
-        f"**{sum(row.inside for row in rows)} of {len(rows)}** largest tensions and pressures, and that of {held} of "
-        f"{positions} stresses above a tenth of these at single rotations. Wanted: 90 %; at level standard an error "
-        "below 2 %."
+        f"**{sum(row.inside for row in rows)} of {len(rows)}** largest tensions and compressions, and that of "
+        f"{held} of {positions} stresses above a tenth of these at single rotations. Wanted: 90 %; at level "
+        "standard an error below 2 %."
     ]
 
 

@@ -24,7 +24,7 @@ class FileKind:
 
 
 SCENE = FileKind("scene file", "demos/yang2022.toml is a complete example")
-STUDY = FileKind("study file", "demos/studies/yang2022_misalignment.toml is a complete example")
+STUDY_FILE = FileKind("study file", "demos/studies/yang2022_misalignment.toml is a complete example")
 OF_STUDIES = frozenset({"compute", "set", "grid", "list", "latin_hypercube"})
 """Keys and sections that studies have, and scenes have not."""
 LARGEST = 1
@@ -104,7 +104,7 @@ def require_kind(values: Mapping[str, Any], kind: FileKind) -> None:
     if kind is SCENE and isinstance(values.get("scene"), str) and names and "pair" not in values:
         found, remedy = f"a study, with scene and {names[0]}", "use `evolvent study` for it, or give the scene it names"
         raise SceneError([InputProblem(kind.name, found, "a scene (docs/scene.md)", remedy)])
-    if kind is STUDY and isinstance(values.get("pair"), dict) and "scene" not in values and not names:
+    if kind is STUDY_FILE and isinstance(values.get("pair"), dict) and "scene" not in values and not names:
         remedy = 'use `evolvent check` or `evolvent run` for it; a study names it with scene = "..."'
         problem = InputProblem(kind.name, "a scene, with a section [pair]", "a study (docs/studies.md)", remedy)
         raise SceneError([problem])

@@ -83,6 +83,9 @@ def test_gears_of_one_mesh_are_condensed_once(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_torque_beyond_those_that_the_meshes_serve_is_refused() -> None:
-    """20 N·m on meshes for 1 to 10 N·m."""
-    with pytest.raises(InputError, match="mesh_torques"):
-        replace(problems()[0], torque=20e3, mesh_torques=(1e3, 10e3))
+    """20 N·m on meshes for 1 to 10 N·m, whose fine flanks would be too short; a lighter torque is only less finely
+    resolved. A range that falls is none."""
+    for served in ((1e3, 10e3), (30e3, 20e3), (0.0, 20e3)):
+        with pytest.raises(InputError, match="mesh_torques"):
+            replace(problems()[0], torque=20e3, mesh_torques=served)
+    assert replace(problems()[0], torque=20e3, mesh_torques=(30e3, 30e3)).lightest.torque == 30e3

@@ -112,8 +112,9 @@ class GearProblem:
     options: GearOptions = GearOptions()
     """What is computed in full."""
     mesh_torques: tuple[float, float] | None = None
-    """Lightest and heaviest torque that the meshes serve, on the same gear as `torque` [N·mm]; None: `torque` alone.
-    Between them all problems have the same sectors and, on flanks with levels, so many of the same levels as each
+    """Lightest and heaviest torque that the meshes serve, on the same gear as `torque` [N·mm]; None: `torque` alone. A
+    lighter `torque` has elements too long for its pressures, which an excitation can do without. Up to the heaviest all
+    problems have the same sectors and, on flanks with levels, so many of the same levels as each
     needs: `evolvent.gears.gear_model.prepare_models` condenses them once."""
 
     def __post_init__(self) -> None:
@@ -129,9 +130,10 @@ class GearProblem:
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
         lightest, heaviest = self._served
-        if not 0.0 < lightest <= self.torque <= heaviest:
+        if not (0.0 < lightest <= heaviest >= self.torque):
             remedy = "give the lightest and the heaviest torque that the meshes serve"
-            refuse("mesh_torques", f"two torques > 0 with {self.torque:g} N·mm between", self.mesh_torques, remedy)
+            wanted = f"two ascending torques > 0, the second one at least {self.torque:g} N·mm"
+            refuse("mesh_torques", wanted, self.mesh_torques, remedy)
 
     def _check_levels(self) -> None:
         """Raises InputError where flanks with levels of their own cannot be had."""

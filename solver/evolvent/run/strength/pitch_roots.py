@@ -68,10 +68,11 @@ def pitch_roots(
     every = with_angles(model, every, _outer_points(problem) if angles is None else angles, frictions, comm)
     if angles is None:  # after the outer points, which narrow the intervals, too
         every = with_peaks(model, every, frictions, comm)
-    for position in every.positions:
+    known = {each.angle for each in uniform}
+    further = sorted((each for each in every.positions if each.angle not in known), key=lambda each: each.angle)
+    for position in further:
         certify(position.results)
-    further = sorted({each.angle for each in every.positions} - {each.angle for each in uniform})
-    return PitchRoots(tuple(further), every.roots)
+    return PitchRoots(tuple(each.angle for each in further), every.roots)
 
 
 def _outer_points(problem: GearProblem) -> list[float]:

@@ -60,9 +60,9 @@ class LoadSection(SceneSection):
 
     mesh_torques_Nm: tuple[float, float] | None = key(
         "range of torques that the meshes are made for: elements small enough for the lightest one, fine flanks long "
-        "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` sets it, "
-        "`evolvent excitation` and `dynamics` take meshes for load.torque_Nm unless it is given",
-        "two numbers above 0, load.torque_Nm between them",
+        "enough for the heaviest; flanks with levels take as many as each torque needs; `evolvent loads` and "
+        "studies set it, `evolvent excitation` and `dynamics` take meshes for load.torque_Nm unless it is given",
+        "two ascending numbers above 0, the second one at least load.torque_Nm",
         "give the lightest and the heaviest torque, or delete the key: the mesh is then that of load.torque_Nm alone",
         default=None,
     )
@@ -74,8 +74,8 @@ class LoadSection(SceneSection):
 
     @model_validator(mode="after")
     def _meshes_serve_the_torque(self) -> Self:
-        if (served := self.mesh_torques_Nm) and not 0.0 < served[0] <= self.torque_Nm <= served[1]:
-            allowed = f"two numbers above 0 with load.torque_Nm, which is {shown(self.torque_Nm)}, between them"
+        if (served := self.mesh_torques_Nm) and not (0.0 < served[0] <= served[1] >= self.torque_Nm):
+            allowed = f"two ascending numbers above 0, the second one at least load.torque_Nm, {shown(self.torque_Nm)}"
             remedy = "give the lightest and the heaviest torque, or delete the key"
             raise validation_error(InputProblem("mesh_torques_Nm", shown(served), allowed, remedy))
         return self

@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evolvent.results.drawing.style import INK, foot, friction_colours, png, sheet, styled
-from evolvent.strength.results.root_curves import pressure_curve, tension_curve
-from evolvent.strength.results.tables import FrictionRoots, StrengthRow
+from evolvent.strength.results.root_curves import compression_curve, tension_curve
+from evolvent.strength.results.tables import STANDARD, FrictionRoots, StrengthRow
 from evolvent_meshes.gears.member import Member
 
 MARKS = {"ISO": "s", "equal": "o", "Pedrero": "D"}
 """First word of a method -> its marker."""
-LINES = {"2006": ":", "2019": "-."}
-"""Edition of the standard -> style of its line."""
+LINES: dict[str, str] = {f"{STANDARD}2006": ":", f"{STANDARD}2019": "-."}
+"""Method of the standard -> style of its line."""
 
 
 def root_stress_picture(title: str, found: Sequence[FrictionRoots], rows: Sequence[StrengthRow]) -> bytes:
@@ -37,7 +37,7 @@ def root_stress_figure(title: str, found: Sequence[FrictionRoots], rows: Sequenc
     colours = friction_colours([each.friction for each in found])
     for member, own in zip(Member, axes):
         for each, colour in zip(found, colours):
-            for curve, style in ((tension_curve, "-"), (pressure_curve, "--")):
+            for curve, style in ((tension_curve, "-"), (compression_curve, "--")):
                 stress = curve(each.gears[member])
                 own.plot(np.degrees(stress.angle), stress.values, style, color=colour, lw=1.6)
         _formulas(own, [row for row in rows if row.gear == member.label and np.isnan(row.friction)])
@@ -57,9 +57,9 @@ def _formulas(axes: Axes, rows: Sequence[StrengthRow]) -> None:
     for row in rows:
         word = row.method.split()[0].split("'")[0]
         if np.isnan(row.tooth_rotation_deg):
-            axes.axhline(row.stress_MPa, color=INK, lw=0.9, ls=LINES[row.method[-4:]], label=row.method)
+            axes.axhline(row.stress_MPa, color=INK, lw=0.9, ls=LINES[row.method], label=row.method)
         else:
-            filled = INK if row.method.endswith("2019") or word == "Pedrero" else "none"
+            filled = INK if row.method == f"{STANDARD}2019" or word == "Pedrero" else "none"
             axes.plot(row.tooth_rotation_deg, row.stress_MPa, MARKS[word], mfc=filled, mec=INK, ms=5.5,
                       label=row.method.split(",")[0], ls="none")  # fmt: skip
 

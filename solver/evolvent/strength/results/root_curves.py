@@ -27,7 +27,7 @@ def tension_curve(roots: GearRoots) -> Curve:
     return Curve(roots.loaded_side.angles, roots.loaded_side.largest)
 
 
-def pressure_curve(roots: GearRoots) -> Curve:
+def compression_curve(roots: GearRoots) -> Curve:
     """Smallest principal stress of the back side over the rotation [MPa]."""
     return Curve(roots.back_side.angles, roots.back_side.smallest)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
-from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
+from evolvent.strength.results.root_curves import compression_curve, curve_errors, tension_curve
 from evolvent.strength.root_passage import GearRoots, RootPeak
 from evolvent.strength.standard.factors import Edition
 from evolvent.strength.standard.root_stress import (
@@ -113,7 +113,7 @@ def strength_rows(
     yield from formula_rows(load, editions, tolerance_class)
     for each in found:
         own, coarse = each.gears[load.member], None if each.coarse is None else each.coarse[load.member]
-        bars = [curve_errors(curve, own, coarse, each.order) for curve in (tension_curve, pressure_curve)]
+        bars = [curve_errors(curve, own, coarse, each.order) for curve in (tension_curve, compression_curve)]
         peaks = own.loaded_side.tension, own.back_side.compression
         for method, peak, bar in zip((TENSION, COMPRESSION), peaks, bars):
             yield _of_peak(load, method, each.friction, peak, bar.peak)
@@ -184,7 +184,7 @@ def root_stress_rows(found: Sequence[FrictionRoots]) -> Iterator[RootStressRow]:
             coarse, angles = None if each.coarse is None else each.coarse[member], own.loaded_side.angles
             columns = [
                 values
-                for curve in (tension_curve, pressure_curve)
+                for curve in (tension_curve, compression_curve)
                 for values in (curve(own).values, curve_errors(curve, own, coarse, each.order).values)
             ]
             for angle, *values in zip(angles, *columns):

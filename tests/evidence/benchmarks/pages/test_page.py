@@ -77,7 +77,7 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
     for wanted in ("**3.00**", "Beyond their tolerance: window.", "**25.0**", "**1 of 2** figures",
                    "**38 of 40** figures", "| a, 5 % of the torque | 40 | 38 | 95 | 24 | 22 |",
                    "| a | 2, hexahedron, 3 | 1.20 (0.10) | 2.50 (0.10) |", "75.0", "14",
-                   "**1 of 2** largest tensions and pressures", "94 of 100 stresses",
+                   "**1 of 2** largest tensions and compressions", "94 of 100 stresses",
                    "| tension | 1 | 1 | 100 | 1 | 1 | 1.00 | 1.00 | 1.50 | 94 |",
                    "| speeds | 12 |  | **12** | at most 10 | MISSED |",
                    "| torques | 30 | 20 | **1.5** | at most 2 | met |",

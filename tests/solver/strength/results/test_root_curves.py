@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from evolvent.strength.results.root_curves import curve_errors, pressure_curve, tension_curve
+from evolvent.strength.results.root_curves import compression_curve, curve_errors, tension_curve
 from evolvent.strength.root_passage import GearRoots, RootPassage
 from evolvent_meshes.arrays import Floats
 
@@ -32,7 +32,7 @@ def test_curves_are_the_extreme_principal_stresses() -> None:
     """Of the node that bears most: tension of the loaded side, pressure of the back."""
     own = roots(TENSION, -2.0 * TENSION)
     assert tension_curve(own).values == pytest.approx(TENSION, rel=1e-12)
-    assert pressure_curve(own).values == pytest.approx(-2.0 * TENSION, rel=1e-12)
+    assert compression_curve(own).values == pytest.approx(-2.0 * TENSION, rel=1e-12)
     assert tension_curve(own).angle == pytest.approx(ANGLES, rel=1e-12)
 
 
@@ -42,7 +42,7 @@ def test_bars_of_curves_that_differ_by_a_factor(order: int, factor: float) -> No
     tension the line through 40, 60 and that through 50, 20 cross at 68, so that the spacing adds 8, of pressure twice
     that."""
     own, coarse = roots(TENSION, -2.0 * TENSION), roots(0.9 * TENSION, -1.8 * TENSION)
-    for curve, times in ((tension_curve, 1.0), (pressure_curve, 2.0)):
+    for curve, times in ((tension_curve, 1.0), (compression_curve, 2.0)):
         bars = curve_errors(curve, own, coarse, order)
         assert bars.values == pytest.approx(np.full(5, 0.1 * factor * times * 60.0), rel=1e-9)
         assert bars.peak == pytest.approx(times * (0.1 * factor * 60.0 + 8.0), rel=1e-9)

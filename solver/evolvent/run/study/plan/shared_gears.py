@@ -46,14 +46,16 @@ def condensed_problem(scene: Scene, compute: Computation) -> GearProblem:
 
 
 def on_shared_meshes(scenes: Sequence[Scene], compute: Computation) -> list[Scene]:
-    """The scenes on meshes that serve all torques under which the same gears stand among them."""
+    """The scenes on meshes that serve all torques under which the same gears stand among them; those of an excitation
+    are sized for the heaviest one, as `evolvent.run.dynamics.scene_torques` says why."""
     if compute not in SHARING or compute == "dynamics":  # which has meshes for a range of torques of its own
         return list(scenes)
     torques: dict[str, set[float]] = defaultdict(set)
     names = [_without_torque(scene) for scene in scenes]
     for name, scene in zip(names, scenes):
         torques[name].add(scene.load.torque_Nm)
-    return [_serving(scene, torques[name]) for name, scene in zip(names, scenes)]
+    narrowest = max if compute == "excitation" else min
+    return [_serving(scene, (narrowest(torques[name]), max(torques[name]))) for name, scene in zip(names, scenes)]
 
 
 def gears_names(scenes: Sequence[Scene], compute: Computation) -> list[str]:
@@ -75,9 +77,9 @@ def _without_torque(scene: Scene) -> str:
     return shared_gears_name(replace(gear_problem(scene), torque=1.0, mesh_torques=(1.0, 1.0)))
 
 
-def _serving(scene: Scene, torques: set[float]) -> Scene:
-    """On meshes for all of some torques [N·m], unless it says itself for which."""
-    if len(torques) == 1 or scene.load.mesh_torques_Nm is not None:
+def _serving(scene: Scene, torques: tuple[float, float]) -> Scene:
+    """On meshes for a range of torques [N·m], unless it says itself for which."""
+    if torques == (scene.load.torque_Nm, scene.load.torque_Nm) or scene.load.mesh_torques_Nm is not None:
         return scene
-    load = scene.load.model_copy(update={"mesh_torques_Nm": (min(torques), max(torques))})
+    load = scene.load.model_copy(update={"mesh_torques_Nm": torques})
     return scene.model_copy(update={"load": load})

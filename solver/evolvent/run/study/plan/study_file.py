@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
 from evolvent.scene.scene import Scene, SceneError
-from evolvent.scene.scene_text import STUDY, require_kind, require_shallow, scene_text, toml_values
+from evolvent.scene.scene_text import STUDY_FILE, require_kind, require_shallow, scene_text, toml_values
 from evolvent.scene.schema.errors import InputProblem, key_problem, problems_of, shown, validation_error
 from evolvent.scene.schema.section import SceneSection, key
 
@@ -214,9 +214,9 @@ class StudyFile(SceneSection):
 def load_study(path: Path) -> StudyFile:
     """Reads and validates a study file. Raises SceneError."""
     try:
-        values = toml_values(scene_text(path, STUDY), STUDY)
+        values = toml_values(scene_text(path, STUDY_FILE), STUDY_FILE)
         require_shallow(values)
-        require_kind(values, STUDY)
+        require_kind(values, STUDY_FILE)
         return StudyFile.model_validate(values)
     except ValidationError as error:
         raise SceneError(problems_of(error, StudyFile), str(path)) from error

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from evolvent.run.study.plan.shared_gears import own_torque
 from evolvent.run.study.plan.study_file import load_study
 from evolvent.run.study.plan.study_scenes import study_scenes
 from evolvent.run.study.results.figures import gathered_figures
@@ -58,11 +59,28 @@ def test_base_scene_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_torque_and_misalignment_share_gears(tmp_path: Path) -> None:
-    """All four scenes of Yang's helical pair have the same gears, on meshes that serve both torques; on gears of its
-    own each scene has the mesh of its torque."""
-    scenes = scenes_of(tmp_path, MAP)
+    """All four scenes of Yang's helical pair have the same gears, on meshes that serve both torques."""
+    scenes = scenes_of(tmp_path, MAP.replace('"excitation"', '"run"'))
     assert len({each.gears for each in scenes}) == 1 and scenes[0].gears
     assert all(each.scene is not None and each.scene.load.mesh_torques_Nm == (100.0, 200.0) for each in scenes)
+
+
+def test_excitations_share_meshes_of_the_heaviest_torque(tmp_path: Path) -> None:
+    """Both torques have the elements of 200 N·m, which are twice as long as those of 50 N·m; a range that the base
+    scene names stays."""
+    scenes = scenes_of(tmp_path, MAP.replace("100.0, 200.0", "50.0, 200.0"))
+    assert len({each.gears for each in scenes}) == 1 and scenes[0].gears
+    for each in scenes:
+        assert each.scene is not None
+        assert own_torque(each.scene).problem.lightest.torque == pytest.approx(200e3)
+        assert own_torque(each.scene).torques == pytest.approx((1e3 * each.scene.load.torque_Nm,))
+    named = scenes_of(tmp_path, f"{MAP}[set]\nload.mesh_torques_Nm = [50.0, 250.0]\n")
+    assert all(each.scene is not None and each.scene.load.mesh_torques_Nm == (50.0, 250.0) for each in named)
+
+
+def test_gears_of_ones_own(tmp_path: Path) -> None:
+    """Without sharing, names are others and no meshes serve other torques."""
+    scenes = scenes_of(tmp_path, MAP)
     alone = scenes_of(tmp_path, f"share_gears = false\n{MAP}")
     assert not {each.name for each in scenes} & {each.name for each in alone}
     assert all(each.gears == "" and each.scene is not None and not each.scene.load.mesh_torques_Nm for each in alone)

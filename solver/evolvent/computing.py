@@ -220,7 +220,7 @@ def strength(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.strength.strength_run import run_strength
 
-        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
+        require_room(_unworn(loaded), "strength", force, MPI.COMM_WORLD)
         _warn(run_strength(loaded, out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             from evolvent.run.strength.summary_lines import summary_lines

@@ -44,10 +44,10 @@ def with_level(settings: Sequence[str] | None, level: str | None) -> list[str]:
 
 def require_room(scene: Scene, command: str, force: bool, comm: MPI.Comm) -> None:
     """Raises SceneError where the machine has too little memory for the command. force: do not check. Collective."""
-    from evolvent.scene.checking.problem_size import memory_megabytes, mesh_megabytes, require_memory
+    from evolvent.scene.checking.problem_size import MEMORY_OF, require_memory
 
     if not force:
-        require_memory(scene, memory_megabytes if command == "run" else mesh_megabytes, comm)
+        require_memory(scene, MEMORY_OF[command], comm)
 
 
 def require(holds: bool, message: str) -> None:

@@ -25,6 +25,8 @@ class SectorSize:
     """Degrees of freedom of the loaded flank."""
     cuts: int
     """Degrees of freedom of both cut faces."""
+    roots: int = 0
+    """Degrees of freedom of both roots, where their displacements are condensed, too."""
 
     def times(self, sectors: int, flanks: int) -> SectorSize:
         """The size of so many sectors joined to a ring, with so many flanks in contact."""
@@ -55,6 +57,12 @@ def sector_size(
     flank, cuts = order * counts.profile_elements + 1, 2 * (order * cut + 1)
     more = 0 if gear is None else _below_rim(resolution, order, gear)
     return SectorSize(levels * nodes + (order * below + 1) * more, levels * flank, levels * cuts + 2 * more)
+
+
+def root_dofs(resolution: SectorResolution, order: int, plane: bool) -> int:
+    """Degrees of freedom of both roots of a sector."""
+    rows = order * (resolution.fillet_elements + resolution.back_elements) + 2
+    return rows * (2 if plane else 3 * (order * resolution.face_elements + 1))
 
 
 def _below_rim(resolution: SectorResolution, order: int, gear: GearParameters) -> int:

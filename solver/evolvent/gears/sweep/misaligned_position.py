@@ -19,6 +19,11 @@ from evolvent.gears.sweep.worn_position import STALE
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
 
+REACH = 7.5e-3
+"""Largest change of the gap [modules] with which a search is used again. Transmission errors of Yang's pair at quick,
+20 to 68 µm, are then at most 15 nm off those of a search of their own, and the tangent stiffness 0.15 %; with 0.012
+modules 32 nm and 0.16 %."""
+
 
 def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | None:
     """The same position without friction, with the wheel misaligned as in the model's pair.
@@ -30,7 +35,7 @@ def misaligned_on(model: GearModel, shared: SharedPosition) -> SharedPosition | 
     """
     geometry = shared.contact.geometry
     stand = replace(geometry.stand, pair=model.pair)
-    if geometry.is_deflected or _farthest(geometry, stand) > STALE * model.pair.pinion.normal_module:
+    if geometry.is_deflected or _farthest(geometry, stand) > REACH * model.pair.pinion.normal_module:
         return None
     teeth = tuple(_misaligned(geometry, tooth, stand) for tooth in geometry.teeth)
     contact = GearContact(replace(geometry, stand=stand, teeth=teeth), model.bodies)

@@ -21,6 +21,7 @@ from evolvent.scene.checking.problem_size import (
     memory_megabytes,
     room_problem,
     sector_sizes,
+    strength_megabytes,
 )
 from evolvent.scene.checking.scene_warnings import scene_warnings
 from evolvent.scene.gear_pair import working_angle_of
@@ -255,6 +256,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
     rows, layers = zip(*(flank_cells(problem, member) for member in Member))
     is_levelled = is_two_level(problem)
     levels = [Row("degrees of freedom of a flank", "", "", tuple(map(counted, flank_dofs(scene))))]
+    roots = [Row("with its finer roots, of `evolvent strength`", "", "", (gigabytes(strength_megabytes(scene)),))]
     return [
         Row("level", "", "", (scene.mesh.level,)),
         Row("cells", "", "", (f"{scene.mesh.shape}, order {scene.mesh.order}",)),
@@ -264,6 +266,7 @@ def _cost_rows(scene: Scene) -> list[Row]:
         Row("degrees of freedom of a sector", "", "", tuple(counted(size.dofs) for size in sector_sizes(scene))),
         *(levels if is_levelled else []),
         Row("largest memory of a run on one rank, estimated", "", "", (gigabytes(memory_megabytes(scene)),)),
+        *(roots if scene.strength is not None else []),
         Row("memory of this machine", "", "", (gigabytes(machine_megabytes()),)),
         Row("tooth pairs that can touch", "", "", (str(len(problem.touching_teeth)),)),
         Row(_positions_name(scene), "", "", (str(positions_to_solve(scene)),)),

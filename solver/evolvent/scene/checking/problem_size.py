@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 from mpi4py import MPI
 
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.gears.meshing.companion_meshes import coarser_levels
-from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH
+from evolvent.gears.meshing.element_sizes import ELEMENTS_PER_WIDTH, sector_resolution
 from evolvent.gears.meshing.flank_levels import levelled_sector
 from evolvent.gears.meshing.levelled_meshes import is_two_level
-from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes
+from evolvent.gears.meshing.root_meshes import finer_roots
+from evolvent.gears.meshing.sector_sizes import SectorSize, levelled_sizes, one_mesh_sizes, root_dofs, sector_size
+from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.scene.checking.levels_memory import levels_megabytes
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.bodies import FEWEST_ELEMENTS, Level
 from evolvent.scene.schema.errors import InputProblem, SceneError, shown
 from evolvent.scene.schema.output import SkipSection
+from evolvent.scene.schema.strength import StrengthSection
 from evolvent.scene.skips import wanted_output
 from evolvent_meshes.gears.member import Member
 
@@ -60,15 +65,33 @@ def flank_dofs(scene: Scene) -> tuple[int, int]:
 
 
 def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
-    """Largest memory [MB] of a run on so many ranks of one machine.
+    """Largest memory [MB] of a run on so many ranks of one machine."""
+    return _condensing_megabytes(scene, ranks, _factored_sizes(scene)) + results_megabytes(scene)
 
-    One rank holds one gear's elimination beside the other gear's compliance, several ranks both eliminations at once.
-    """
-    problem = gear_problem(scene)
+
+def strength_megabytes(scene: Scene, ranks: int = 1) -> float:
+    """Largest memory [MB] of root stress, whose sectors have finer roots than a run's, which are condensed, too."""
+    problem, times = gear_problem(scene), (scene.strength or StrengthSection()).root_refinement
+    pinion, wheel = (_with_roots(problem, member, times) for member in Member)
+    return _condensing_megabytes(scene, ranks, (pinion, wheel)) + results_megabytes(scene)
+
+
+def _with_roots(problem: GearProblem, member: Member, times: int) -> SectorSize:
+    """Size of a sector with finer roots."""
+    levelled = is_two_level(problem)
+    sector = levelled_sector(problem, member).coarse if levelled else sector_resolution(problem, member)
+    finer, order, plane = finer_roots(sector, times), problem.mesh.order, problem.is_plane
+    size = sector_size(finer, order, plane, problem.pair.gears[member])
+    return replace(size, roots=root_dofs(finer, order, plane))
+
+
+def _condensing_megabytes(scene: Scene, ranks: int, sizes: tuple[SectorSize, SectorSize]) -> float:
+    """Of a scene whose bodies have these sizes. One rank holds one gear's elimination beside the other gear's
+    compliance, several ranks both eliminations at once."""
+    problem, (pinion, _) = gear_problem(scene), sizes
     dimension = 2 if problem.is_plane else 3
-    sizes = pinion, _ = _factored_sizes(scene)
     first, second = (
-        MEGABYTES_PER_DOF[dimension] * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts)
+        MEGABYTES_PER_DOF[dimension] * size.dofs + DENSE_COPIES * _square_megabytes(size.flank + size.cuts + size.roots)
         for size in sizes
     )
     gears = first + second if ranks > 1 else max(first, second + _square_megabytes(pinion.flank))
@@ -79,7 +102,7 @@ def memory_megabytes(scene: Scene, ranks: int = 1) -> float:
         sectors = [levelled_sector(problem, member) for member in Member]
         companion = [coarser_levels(sector) for sector in sectors] if wanted_output(scene).error_bars else sectors
         gears = max(gears, levels_megabytes(sectors, ranks), levels_megabytes(companion, ranks))
-    return ranks * MEGABYTES_BASE[dimension] + gears + ring + results_megabytes(scene)
+    return ranks * MEGABYTES_BASE[dimension] + gears + ring
 
 
 def result_count(scene: Scene) -> int:
@@ -97,6 +120,12 @@ def mesh_megabytes(scene: Scene, ranks: int = 1) -> float:
     """Largest memory [MB] of `evolvent mesh`, where the first rank meshes both sectors."""
     dofs = sum(size.dofs for size in sector_sizes(scene))
     return ranks * MEGABYTES_BASE[2] + MEGABYTES_PER_MESHED_DOF * dofs
+
+
+MEMORY_OF: Mapping[str, MemoryEstimate] = MappingProxyType(
+    {"run": memory_megabytes, "mesh": mesh_megabytes, "strength": strength_megabytes}
+)
+"""Estimate of a command; commands that condense a run's meshes have a run's."""
 
 
 def _factored_sizes(scene: Scene) -> tuple[SectorSize, SectorSize]:
@@ -122,7 +151,7 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
     if wanted <= there:
         return None
     allowed = f"what fits into {gigabytes(there)}, the memory of this machine or container"
-    kept = results_megabytes(scene) if needed is memory_megabytes else 0.0
+    kept = 0.0 if needed is mesh_megabytes else results_megabytes(scene)
     if kept > 0.5 * wanted and wanted - kept <= there:
         count, of = result_count(scene), "positions, times friction coefficients, pitches and reports of wear"
         found = f"{scene.sweep.positions}: {counted(count)} results ({of}) that want about {gigabytes(kept)}"
@@ -131,7 +160,8 @@ def room_problem(scene: Scene, needed: MemoryEstimate, processes: int = 1) -> In
         return InputProblem("sweep.positions", found, allowed, remedy)
     name = "level" if scene.mesh.elements_per_contact_width is None else "elements_per_contact_width"
     ranks = f" on {processes} ranks" if processes > 1 else ""
-    needs = f"{_counted_dofs(scene)} that want about {gigabytes(wanted)}{ranks}"
+    finer = " and finer roots" if needed is strength_megabytes else ""
+    needs = f"{_counted_dofs(scene)}{finer} that want about {gigabytes(wanted)}{ranks}"
     found = f"{shown(getattr(scene.mesh, name))}, {needs}"
     return InputProblem(f"mesh.{name}", found, allowed, f"{_remedy(scene, needed, processes, there)}; --force goes on")
 

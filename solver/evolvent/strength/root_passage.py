@@ -61,13 +61,13 @@ class RootPassage:
 
     @cached_property
     def highest(self) -> Floats:
-        """(k, n) largest principal stress [MPa]; -inf where it may be that of a contact (`is_below_flank`)."""
-        return np.where(self.root.is_below_flank, self.principal[..., 2], -np.inf)
+        """(k, n) largest principal stress [MPa]; -inf where it may be that of a contact (`is_fillet`)."""
+        return np.where(self.root.is_fillet, self.principal[..., 2], -np.inf)
 
     @cached_property
     def lowest(self) -> Floats:
         """(k, n) smallest principal stress [MPa]; inf where it may be that of a contact."""
-        return np.where(self.root.is_below_flank, self.principal[..., 0], np.inf)
+        return np.where(self.root.is_fillet, self.principal[..., 0], np.inf)
 
     @property
     def largest(self) -> Floats:

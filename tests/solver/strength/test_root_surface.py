@@ -47,3 +47,20 @@ def test_both_sides_are_mirror_images(helix_angle: float) -> None:
     assert compression.tangent_angles.max() == pytest.approx(tension.tangent_angles.max(), abs=0.044)
     assert set(tension.surface.nodes).isdisjoint(set(compression.surface.nodes))
     assert len(np.unique(tension.heights)) == 5
+
+
+@pytest.mark.parametrize("teeth", [17, 90])
+def test_fillet_is_deep_enough_for_bending(teeth: int) -> None:
+    """Nodes count whose tangent is at 20° and more, none of the flank: on 17 teeth four below the root form circle do
+    not, where the neck's tangent is at 2 to 16°; on 90 teeth, whose fillets begin at 15°, one."""
+    own = GearParameters.from_rack(
+        z=teeth, normal_module=2.0, normal_pressure_angle_deg=20.0, rack_tip_radius_coefficient=0.3, face_width=10.0,
+        bore_diameter=10.0,
+    )  # fmt: skip
+    fine = SectorResolution(profile_elements=12, face_elements=2, fillet_elements=40, back_elements=40)
+    root = tension_side(sector_mesh(own, fine, "quadrilateral"), own)
+    angles, counted = np.degrees(root.tangent_angles), root.is_fillet
+    assert counted[(angles > 22.0) & (2.0 * root.radii < 0.999 * own.root_form_diameter)].all()
+    assert not counted[(angles < 20.0) | (2.0 * root.radii > own.root_form_diameter * 1.0001)].any()
+    left_out = (~counted & (2.0 * root.radii < own.root_form_diameter * (1.0 - 1e-6))).sum()
+    assert left_out == (4 if teeth == 17 else 1)

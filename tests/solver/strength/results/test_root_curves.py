@@ -18,7 +18,7 @@ TENSION = np.array([10.0, 40.0, 60.0, 50.0, 20.0])
 
 def roots(tension: Floats, pressure: Floats) -> GearRoots:
     """Two nodes a side, of which the second bears half of the stress, along x."""
-    root: Any = SimpleNamespace(is_below_flank=np.array([True, True]))
+    root: Any = SimpleNamespace(is_fillet=np.array([True, True]))
 
     def passage(values: Floats) -> RootPassage:
         stress = np.zeros((len(values), 2, 3, 3))

@@ -20,7 +20,7 @@ Examples:
   evolvent study demos/studies/zhang2023_torque.toml --out out/torque --scheduler tcp://10.0.0.1:8786
 
 Exit status 0 also where some scenes were refused or have failed: a warning counts them, study.csv says why. 3 where
-none is done.
+none is done, 2 where the values of all of them are refused.
 
 {STATUSES}"""
 

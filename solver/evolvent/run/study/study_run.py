@@ -36,7 +36,7 @@ from evolvent.run.study.results.study_table import (
 )
 from evolvent.run.study.scene_task import DONE, REFUSED, SceneTask
 from evolvent.run.study.submission import finished
-from evolvent_meshes.errors import ResultError
+from evolvent_meshes.errors import InputError, ResultError
 
 SCENES_STAGE = "scenes"
 INTERVAL = 10.0
@@ -75,7 +75,7 @@ def run_study(study: Study, out: Path, workers: Workers, at_once: int, overwrite
     workers: context with the processes that compute. at_once: how many scenes a machine computes at once; 0: its memory
     is not checked. overwrite: replace the table of another study. quiet: no progress is displayed.
 
-    Raises FolderError, InputError where workers cannot be had, NothingComputed, WriteError.
+    Raises FolderError, InputError where workers cannot be had or all scenes are refused, NothingComputed, WriteError.
     """
     with locked(out):
         folder = RunFolder(out)
@@ -202,7 +202,8 @@ class _Table:
         return self.rows[scene.name]
 
     def said(self) -> list[str]:
-        """What a reader has to know of failures. Raises NothingComputed where no scene is done."""
+        """What a reader has to know of failures. Raises NothingComputed where no scene is done, InputError where the
+        values of all of them are refused."""
         rows = self.all_rows()
         failed = [row for row in rows if row.status != DONE]
         if not failed:
@@ -210,5 +211,6 @@ class _Table:
         count = f"{len(failed)} of {len(rows)} scenes are not done"
         sentence = f"{count} ({TABLE} says why), the first one: {failed[0].reason}"
         if len(failed) == len(rows):
-            raise NothingComputed(f"{self.out}: {sentence}")
+            refused = all(row.status == REFUSED for row in rows)
+            raise (InputError if refused else NothingComputed)(f"{self.out}: {sentence}")
         return [sentence]

@@ -16,6 +16,7 @@ from evolvent.run.study import study_run
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.run.study.scene_task import SceneTask, solve
 from evolvent.run.study.study_run import NothingComputed, run_study
+from evolvent_meshes.errors import InputError
 from tests.support.running.study_cases import HEAD, TORQUES, study_of, table
 
 FAILING = f"{HEAD}[grid]\nload.torque_Nm = [-1.0, 100.0]\n"
@@ -135,10 +136,17 @@ def test_what_fails_stands_in_the_table(tmp_path: Path, computed: list[str]) -> 
 
 
 def test_nothing_computed(tmp_path: Path, computed: list[str]) -> None:
-    """Where no scene is done the study ends with an error; its table says why."""
-    with pytest.raises(NothingComputed, match="1 of 1 scenes are not done"):
+    """Where the values of all scenes are refused the study ends with an error of its input, its table says why; where
+    all scenes fail, with one of its results."""
+    with pytest.raises(InputError, match="1 of 1 scenes are not done"):
         run(tmp_path, FAILING.replace(", 100.0", ""))
     assert table(tmp_path / "out")[0]["status"] == "refused"
+    one = TORQUES.replace(", 200.0, 300.0", "")
+    folder = tmp_path / "other/out/scenes" / study_of(tmp_path, one).scenes[0].name
+    folder.mkdir(parents=True)
+    (folder / "check.txt").write_text("mine")
+    with pytest.raises(NothingComputed, match="1 of 1 scenes are not done"):
+        run(tmp_path / "other", one)
 
 
 def test_a_failure_that_would_come_again_is_kept(tmp_path: Path, computed: list[str]) -> None:

@@ -1,7 +1,7 @@
 """`python -m evidence.robustness.study_map [--out docs]`: what a map of misalignment and torque costs over one sweep.
 
 Yang's pair at quick, 8 misalignments under 8 torques, with error bars: processor time of condensing, and of some
-positions in both ways, from which that of all follows. More than ten minutes of a core of its own.
+positions in both ways, from which that of all follows. Five minutes of a core of its own.
 """
 
 from __future__ import annotations

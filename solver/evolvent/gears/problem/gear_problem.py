@@ -114,8 +114,8 @@ class GearProblem:
     mesh_torques: tuple[float, float] | None = None
     """Lightest and heaviest torque that the meshes serve, on the same gear as `torque` [N·mm]; None: `torque` alone. A
     lighter `torque` has elements too long for its pressures, which an excitation can do without. Up to the heaviest all
-    problems have the same sectors and, on flanks with levels, so many of the same levels as each
-    needs: `evolvent.gears.gear_model.prepare_models` condenses them once."""
+    problems have the same sectors and, on flanks with levels, so many of the same levels as each needs:
+    `evolvent.gears.gear_model.prepare_models` condenses them once."""
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, GearPair, "write GearPair(pinion, wheel, centre_distance=...)")
@@ -130,7 +130,7 @@ class GearProblem:
         number("torque", self.torque, "a finite number > 0 [N·mm]", remedy, lambda T: T > 0.0)
         one_of("torque_on", self.torque_on, tuple(Member))
         lightest, heaviest = self._served
-        if not (0.0 < lightest <= heaviest >= self.torque):
+        if not (0.0 < lightest <= heaviest and self.torque <= heaviest):
             remedy = "give the lightest and the heaviest torque that the meshes serve"
             wanted = f"two ascending torques > 0, the second one at least {self.torque:g} N·mm"
             refuse("mesh_torques", wanted, self.mesh_torques, remedy)

@@ -23,7 +23,7 @@ from evolvent.run.study.plan.shared_gears import condensed_problem, meshes, own_
 from evolvent.run.study.plan.study_file import Computation
 from evolvent.run.study.results.check_figures import run_check
 from evolvent.run.study.results.scene_record import SceneRecord, read_record, write_record
-from evolvent.scene.checking.problem_size import memory_megabytes, require_memory, strength_megabytes
+from evolvent.scene.checking.problem_size import MEMORY_OF, memory_megabytes, require_memory
 from evolvent.scene.scene import Scene
 from evolvent.strength.results.tables import STRENGTH
 from evolvent_meshes.errors import EvolventError, InputError, ResultError
@@ -96,8 +96,8 @@ def _wait_until_free(folder: Path) -> None:
 def _require_room(task: SceneTask) -> None:
     """Raises SceneError where as many scenes at once as there are want more memory than the machine has."""
     if task.share_of_memory and task.compute != "check":
-        needed = strength_megabytes if task.compute == "strength" else memory_megabytes
-        require_memory(task.scene, lambda scene, _: task.share_of_memory * needed(scene), MPI.COMM_SELF)
+        needed = MEMORY_OF.get(task.compute, memory_megabytes)
+        require_memory(task.scene, lambda scene, ranks: task.share_of_memory * needed(scene, ranks), MPI.COMM_SELF)
 
 
 def _run(task: SceneTask, prepare: Preparer) -> list[str]:

@@ -74,7 +74,7 @@ class LoadSection(SceneSection):
 
     @model_validator(mode="after")
     def _meshes_serve_the_torque(self) -> Self:
-        if (served := self.mesh_torques_Nm) and not (0.0 < served[0] <= served[1] >= self.torque_Nm):
+        if (served := self.mesh_torques_Nm) and not (0.0 < served[0] <= served[1] and self.torque_Nm <= served[1]):
             allowed = f"two ascending numbers above 0, the second one at least load.torque_Nm, {shown(self.torque_Nm)}"
             remedy = "give the lightest and the heaviest torque, or delete the key"
             raise validation_error(InputProblem("mesh_torques_Nm", shown(served), allowed, remedy))

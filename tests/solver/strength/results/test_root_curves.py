@@ -29,7 +29,7 @@ def roots(tension: Floats, pressure: Floats) -> GearRoots:
 
 
 def test_curves_are_the_extreme_principal_stresses() -> None:
-    """Of the node that bears most: tension of the loaded side, pressure of the back."""
+    """Of the node that bears most: tension of the loaded side, compression of the back."""
     own = roots(TENSION, -2.0 * TENSION)
     assert tension_curve(own).values == pytest.approx(TENSION, rel=1e-12)
     assert compression_curve(own).values == pytest.approx(-2.0 * TENSION, rel=1e-12)
@@ -39,8 +39,8 @@ def test_curves_are_the_extreme_principal_stresses() -> None:
 @pytest.mark.parametrize(("order", "factor"), [(1, 2.0), (2, 1.0 / 3.0)])
 def test_bars_of_curves_that_differ_by_a_factor(order: int, factor: float) -> None:
     """The companion has 0.9 of every stress: each bar is a tenth of the peak by Richardson's factor. Behind the largest
-    tension the line through 40, 60 and that through 50, 20 cross at 68, so that the spacing adds 8, of pressure twice
-    that."""
+    tension the line through 40, 60 and that through 50, 20 cross at 68, so that the spacing adds 8, of
+    compression twice that."""
     own, coarse = roots(TENSION, -2.0 * TENSION), roots(0.9 * TENSION, -1.8 * TENSION)
     for curve, times in ((tension_curve, 1.0), (compression_curve, 2.0)):
         bars = curve_errors(curve, own, coarse, order)

@@ -14,6 +14,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "fem.backend": ("meshes", "meshes.mesh"),
     "fem": ("meshes", "meshes.mesh", "fem.parallel", "fem.backend"),
     "fem.condensation": ("meshes", "fem.parallel", "fem.backend"),
+    "fem.modes": ("meshes", "fem", "fem.backend"),
     "contact": ("meshes",),
     "contact.search": ("meshes", "fem"),
     "contact.nitsche": ("meshes", "meshes.mesh", "fem", "contact.search"),
@@ -26,6 +27,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
     "contact.solution": (
         "meshes", "meshes.mesh", "fem", "contact.nitsche", "contact.newton", "contact.problem", "contact.step",
     ),
+    "contact.transient": ("meshes", "fem.modes", "contact.problem", "contact.step"),
     "gears.problem": ("meshes", "meshes.gears", "fem", "contact"),
     "gears.meshing": (
         "meshes", "meshes.mesh", "meshes.gears", "meshes.gears.modifications", "meshes.sector", "gears.problem",

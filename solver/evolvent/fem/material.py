@@ -17,6 +17,7 @@ class Material:
     youngs_modulus: E [MPa], from 1e-12 to 1e20.
     poissons_ratio: ν, from −0.9999 to 0.49999, beyond which rounding spoils the stiffness. Contact pressures are
         verified up to 0.45 (evolvent.contact.problem.poisson_limit).
+    density: ϱ [t/mm³], from 1e-15 to 1e-6; steel has 7.85e-9, which is 7850 kg/m³ times 1e-12. Only inertia needs it.
     Raises InputError.
 
     >>> steel = Material(youngs_modulus=210e3, poissons_ratio=0.3)
@@ -26,6 +27,7 @@ class Material:
 
     youngs_modulus: float = 210e3
     poissons_ratio: float = 0.3
+    density: float = 7.85e-9
 
     def __post_init__(self) -> None:
         remedy = "give one in MPa, steel has 210e3"
@@ -34,6 +36,8 @@ class Material:
         remedy = "give one, steel has 0.3; 0.499 is nearly incompressible"
         wanted = "−1 < ν < 0.5, from −0.9999 to 0.49999"
         number("poissons_ratio", self.poissons_ratio, wanted, remedy, lambda ν: -0.9999 <= ν <= 0.49999)
+        remedy = "give kg/m³ times 1e-12, steel has 7.85e-9"
+        number("density", self.density, "1e-15 to 1e-6 [t/mm³]", remedy, lambda ϱ: 1e-15 <= ϱ <= 1e-6)
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
 from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
+from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent_meshes.arrays import Ints, Reals
 
 
@@ -86,9 +87,9 @@ class AppliedActive:
         f[self.unknowns] = force
         return self.whole.times(f)[self.unknowns]
 
-    def inverse(self, M: sp.csr_matrix, H: Reals, kept: Ints) -> BlockInverse:
+    def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> BlockInverse:
         """See `ActiveCompliance.inverse`."""
-        return BlockInverse(self.whole.rough, self.unknowns, M, H, kept)
+        return BlockInverse(self.whole.rough, self.unknowns, M, motions, kept)
 
 
 def summed(

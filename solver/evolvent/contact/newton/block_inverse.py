@@ -2,7 +2,7 @@
 
 With A ≈ A_b + U K Uᵀ, A_b block-diagonal, and only the columns S of M = ∂F/∂J, T (f, δ) = (b, c) is f = b − M_S z with
 
-    (I + A_b M_S) z = A_b b + U w − H δ ,   K⁻¹ w = Uᵀ f ,   Hᵀ f = c .
+    (I + A_b M_S) z = A_b b + U w − H δ ,   K⁻¹ w = Uᵀ f ,   Hᵀ f + D δ = c .
 
 Each block is banded, as only nodes near each other along a contact line are coupled in it; it is factored by itself,
 and a system of the size of (w, δ) couples the blocks (Woodbury).
@@ -19,6 +19,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from evolvent.contact.newton.band_factor import BandFactor
+from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
 from evolvent_meshes.arrays import Floats, Ints, Singles
 
@@ -73,13 +74,16 @@ class BlockInverse:
 
     rough: A.
     unknowns: (u,) that are active.
-    M, H: (u, u) and (u, r) among them.
+    M: (u, u) among them.
+    motions: H (u, r) among them and D (r, r).
     kept: S (s,), columns of M that are not left out.
 
     Raises NotConverged where a free rigid motion meets no resistance.
     """
 
-    def __init__(self, rough: NearlyNormal, unknowns: Ints, M: sp.csr_matrix, H: Floats, kept: Ints) -> None:
+    def __init__(
+        self, rough: NearlyNormal, unknowns: Ints, M: sp.csr_matrix, motions: FreeMotions, kept: Ints
+    ) -> None:
         self._M = M[:, kept].tocsr()
         node, axis = np.divmod(unknowns, rough.k)
         contact = np.searchsorted(rough.starts, node, side="right") - 1
@@ -87,11 +91,13 @@ class BlockInverse:
             _Block.of(rough.blocks[i], node - rough.starts[i], np.where(contact == i, axis, -1), M, kept)
             for i in np.unique(contact[kept])
         ]
-        self._smooth = np.hstack([rough.modes[unknowns], -H])
+        self._smooth = np.hstack([rough.modes[unknowns], -motions.jumps])
         self._under_smooth = (self._M.T @ self._smooth).T
         self._response = self._solved(self._smooth[kept])
         inner = self._under_smooth @ self._response
-        inner[np.diag_indices(len(rough.couplings))] += 1.0 / rough.couplings
+        count = len(rough.couplings)
+        inner[np.diag_indices(count)] += 1.0 / rough.couplings
+        inner[count:, count:] += motions.resistance
         self._scale = 1.0 / np.sqrt(np.abs(np.diag(inner)).clip(min=np.finfo(float).tiny))
         try:
             self._inner = np.linalg.inv(inner * self._scale * self._scale[:, None])

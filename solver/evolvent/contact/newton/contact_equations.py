@@ -3,10 +3,10 @@
 Unknowns x = (f, δ), f (n, k) nodal contact forces in local frames, k = 1 without friction, else d:
 
     f − F(J) = 0,   J = J_0 + H δ − A f              (contact)
-    Hᵀ f = F                                         (balance of the free rigid motions)
+    Hᵀ f + D δ = F                                   (balance of the free rigid motions)
 
-The bodies are eliminated exactly (A is their compliance), so that this is the finite element system itself. The
-tangent is in tangent.py, its inverse in newton_steps.py.
+D is zero in statics; in a time step it is their inertia. The bodies are eliminated exactly (A is their compliance), so
+that this is the finite element system itself. The tangent is in tangent.py, its inverse in newton_steps.py.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 
 from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
+from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.contact_operator import ContactLaw, ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues
@@ -39,6 +40,7 @@ class CondensedSystem:
     motion: H (n·k, r), jumps by unit amplitudes of the r free rigid motions.
     jump: J_0 (n·k,), jumps by external loads and prescribed motions [mm].
     load: F (r,), loads on the free rigid motions [N, N·mm].
+    resistance: D (r, r), forces against unit amplitudes of the free rigid motions [N/mm, N, N·mm], symmetric.
     lever: (r,) largest jump by a unit amplitude of each motion [mm per unit], to compare forces with moments.
     """
 
@@ -47,12 +49,18 @@ class CondensedSystem:
     motion: Floats
     jump: Floats
     load: Floats
+    resistance: Floats
     lever: Floats
+
+    @cached_property
+    def motions(self) -> FreeMotions:
+        """The free rigid motions in amplitudes times the lever."""
+        return FreeMotions(self.motion / self.lever, self.resistance / np.outer(self.lever, self.lever))
 
     @cached_property
     def steps(self) -> NewtonSteps:
         """Solver of the Newton steps; all friction coefficients share it."""
-        return NewtonSteps(self.compliance, self.motion / self.lever)
+        return NewtonSteps(self.compliance, self.motions)
 
     @property
     def k(self) -> int:
@@ -115,15 +123,19 @@ class ContactEquations:
         return self._last[1]
 
     def residual(self, x: Floats) -> Floats:
-        """f − F(J), then Hᵀ f − F over the lever, (n·k + r,) [N]."""
-        at = self.state(x)
-        balance = (self.system.motion.T @ at.force.ravel() - self.system.load) / self.system.lever
-        return np.concatenate([(at.force - at.contact).ravel(), balance])
+        """f − F(J), then Hᵀ f + D δ − F over the lever, (n·k + r,) [N]."""
+        at, (_, δ) = self.state(x), self.split(x)
+        return np.concatenate([(at.force - at.contact).ravel(), self._balance(at.force, δ) / self.system.lever])
+
+    def _balance(self, force: Floats, motion: Floats) -> Floats:
+        """Hᵀ f + D δ − F (r,) [N, N·mm]."""
+        system = self.system
+        return system.motion.T @ force.ravel() + system.resistance @ motion - system.load
 
     def work(self, x: Floats, step: Floats) -> Callable[[float], float]:
-        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) − Fᵀδ of bodies under any nodal forces f has the
-        derivatives A(f − F(J)) and Hᵀ F(J) − F."""
-        system, (df, dδ) = self.system, self.split(step)
+        """See `NonlinearProblem.work`. The energy ½fᵀAf + ∫(contact) + ½δᵀDδ − Fᵀδ of bodies under any nodal forces f
+        has the derivatives A(f − F(J)) and Hᵀ F(J) + Dδ − F."""
+        system, (df, dδ), (_, δ) = self.system, self.split(step), self.split(x)
         at = self.state(x)
         after = self.state(x - step)  # stored: the next state if the full step is taken
         change = at.jump - after.jump
@@ -132,8 +144,7 @@ class ContactEquations:
 
         def along(α: float) -> float:
             contact = known[α] if α in known else system.operator.forces(self._law(at.jump - α * change).traction)
-            balance = system.motion.T @ contact.ravel() - system.load
-            return -float(np.sum(elastic * (at.force - α * df - contact)) + dδ @ balance)
+            return -float(np.sum(elastic * (at.force - α * df - contact)) + dδ @ self._balance(contact, δ - α * dδ))
 
         return along
 
@@ -145,7 +156,7 @@ class ContactEquations:
     def tangent(self, x: Floats) -> Tangent:
         """T(x)."""
         steps = self.system.steps
-        return Tangent.of(self.system.operator, self.state(x).law, steps.A, steps.H)
+        return Tangent.of(self.system.operator, self.state(x).law, steps.A, steps.motions)
 
     def _law(self, jump: Floats) -> LawValues:
         """Values at the points under jumps (n, k)."""

@@ -6,7 +6,7 @@ The equations are in contact_equations.py; here are the stages that lead to thei
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,8 +62,9 @@ def normal_part(system: CondensedSystem) -> CondensedSystem:
     k = system.k
     if k == 1:
         return system
-    A = system.compliance.normal()
-    return CondensedSystem(system.operator, A, system.motion[::k], system.jump[::k], system.load, system.lever)
+    return replace(
+        system, compliance=system.compliance.normal(), motion=system.motion[::k], jump=system.jump[::k]
+    )
 
 
 def frictionless(

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent.contact.newton.reduced_tangent import ReducedTangent
+from evolvent.contact.newton.reduced_tangent import FreeMotions, ReducedTangent
 from evolvent_meshes.arrays import Floats, Ints, Reals, Singles
 
 
@@ -38,11 +38,11 @@ class ActiveCompliance(Protocol):
         """A f (u,) [mm]."""
         ...
 
-    def inverse(self, M: sp.csr_matrix, H: Reals, kept: Ints) -> Inverse:
-        """Approximates [I + M A, −M H; Hᵀ, 0]⁻¹.
+    def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> Inverse:
+        """Approximates [I + M A, −M H; Hᵀ, D]⁻¹.
 
         M: ∂F/∂J (u, u).
-        H: free rigid motions (u, r).
+        motions: H (u, r) and D (r, r) of the free rigid motions.
         kept: columns of M that are not left out.
         """
         ...
@@ -116,6 +116,6 @@ class DenseActive:
         """See `ActiveCompliance.times`."""
         return np.asarray(self.A @ force)
 
-    def inverse(self, M: sp.csr_matrix, H: Reals, kept: Ints) -> Inverse:
+    def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> Inverse:
         """See `ActiveCompliance.inverse`; exact but for the columns left out."""
-        return ReducedTangent.of(M, self.A, H, kept)
+        return ReducedTangent.of(M, self.A, motions, kept)

@@ -19,6 +19,7 @@ import scipy.sparse as sp
 
 from evolvent.contact.newton.jump_compliance import ActiveCompliance, Inverse, JumpCompliance
 from evolvent.contact.newton.krylov import gmres
+from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
 from evolvent_meshes.arrays import Floats, Ints, Reals
@@ -32,22 +33,22 @@ REFINEMENTS = 6  # after which all columns are factored instead
 
 @dataclass(frozen=True)
 class ActiveUnknowns:
-    """The u of m unknowns that are not zero, with A and H restricted to them.
+    """The u of m unknowns that are not zero, with A and the free rigid motions restricted to them.
 
     unknowns: (u,) their indices.
     A: compliance among them.
-    H: (u, r) rigid motions.
+    motions: H (u, r) and D (r, r).
     """
 
     unknowns: Ints
     A: ActiveCompliance
-    H: Reals
+    motions: FreeMotions
 
     @staticmethod
-    def of(unknowns: Ints, A: JumpCompliance, H: Floats) -> ActiveUnknowns:
+    def of(unknowns: Ints, A: JumpCompliance, motions: FreeMotions) -> ActiveUnknowns:
         """From A (m, m) and H (m, r)."""
         active = A.active(unknowns)
-        return ActiveUnknowns(unknowns, active, H[unknowns].astype(active.dtype))
+        return ActiveUnknowns(unknowns, active, motions.of(unknowns, active.dtype))
 
     def matrix(self, M: sp.csr_matrix) -> sp.csr_matrix:
         """M restricted to the active unknowns, (u, u); it has no other entries."""
@@ -59,26 +60,27 @@ class ActiveUnknowns:
 
     def restrict(self, y: Floats) -> Reals:
         """y (m + r,) restricted to the active unknowns, (u + r,)."""
-        return np.concatenate([y[self.unknowns], y[len(y) - self.H.shape[1] :]]).astype(self.A.dtype)
+        return np.concatenate([y[self.unknowns], y[len(y) - self.motions.count :]]).astype(self.A.dtype)
 
     def extend(self, y: Reals, size: int) -> Floats:
         """y (u + r,) extended by zeros to `size` = m + r."""
         whole = np.zeros(size)
-        whole[self.unknowns], whole[size - self.H.shape[1] :] = np.split(y, [len(self.unknowns)])
+        whole[self.unknowns], whole[size - self.motions.count :] = np.split(y, [len(self.unknowns)])
         return whole
 
     def times(self, M: sp.csr_matrix, y: Reals) -> Reals:
         """T y (u + r,)."""
         force, motion = np.split(y, [len(self.unknowns)])
-        return np.concatenate([force - M @ (self.H @ motion - self.A.times(force)), self.H.T @ force])
+        jump = self.motions.jumps @ motion - self.A.times(force)
+        return np.concatenate([force - M @ jump, self.motions.balance(force, motion)])
 
 
 class NewtonSteps:
-    """Solver for tangents that share the compliance A (m, m) [mm/N] and the rigid motions H (m, r)."""
+    """Solver for tangents that share the compliance A (m, m) [mm/N] and the free rigid motions."""
 
-    def __init__(self, A: JumpCompliance, H: Floats) -> None:
-        self.A, self.H = A, H
-        self._active = ActiveUnknowns.of(np.zeros(0, dtype=int), A, H)
+    def __init__(self, A: JumpCompliance, motions: FreeMotions) -> None:
+        self.A, self.motions = A, motions
+        self._active = ActiveUnknowns.of(np.zeros(0, dtype=int), A, motions)
         self._factored: Inverse | None = None
 
     def solve(self, tangent: Tangent, right: Floats, accuracy: float) -> Floats:
@@ -119,20 +121,21 @@ class NewtonSteps:
 
     def _activate(self, tangent: Tangent, right: Floats) -> None:
         """Adds the unknowns whose rows or columns in M or whose entries of `right` are not zero to the active ones."""
-        before = np.zeros(len(self.H), dtype=bool)
+        before = np.zeros(len(self.motions.jumps), dtype=bool)
         before[self._active.unknowns] = True
         needed = right[: len(before)] != 0.0
         needed |= np.diff(tangent.M.indptr) > 0
         needed[tangent.M.indices] = True
         if (needed & ~before).any():
-            self._active, self._factored = ActiveUnknowns.of(np.flatnonzero(needed | before), self.A, self.H), None
+            self._active = ActiveUnknowns.of(np.flatnonzero(needed | before), self.A, self.motions)
+            self._factored = None
 
     def _by_gmres(self, M: sp.csr_matrix, kept: Ints, right: Reals, relative: float) -> tuple[Reals, bool]:
         """y (u + r,), and whether its residual is at most `relative` of `right`, or what their precision allows; an
         earlier factor that did not lead there is dropped."""
         active, relative = self._active, max(relative, self._finest)
         limit = ITERATIONS if self._factored is None else REUSE_ITERATIONS
-        factored = self._factored or active.A.inverse(M, active.H, np.searchsorted(active.unknowns, kept))
+        factored = self._factored or active.A.inverse(M, active.motions, np.searchsorted(active.unknowns, kept))
 
         def times(y: Reals) -> Reals:
             return active.times(M, y)

@@ -10,7 +10,7 @@ import numpy as np
 
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium
-from evolvent.contact.newton.reduced_tangent import ReducedTangent
+from evolvent.contact.newton.reduced_tangent import FreeMotions, ReducedTangent
 from evolvent.contact.newton.tangent import Tangent
 from evolvent.contact.nitsche.coulomb import LawValues
 from evolvent_meshes.arrays import Bools, Floats
@@ -31,10 +31,11 @@ class PressureSensitivity:
         self._system = system
         self._slope = operator.stabiliser[:, 0] * touching
         law = LawValues(pressure, touching[:, None, None].astype(float))
-        tangent = Tangent.of(operator, law, system.compliance, system.motion)
+        motions = FreeMotions(system.motion, system.resistance)
+        tangent = Tangent.of(operator, law, system.compliance, motions)
         A = system.compliance.matrix
         assert A is not None, "sensitivity of pressures: wanted a compliance that is a matrix"
-        self._compliance, self._inverse = A, ReducedTangent.of(tangent.M, A, tangent.H, tangent.kept)
+        self._compliance, self._inverse = A, ReducedTangent.of(tangent.M, A, motions, tangent.kept)
         lost = np.where(gone, pressure[:, 0], 0.0)
         self.released = self._slope * (operator.shape @ self._jump(operator.weights * lost)) - lost
 

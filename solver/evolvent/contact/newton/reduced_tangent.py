@@ -1,8 +1,8 @@
-"""Inverse of the tangent T = [I + M A, −M H; Hᵀ, 0] with only some columns S of M.
+"""Inverse of the tangent T = [I + M A, −M H; Hᵀ, D] with only some columns S of M.
 
 With z = A_S f − H_S δ the solution of T (f, δ) = (b, c) is f = b − M_S z, and
 
-    [I + A_S M_S, H_S; −Hᵀ M_S, 0] (z, δ) = (A_S b, c − Hᵀ b)
+    [I + A_S M_S, H_S; −Hᵀ M_S, D] (z, δ) = (A_S b, c − Hᵀ b)
 
 which has |S| + r unknowns.
 """
@@ -25,50 +25,81 @@ class FreeMotion(NotConverged):
 
 
 @dataclass(frozen=True)
+class FreeMotions:
+    """The jumps that they cause, and what resists them."""
+
+    jumps: Reals
+    """H (m, r), jumps by unit amplitudes."""
+    resistance: Reals
+    """D (r, r), forces against unit amplitudes, symmetric; zero in statics, where contact alone holds them."""
+
+    @staticmethod
+    def unresisted(jumps: Reals) -> FreeMotions:
+        """Of statics."""
+        return FreeMotions(jumps, np.zeros((jumps.shape[1],) * 2, dtype=jumps.dtype))
+
+    @property
+    def count(self) -> int:
+        """r."""
+        return self.jumps.shape[1]
+
+    def of(self, unknowns: Ints, dtype: type) -> FreeMotions:
+        """The same with some of the jumps (u,), in a precision."""
+        return FreeMotions(self.jumps[unknowns].astype(dtype), self.resistance.astype(dtype))
+
+    def balance(self, force: Reals, motion: Reals) -> Reals:
+        """Hᵀ f + D δ (r,)."""
+        return self.jumps.T @ force + self.resistance @ motion
+
+
+@dataclass(frozen=True)
 class ReducedTangent:
     """The parts of a tangent that its inverse needs, all of the same precision.
 
     columns: S (s,).
     M: M_S (m, s).
     A: A_S (s, m).
-    H: (m, r).
+    motions: H (m, r) and D (r, r).
     """
 
     columns: Ints
     M: sp.csr_matrix
     A: Reals
-    H: Reals
+    motions: FreeMotions
 
     @staticmethod
-    def of(M: sp.csr_matrix, A: Reals, H: Reals, columns: Ints) -> ReducedTangent:
-        """From M and A, (m, m), H (m, r) and the columns to keep."""
-        return ReducedTangent(columns, M[:, columns], A[columns], H)
+    def of(M: sp.csr_matrix, A: Reals, motions: FreeMotions, columns: Ints) -> ReducedTangent:
+        """From M and A, (m, m), the free rigid motions and the columns to keep."""
+        return ReducedTangent(columns, M[:, columns], A[columns], motions)
 
     def solve(self, right: Reals) -> Reals:
         """(f, δ) for a right-hand side, both (m + r,) or (m + r, c). Raises NotConverged where the system is singular
         to double precision."""
-        b, load = np.split(right, [len(self.H)])
+        H = self.motions.jumps
+        b, load = np.split(right, [len(H)])
         if not len(self.columns) + len(load):  # nothing touches and nothing is free
             return b
-        known = np.concatenate([self.A @ b, (load - self.H.T @ b) / self._balance])
+        known = np.concatenate([self.A @ b, (load - H.T @ b) / self._balance])
         z, motion = np.split(lu_solve(self._factor, known, check_finite=False), [len(self.columns)])
         return np.concatenate([b - self.M @ z, motion])
 
     @cached_property
     def _balance(self) -> float:
-        """Divisor of the rows of Hᵀ, so that they are as large as the others."""
-        return float(np.abs(self.M.data).max(initial=0.0)) or 1.0
+        """Divisor of the rows of Hᵀ and D, so that they are as large as the others."""
+        largest = float(np.abs(self.M.data).max(initial=0.0))
+        return max(largest, float(np.abs(self.motions.resistance).max(initial=0.0))) or 1.0
 
     @cached_property
     def _factor(self) -> tuple[Reals, Ints]:
-        s, r = len(self.columns), self.H.shape[1]
+        s, r, H = len(self.columns), self.motions.count, self.motions.jumps
         touched = np.flatnonzero(np.diff(self.M.indptr))
         M = self.M[touched]
         B = np.zeros((s + r, s + r), order="F", dtype=self.A.dtype)
         B[:s, :s] = (M.T @ self.A[:, touched].T).T
         B[np.arange(s), np.arange(s)] += 1.0
-        B[:s, s:] = self.H[self.columns]
-        B[s:, :s] = -(M.T @ self.H[touched]).T / self._balance
+        B[:s, s:] = H[self.columns]
+        B[s:, :s] = -(M.T @ H[touched]).T / self._balance
+        B[s:, s:] = self.motions.resistance / self._balance
         getrf, gecon = get_lapack_funcs(("getrf", "gecon"), (B,))
         size = np.abs(B).sum(axis=0).max(initial=0.0)
         lu, pivots, _ = getrf(B, overwrite_a=True)

@@ -2,7 +2,9 @@
 
 With M = ∂F/∂J (sparse), A the compliance and H the free rigid motions, a Newton step solves
 
-    T y = b ,   T = [I + M A, −M H; Hᵀ, 0]
+    T y = b ,   T = [I + M A, −M H; Hᵀ, D]
+
+with D what resists the free motions (`FreeMotions`).
 
 Only the columns in which M is not zero couple the unknowns. The traction of a sliding point hardly depends on the
 tangential jump: ∂τ/∂q is μλ/|q| (I − t⊗t), about 1e-3 if the slip is large against the elastic displacement. Without
@@ -18,7 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from evolvent.contact.newton.jump_compliance import JumpCompliance
-from evolvent.contact.newton.reduced_tangent import ReducedTangent
+from evolvent.contact.newton.reduced_tangent import FreeMotions, ReducedTangent
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator
 from evolvent.contact.nitsche.coulomb import LawValues
@@ -33,41 +35,42 @@ class Tangent:
 
     M: ∂F/∂J (m, m) [N/mm].
     A: compliance (m, m).
-    H: jumps by the free rigid motions (m, r).
+    motions: H (m, r) and D (r, r) of the free rigid motions.
     kept: columns of M that the approximate tangent keeps.
     whole: whether these are all that are not zero.
     """
 
     M: sp.csr_matrix
     A: JumpCompliance
-    H: Floats
+    motions: FreeMotions
     kept: Ints
     whole: bool
 
     @staticmethod
-    def of(operator: ContactOperator, law: LawValues, A: JumpCompliance, H: Floats) -> Tangent:
-        """At the state with the law's values at the quadrature points. Raises NotConverged where nothing touches."""
+    def of(operator: ContactOperator, law: LawValues, A: JumpCompliance, motions: FreeMotions) -> Tangent:
+        """At the state with the law's values at the quadrature points. Raises NotConverged where nothing touches and
+        nothing else resists the motions."""
         M = operator.tangent(law)
         k = law.traction.shape[1]
         normal, used = np.arange(M.shape[0]) % k == 0, _columns(M)
         kept = used & (normal | np.repeat(_sticking_nodes(operator, law), k))
-        if not kept.any() and H.shape[1]:
+        if not kept.any() and motions.count and not motions.resistance.any():
             raise NotConverged(
                 "contact: wanted one that holds every free rigid motion, found no node in contact; bring the bodies "
                 "together, check the sign of the load, or hold the motion"
             )
-        return Tangent(M, A, H, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
+        return Tangent(M, A, motions, np.flatnonzero(kept), bool(np.array_equal(kept, used)))
 
     def times(self, y: Floats) -> Floats:
         """T y."""
         force, motion = np.split(y, [self.M.shape[0]])
-        jump = self.H @ motion - self.A.times(force)
-        return np.concatenate([force - self.M @ jump, self.H.T @ force])
+        jump = self.motions.jumps @ motion - self.A.times(force)
+        return np.concatenate([force - self.M @ jump, self.motions.balance(force, motion)])
 
     def solve(self, right: Floats) -> Floats:
         """T⁻¹ right, (m + r,), with all columns, where A is a matrix. Raises NotConverged where T is singular."""
         assert self.A.matrix is not None
-        inverse = ReducedTangent.of(self.M, self.A.matrix, self.H, np.flatnonzero(_columns(self.M)))
+        inverse = ReducedTangent.of(self.M, self.A.matrix, self.motions, np.flatnonzero(_columns(self.M)))
         first: Floats = inverse.solve(right)
         second: Floats = inverse.solve(right - self.times(first))  # f = b − M z loses digits: one refinement
         return first + second

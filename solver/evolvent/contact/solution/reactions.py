@@ -58,7 +58,8 @@ def reactions(solution: Solution, body: int, about: tuple[float, ...] = (0.0, 0.
 def _holding_forces(solution: Solution, body: int) -> Floats:
     """Forces that hold the held nodes, K'u − loads − contact forces (N, d) [N]; zero at all other nodes."""
     condensed, forces = solution.condensed[body], solution.nodal_forces[body]
-    a, u = condensed.assembled, condensed.deformation(forces, solution.step.load)
+    a = condensed.assembled
+    u = (solution.displacement(body) - a.motions.shapes @ solution.motions[body]).ravel()
     residual = a.stiffness @ u - solution.step.load * a.load - condensed.test_functionals.T @ forces
     for traction in condensed.tractions.values() if condensed.theta else ():
         residual -= condensed.theta * (traction.constant_term() @ u)

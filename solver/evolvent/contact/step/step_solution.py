@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from evolvent.contact.problem.body_response import BodyResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Step
 from evolvent.contact.step.contact_result import ContactResult
@@ -23,6 +24,7 @@ class Solution:
     nodal_forces: per body, forces (m,) on the functionals of its contact surfaces [N].
     condensed: the condensed bodies; `condensed[i].assembled.body` is the body itself.
     step: the step that was solved.
+    responses: how each body answers contact forces in this step.
     searches: number of searches for pairs: 1, or more if they were repeated on displaced surfaces.
     """
 
@@ -33,6 +35,7 @@ class Solution:
     nodal_forces: tuple[Floats, ...]
     condensed: tuple[CondensedBody, ...]
     step: Step
+    responses: tuple[BodyResponse, ...]
     searches: int = 1
 
     def body(self, index: int) -> CondensedBody:
@@ -43,7 +46,8 @@ class Solution:
 
     def displacement(self, body: int) -> Floats:
         """Displacement of a body's mesh nodes in its frame, rigid motion included, (N, d) [mm]. Raises InputError."""
-        return self.body(body).displacement(self.nodal_forces[body], self.step.load, self.motions[body])
+        self.body(body)
+        return self.responses[body].field(self.nodal_forces[body], self.motions[body])
 
 
 @dataclass(frozen=True)

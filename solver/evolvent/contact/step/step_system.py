@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg import block_diag
 
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import (
@@ -22,6 +23,7 @@ from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotion
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
+from evolvent.contact.problem.body_response import BodyResponse, StaticResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
 from evolvent.contact.problem.pressure_carrier import pressure_sides
@@ -53,6 +55,7 @@ class StepSystem:
     search_at: where the surfaces are searched for pairs; by default as the bodies are placed, moved by the prescribed
         motions if these are long.
     as_placed: search as the bodies are placed even if the prescribed motions are long.
+    responses: how the bodies answer contact forces; by default as without inertia.
 
     No solution is stored: one system can be solved any number of times. Raises InputError for a step that does not fit
     the problem, SearchError.
@@ -60,7 +63,7 @@ class StepSystem:
 
     def __init__(
         self, problem: Problem, condensed: tuple[CondensedBody, ...], step: Step, search_at: SearchPositions = None,
-        as_placed: bool = False,
+        as_placed: bool = False, responses: Sequence[BodyResponse] | None = None,
     ) -> None:  # fmt: skip
         self.problem, self.condensed, self.step = problem, condensed, step
         self.d = condensed[0].assembled.d
@@ -69,7 +72,10 @@ class StepSystem:
         self.placements = step.placements or tuple(Placement.at_rest(self.d) for _ in condensed)
         self.sides = [pressure_sides(problem.bodies, contact) for contact in problem.contacts]
         self.reaches = [reach_of(contact, self._surface(contact.first)) for contact in problem.contacts]
-        self.motions = [_motions_at(step, b, body.assembled) for b, body in enumerate(condensed)]
+        self.motions = [motions_at(step, b, body.assembled) for b, body in enumerate(condensed)]
+        self.responses = responses or [
+            StaticResponse(body, step.load, len(motions.free)) for body, motions in zip(condensed, self.motions)
+        ]
         self.paired = [self._pair(i, search_at[i] if search_at else None) for i in range(len(problem.contacts))]
         self.operators = [paired.operator for paired in self.paired]
         self.maps = [self._map(b) for b in range(len(condensed))]
@@ -130,13 +136,13 @@ class StepSystem:
     def compliance(self) -> Floats:
         """Σ E_b C_b E_bᵀ of all bodies in local jumps, (Σn·d, Σn·d) [mm/N]: gaps and stabilisers do not change it."""
         total = np.zeros((self.maps[0].shape[0],) * 2)
-        for E, body in zip(self.maps, self.condensed):
-            total += E @ (E @ body.compliance.T).T
+        for E, response in zip(self.maps, self.responses):
+            total += E @ (E @ response.compliance.T).T
         return total
 
     def load_jump(self) -> Floats:
-        """Local jumps under the external loads alone, (Σn·d,) [mm]."""
-        return self.step.load * sum(E @ b.load_response for E, b in zip(self.maps, self.condensed))
+        """Local jumps without contact forces and rigid motions, (Σn·d,) [mm]."""
+        return np.sum([E @ response.displacement for E, response in zip(self.maps, self.responses)], axis=0)
 
     def system(self, operators: Sequence[ContactOperator] | None = None) -> CondensedSystem:
         """Compliance, motions and loads of all bodies in local jumps.
@@ -145,16 +151,18 @@ class StepSystem:
         """
         operator = stacked(self.operators if operators is None else list(operators))
         jump, H, F = self.load_jump(), [], []
-        for E, body, motions in zip(self.maps, self.condensed, self.motions):
+        for E, body, motions, response in zip(self.maps, self.condensed, self.motions, self.responses):
             held = np.flatnonzero(~np.isnan(motions.value))
             moved = E @ body.motion_shapes
             jump = jump + moved[:, held] @ motions.value[held]
             H.append(moved[:, motions.free])
-            F.append(motions.load[motions.free])
-        motion, load = np.hstack(H), np.concatenate(F)
+            F.append(motions.load[motions.free] + response.load)
+        motion, load, resistance = np.hstack(H), np.concatenate(F), [each.resistance for each in self.responses]
         lever = np.abs(motion).max(axis=0, initial=0.0)
         compliance = DenseCompliance(self.compliance, self.d)
-        return CondensedSystem(operator, compliance, motion, jump, load, np.where(lever > 0.0, lever, 1.0))
+        return CondensedSystem(
+            operator, compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0)
+        )
 
     def solve(
         self, previous: DeformedSurfaces | None, operators: Sequence[ContactOperator] | None = None
@@ -251,13 +259,14 @@ class StepSystem:
             nodal_forces=tuple(-(E.T @ force.ravel()) for E in self.maps),
             condensed=self.condensed,
             step=self.step,
+            responses=tuple(self.responses),
         )
 
     def _deformed_surfaces(self, state: Equilibrium) -> DeformedSurfaces:
         force = self._nodal_forces(state).ravel()
         functionals = [
-            self.step.load * b.load_response - b.compliance @ (E.T @ force) + b.motion_shapes @ δ
-            for b, E, δ in zip(self.condensed, self.maps, self._body_motions(state))
+            r.displacement - r.compliance @ (E.T @ force) + b.motion_shapes @ δ
+            for b, r, E, δ in zip(self.condensed, self.responses, self.maps, self._body_motions(state))
         ]
         contacts = zip(self.sides, self.paired, self._tractions(state))
         return DeformedSurfaces(tuple(self._deformed(functionals, *contact) for contact in contacts))
@@ -275,7 +284,7 @@ class StepSystem:
         return result[0], result[1]
 
 
-def _motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
+def motions_at(step: Step, index: int, assembled: Assembled) -> RigidMotions:
     """The rigid motions of body `index` with their loads and prescribed amplitudes in a step."""
     motions, rigid = assembled.motions, assembled.body.rigid
     names = [f.direction for f in rigid.freedoms] if rigid else []

@@ -77,6 +77,8 @@ class Factor:
 
     def solve(self, right: Floats) -> Floats:
         """X with K X = `right` on the free rows and 0 on the fixed ones; both (n,) or (n × c)."""
+        if not right.size:  # MUMPS refuses no columns
+            return np.zeros_like(right)
         columns = right.reshape(len(right), -1)
         solution = np.zeros(columns.shape, order="F")
         solution[self._free] = self._cholesky.solve(columns[self._free])

@@ -80,7 +80,8 @@ class GearContact:
         n = len(self.geometry.node) * k
         motion = self.geometry.spins[loaded][:, :k].reshape(n, 1)
         lever = np.array([self.bodies[loaded].gear.base_radius])
-        return CondensedSystem(self.operator, compliance, motion, np.zeros(n), np.array([torque]), lever)
+        load = np.array([torque])
+        return CondensedSystem(self.operator, compliance, motion, np.zeros(n), load, np.zeros((1, 1)), lever)
 
     @property
     def too_deep(self) -> bool:

@@ -27,6 +27,6 @@ def tangent_stiffness(system: CondensedSystem, state: Equilibrium) -> float:
     """
     touching = state.traction[:, :1] > 0.0
     law = LawValues(state.traction[:, :1], touching[:, :, None].astype(float))
-    tangent = Tangent.of(system.operator, law, system.compliance, system.motion / system.lever)
+    tangent = Tangent.of(system.operator, law, system.compliance, system.motions)
     unit = np.append(np.zeros(len(system.jump)), 1.0)
     return 1.0 / float(system.steps.solve(tangent, unit, ACCURACY)[-1])

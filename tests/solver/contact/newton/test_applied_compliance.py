@@ -15,6 +15,7 @@ from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed
 from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
 from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
+from evolvent.contact.newton.reduced_tangent import FreeMotions
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.newton.tangent import Tangent
 from evolvent_meshes.arrays import Bools, Floats, Reals
@@ -70,8 +71,10 @@ def touching() -> Bools:
     return np.asarray(((place > 8) & (place < 22)) | ((place > 40) & (place < 50)))
 
 
-def tangent(A: AppliedCompliance | DenseCompliance, k: int, friction: float = 0.2, sticks: float = 0.0) -> Tangent:
-    """T where nodes touch, stiffness 5: they slide, and the last contact's first nodes stick."""
+def tangent(
+    A: AppliedCompliance | DenseCompliance, k: int, friction: float = 0.2, sticks: float = 0.0, resistance: float = 0.0
+) -> Tangent:
+    """T where nodes touch, stiffness 5: they slide, and the last contact's first nodes stick; D (1, 1) is given."""
     block = np.array([[1.0, 0.0, 0.0], [friction, 0.0, 0.0], [0.0, 0.0, 0.01]])[:k, :k]
     on = touching()
     M = sp.csr_matrix(sp.kron(sp.diags(5.0 * on), block))
@@ -82,29 +85,31 @@ def tangent(A: AppliedCompliance | DenseCompliance, k: int, friction: float = 0.
         kept.append(stuck.ravel())
     M.eliminate_zeros()
     H = np.tile(np.eye(k)[0], N)[:, None].copy()
-    return Tangent(M, A, H, np.sort(np.concatenate(kept)), whole=k == 1)
+    return Tangent(M, A, FreeMotions(H, np.array([[resistance]])), np.sort(np.concatenate(kept)), whole=k == 1)
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-9])
-@pytest.mark.parametrize(("k", "sticks"), [(1, 0.0), (3, 0.0), (3, 4.0)])
-def test_newton_step_is_that_of_the_matrix(k: int, sticks: float, accuracy: float) -> None:
-    """T y = b to the accuracy, with a free motion, also where nodes stick."""
-    T = tangent(applied(k), k, sticks=sticks)
+@pytest.mark.parametrize(("k", "sticks", "resistance"), [(1, 0.0, 0.0), (3, 0.0, 0.0), (3, 4.0, 0.0), (3, 4.0, 9.0)])
+def test_newton_step_is_that_of_the_matrix(k: int, sticks: float, resistance: float, accuracy: float) -> None:
+    """T y = b to the accuracy, with a free motion, also where nodes stick, and with inertia."""
+    T = tangent(applied(k), k, sticks=sticks, resistance=resistance)
     right = np.append(T.M @ RNG(1).normal(size=N * k), 3.0)
-    found = NewtonSteps(T.A, T.H).solve(T, right, accuracy)
-    A = exact(k)
-    dense = np.block([[np.eye(N * k) + T.M @ A, -(T.M @ T.H)], [T.H.T, np.zeros((1, 1))]])
+    found = NewtonSteps(T.A, T.motions).solve(T, right, accuracy)
+    A, H = exact(k), T.motions.jumps
+    dense = np.block([[np.eye(N * k) + T.M @ A, -(T.M @ H)], [H.T, T.motions.resistance]])
     assert np.linalg.norm(right - dense @ found) <= 1.1 * accuracy * np.linalg.norm(right)
 
 
-def test_rough_inverse_is_exact_without_friction() -> None:
+@pytest.mark.parametrize("resistance", [0.0, 9.0])
+def test_rough_inverse_is_exact_without_friction(resistance: float) -> None:
     """k = 1, where the rough compliance is A itself: the inverse to single precision. Other blocks are left out."""
-    T = tangent(applied(1), 1)
+    T = tangent(applied(1), 1, resistance=resistance)
     unknowns = np.flatnonzero(touching())
     rough = applied(1).rough
-    inverse = BlockInverse(rough, unknowns, T.M[unknowns][:, unknowns], T.H[unknowns], np.arange(len(unknowns)))
-    A, M, H = exact(1)[np.ix_(unknowns, unknowns)], T.M[unknowns][:, unknowns].toarray(), T.H[unknowns]
-    dense = np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, np.zeros((1, 1))]])
+    motions = T.motions.of(unknowns, float)
+    inverse = BlockInverse(rough, unknowns, T.M[unknowns][:, unknowns], motions, np.arange(len(unknowns)))
+    A, M, H = exact(1)[np.ix_(unknowns, unknowns)], T.M[unknowns][:, unknowns].toarray(), motions.jumps
+    dense = np.block([[np.eye(len(A)) + M @ A, -M @ H], [H.T, motions.resistance]])
     right = RNG(2).normal(size=len(unknowns) + 1)
     assert dense @ inverse.solve(right) == pytest.approx(right, abs=1e-4)
 
@@ -120,9 +125,9 @@ def test_products_and_normal_components() -> None:
 def test_what_cannot_be_solved_or_summed_is_refused() -> None:
     """Nothing touches, and a motion is free: no step. Matrices beside products have no sum."""
     T = tangent(applied(1), 1)
-    nothing = Tangent(0.0 * T.M, T.A, T.H, T.kept, whole=True)
+    nothing = Tangent(0.0 * T.M, T.A, T.motions, T.kept, whole=True)
     with pytest.raises(NotConverged):
-        NewtonSteps(T.A, T.H).solve(nothing, np.append(np.zeros(N), 1.0), 1e-3)
+        NewtonSteps(T.A, T.motions).solve(nothing, np.append(np.zeros(N), 1.0), 1e-3)
     with pytest.raises(ValueError, match="all matrices or all products"):
         summed([exact(1), Surface(1)], 1)
     assert isinstance(summed([exact(1), exact(1)], 1), DenseCompliance)

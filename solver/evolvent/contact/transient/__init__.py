@@ -1,0 +1,1 @@
+"""Contact of bodies with inertia, over time."""

@@ -1,0 +1,104 @@
+"""A moving body's answer to contact forces in one time step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evolvent.contact.transient.moving_body import MovingBody
+from evolvent.contact.transient.time_scheme import MotionState, TimeStep
+from evolvent_meshes.arrays import Floats, Ints
+
+
+@dataclass(frozen=True)
+class MovingResponse:
+    """See `BodyResponse`; m modes, r rigid motions, s of them free."""
+
+    body: MovingBody
+    """The body."""
+    step: TimeStep
+    """From its state at the begin, on modes and rigid motions (m + r)."""
+    factor: float
+    """Of its loads at the end."""
+    resultant: Floats
+    """(s,) of all loads on the free rigid motions at the end [N, N·mm]."""
+    prescribed: Floats
+    """(r,) rigid motions at the end, NaN where they are free [mm, rad]."""
+
+    @cached_property
+    def compliance(self) -> Floats:
+        """See `BodyResponse.compliance`."""
+        Φ = self.body.functionals
+        return self.body.rest + (Φ / self._modal) @ Φ.T
+
+    @cached_property
+    def displacement(self) -> Floats:
+        """See `BodyResponse.displacement`."""
+        rest = self.body.load_response(self.factor, self.resultant)
+        return rest + self.body.functionals @ (self._pushed / self._modal)
+
+    @property
+    def resistance(self) -> Floats:
+        """See `BodyResponse.resistance`."""
+        return self.step.matrix[np.ix_(self._free, self._free)]
+
+    @property
+    def load(self) -> Floats:
+        """See `BodyResponse.load`."""
+        return self.step.known[self._free] - self.step.matrix[np.ix_(self._free, self._held)] @ self._held_at
+
+    def state(self, forces: Floats, motion: Floats) -> MotionState:
+        """The body's state at the end, under forces on the functionals (k,) at rigid motions (r,)."""
+        return self.step.after(np.concatenate([self.modes(forces), motion]))
+
+    def modes(self, forces: Floats) -> Floats:
+        """Amplitudes q (m,) at the end, under forces on the functionals (k,)."""
+        return (self._pushed + self.body.functionals.T @ forces) / self._modal
+
+    def field(self, forces: Floats, motion: Floats) -> Floats:
+        """See `BodyResponse.field`: static under all forces and the inertia forces of the modes and rigid motions."""
+        w, body = self._deformation(forces), self.body
+        shapes = body.condensed.assembled.motions.shapes
+        return body.axes.shape(w).reshape(shapes.shape[:2]) + shapes @ motion
+
+    def _deformation(self, forces: Floats) -> Floats:
+        """w (n,) [mm] on the free degrees of freedom."""
+        condensed, axes = self.body.condensed, self.body.axes
+        free, modes = condensed.assembled.free, self.body.modes
+        contact = (condensed.functionals.T @ forces)[free]
+        load = self.factor * condensed.load + contact - axes.carried @ self._resultant(forces)
+        behind = self.modes(forces) - self._modal_force(forces) / modes.frequencies**2
+        return np.asarray(condensed.factor.solve(load) + modes.shapes @ behind)
+
+    def _modal_force(self, forces: Floats) -> Floats:
+        return self.body.modal_load(self.factor, self.resultant) + self.body.functionals.T @ forces
+
+    def _resultant(self, forces: Floats) -> Floats:
+        """(s,) of loads and contact forces on the free rigid motions."""
+        return self.resultant + self.body.condensed.motion_shapes[:, self.body.free].T @ forces
+
+    @property
+    def _modal(self) -> Floats:
+        """Diagonal of the matrix among the modes (m,)."""
+        return np.diag(self.step.matrix)[: self.body.count]
+
+    @cached_property
+    def _pushed(self) -> Floats:
+        """(m,) forces on the modes but for those of the contact."""
+        m = self.body.count
+        inertia = self.step.known[:m] - self.step.matrix[:m, self._held] @ self._held_at
+        return self.body.modal_load(self.factor, self.resultant) + inertia
+
+    @property
+    def _free(self) -> Ints:
+        return self.body.count + self.body.free
+
+    @property
+    def _held(self) -> Ints:
+        return self.body.count + np.flatnonzero(~np.isnan(self.prescribed))
+
+    @property
+    def _held_at(self) -> Floats:
+        return self.prescribed[~np.isnan(self.prescribed)]

@@ -1,0 +1,74 @@
+"""What a transient begins with, and the settings of its method."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from evolvent.contact.problem.definition import Step
+from evolvent_meshes.input_checks import instance, is_index, number, refuse, vector
+
+MODES = 20
+"""Natural modes of each body, unless others are asked for."""
+DAMPED = 0.8
+"""ρ_∞ by default: motions too fast for the step lose a fifth of their amplitude in each."""
+
+
+@dataclass(frozen=True)
+class TransientSettings:
+    """The method of a transient.
+
+    time_step: [s].
+    modes: natural modes of each body that have inertia; the others answer at once.
+    damping_ratio: of each mode, over the critical one.
+    spectral_radius: ρ_∞ of the method, from 0 (motions too fast for the step are gone in one) to 1 (they stay for ever,
+        and blows may add energy).
+    Raises InputError.
+    """
+
+    time_step: float
+    modes: int = MODES
+    damping_ratio: float = 0.0
+    spectral_radius: float = DAMPED
+
+    def __post_init__(self) -> None:
+        number("transient, time_step", self.time_step, "a finite number > 0 [s]", "give one in s", lambda h: h > 0.0)
+        if not (is_index(self.modes) and self.modes >= 0):
+            refuse("transient, modes", "a whole number from 0 on", self.modes, f"{MODES} are the default")
+        number(
+            "transient, damping_ratio", self.damping_ratio, "a number from 0 to 1", "0.01 is one per cent",
+            lambda ζ: 0.0 <= ζ <= 1.0,
+        )  # fmt: skip
+        number(
+            "transient, spectral_radius", self.spectral_radius, "a number from 0 to 1", f"{DAMPED:g} is the default",
+            lambda ρ: 0.0 <= ρ <= 1.0,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """The state at time 0.
+
+    step: its static equilibrium, from which the transient begins; None: undeformed as placed, nothing in contact.
+    velocities: index of a body -> velocity (d,) [mm/s] with which it moves, without turning. The others are at rest.
+    Raises InputError.
+
+    >>> InitialState(velocities={1: (0.0, -1000.0)}).velocities[1]
+    (0.0, -1000.0)
+    """
+
+    step: Step | None = None
+    velocities: Mapping[int, tuple[float, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.step is not None:
+            instance("initial state, step", self.step, Step, "write InitialState(Step()), or leave it out")
+        if not isinstance(self.velocities, Mapping) or not all(is_index(index) for index in self.velocities):
+            wanted = "bodies' indices with velocities"
+            refuse("initial state, velocities", wanted, self.velocities, "write {1: (0.0, -1000.0)}")
+        wanted = "two finite components [mm/s] in 2D, three in 3D"
+        given = {
+            int(index): vector(f"velocity of body {index}", v, (2, 3), wanted, "give one number a direction")
+            for index, v in self.velocities.items()
+        }
+        object.__setattr__(self, "velocities", given)

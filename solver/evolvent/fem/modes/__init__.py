@@ -1,0 +1,1 @@
+"""Inertia of elastic bodies: mass matrix, natural modes."""

@@ -13,6 +13,7 @@ from evolvent import (
     InitialState,
     Problem,
     Rigid,
+    Solution,
     Step,
     Traction,
     Transient,
@@ -40,10 +41,10 @@ def loads() -> list[Step]:
     return [Step(0.4), Step(1.0), Step(0.7)]
 
 
-def figures(solution: object) -> Floats:
+def figures(solution: Solution) -> Floats:
     """Pressures, forces and displacements of both bodies."""
-    return np.concatenate([solution.contacts[0].traction.ravel(), 1e3 * solution.displacement(0).ravel(),
-                           1e3 * solution.displacement(1).ravel()])  # type: ignore[attr-defined]  # fmt: skip
+    displacements = [1e3 * solution.displacement(body).ravel() for body in range(2)]
+    return np.concatenate([solution.contacts[0].traction.ravel(), *displacements])
 
 
 @pytest.mark.parametrize("modes", [0, 3, 1000])

@@ -1,0 +1,1 @@
+"""Natural modes of gears made of equal sectors."""

@@ -1,0 +1,104 @@
+"""Natural modes of a gear of N equal sectors, held at its bore, harmonic by harmonic.
+
+A harmonic 0 < k < N/2 has pairs of modes, u_s = √(2/N) Re(φ e^{iks2π/N}) and Im of the same, in the frames of the sectors
+s; k = 0 and k = N/2 have single ones, √(1/N) φ e^{iks2π/N}. φ is a complex mode of one sector (`cyclic_stiffness`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import eigh
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from evolvent.gears.modes.cyclic_stiffness import CyclicFaces, CyclicInverse, CyclicStiffness, Numbers
+from evolvent_meshes.arrays import Floats, Ints
+
+FEW = 60
+"""Unknowns of a harmonic below which its dense eigenproblem is solved."""
+
+
+@dataclass(frozen=True)
+class SectorMatrices:
+    """A sector without its held degrees of freedom, N of them."""
+
+    stiffness: sp.csr_matrix
+    """(N, N) [N/mm]."""
+    mass: sp.csr_matrix
+    """(N, N) [t]."""
+    faces: CyclicFaces
+    """Its cut faces."""
+
+
+@dataclass(frozen=True)
+class RingModes:
+    """m modes of the whole gear, ascending within each harmonic; those of a pair follow each other."""
+
+    sectors: int
+    """N."""
+    frequencies: Floats
+    """ω (m,) [rad/s]."""
+    harmonic: Ints
+    """(m,) k."""
+    imaginary: Ints
+    """(m,) 1 for the second one of a pair, else 0."""
+    shapes: Numbers
+    """(n, m) complex, of sector 0 in its own frame, scaled; the real part is the displacement, see `of_sector`."""
+
+    def of_sector(self, number: int, rows: Ints | None = None) -> Floats:
+        """Displacements (n, m) of a sector in its own frame by unit amplitudes; rows: (k,) some of the n."""
+        turned = np.exp(2j * np.pi * self.harmonic * number / self.sectors - 0.5j * np.pi * self.imaginary)
+        shapes = self.shapes if rows is None else self.shapes[rows]
+        return np.real(shapes * turned)
+
+    def earlier(self, amplitudes: Floats, pitches: int) -> Floats:
+        """Amplitudes (m,) of the same motion, in which sector s moves as sector s + pitches did."""
+        angle = 2.0 * np.pi * self.harmonic * pitches / self.sectors
+        partner = np.arange(len(angle))
+        pairs = np.flatnonzero(self.imaginary)
+        partner[pairs], partner[pairs - 1] = pairs - 1, pairs
+        sign = np.where(self.imaginary == 1, -1.0, 1.0)
+        crossed = np.where(partner == np.arange(len(angle)), 0.0, sign * np.sin(angle) * amplitudes[partner])
+        return np.cos(angle) * amplitudes + crossed
+
+
+def ring_modes(sector: SectorMatrices, sectors: int, count: int) -> RingModes:
+    """The lowest `count` modes of each harmonic, pairs counted once. Raises NotPositiveDefinite, OutOfMemory."""
+    cyclic = CyclicStiffness(sector.stiffness, sector.faces)
+    size = sector.stiffness.shape[0]
+    frequencies, harmonic, imaginary, shapes = [], [], [], []
+    for k in range(sectors // 2 + 1 if count else 0):
+        single = 2 * k in (0, sectors)
+        phase = np.real(np.exp(2j * np.pi * k / sectors)) if single else np.exp(2j * np.pi * k / sectors)
+        ω, φ = _modes(sector, cyclic.inverse(phase), phase, count)
+        whole = sector.faces.expanded(φ, phase, size) * np.sqrt((1.0 if single else 2.0) / sectors)
+        copies = 1 if single else 2
+        frequencies.append(np.repeat(ω, copies))
+        shapes.append(np.repeat(whole, copies, axis=1))
+        harmonic.append(np.full(copies * len(ω), k))
+        imaginary.append(np.tile(np.arange(copies), len(ω)))
+    if not shapes:
+        nothing = np.zeros(0, dtype=np.int64)
+        return RingModes(sectors, np.zeros(0), nothing, nothing, np.zeros((size, 0)))
+    parts = [np.concatenate(each) for each in (frequencies, harmonic, imaginary)]
+    return RingModes(sectors, parts[0], parts[1], parts[2], np.concatenate(shapes, axis=1))
+
+
+def _modes(
+    sector: SectorMatrices, inverse: CyclicInverse, phase: complex, count: int
+) -> tuple[Floats, Numbers]:
+    """ω (m,) and φ (n_i + c, m) of a harmonic, φᴴ M(θ) φ = 1."""
+    K, M = (sector.faces.reduced(matrix, phase) for matrix in (sector.stiffness, sector.mass))
+    n = K.shape[0]
+    if n <= max(FEW, 3 * count):
+        values, shapes = eigh(K.toarray(), M.toarray())
+        return np.sqrt(values[:count]), shapes[:, :count]
+    operator = LinearOperator((n, n), inverse.solve, dtype=K.dtype)
+    start = np.random.default_rng(1).standard_normal(n).astype(K.dtype)  # ARPACK's own differs from run to run
+    values, shapes = eigsh(K, count, M=M, sigma=0.0, OPinv=operator, v0=start)
+    order = np.argsort(values)
+    shapes = shapes[:, order]
+    norms = np.sqrt(np.real(np.einsum("nm,nm->m", shapes.conj(), M @ shapes)))
+    return np.sqrt(values[order]), shapes / norms

@@ -1,0 +1,1 @@
+"""Gear pairs with inertia, over time."""

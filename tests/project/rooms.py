@@ -59,6 +59,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
         "dynamics.oscillator",
     ),
+    "dynamics.modes": ("meshes", "fem.modes", "fem.condensation", "gears"),
+    "dynamics.transient": (
+        "meshes", "meshes.gears", "contact.newton", "contact.transient", "gears.ring", "gears", "gears.contact",
+        "gears.sweep", "dynamics.modes",
+    ),
     "strength.standard": ("meshes", "meshes.gears"),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "scene.schema.guesses"),

@@ -6,7 +6,7 @@ kept as forces: the displacements of any flank nodes follow from them by the com
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,13 +73,21 @@ class PreviousJump:
     jump: Floats
 
 
-def previous_jumps(geometry: ContactGeometry, histories: Sequence[FrictionHistory]) -> list[PreviousJump]:
-    """Interpolates histories of one position, at several friction coefficients, to the nodes of the present contact."""
+def previous_jumps(
+    geometry: ContactGeometry, histories: Sequence[FrictionHistory], vibration: Callable[[Member], Floats] | None = None
+) -> list[PreviousJump]:
+    """Interpolates histories of one position, at several friction coefficients, to the nodes of the present contact.
+
+    vibration: displacements (m, d) of a gear's rows in the present contact, in its own frame, that were there beside
+    those by the contact forces [mm].
+    """
     if not histories:
         return []
     if not _have_equal_rows(histories):  # deflected flanks are searched for each coefficient
-        return [jump for history in histories for jump in previous_jumps(geometry, [history])]
+        return [jump for history in histories for jump in previous_jumps(geometry, [history], vibration)]
     u1, u2 = (_displacements(geometry, histories, gear) for gear in Member)
+    if vibration is not None:
+        u1, u2 = u1 + vibration(Member.PINION), u2 + vibration(Member.WHEEL)
     return [PreviousJump(each.stand, _jump(geometry, each.stand, *u)) for each, *u in zip(histories, u1, u2)]
 
 

@@ -1,11 +1,13 @@
 """Natural modes of a gear of N equal sectors, held at its bore, harmonic by harmonic.
 
-A harmonic 0 < k < N/2 has pairs of modes, u_s = √(2/N) Re(φ e^{iks2π/N}) and Im of the same, in the frames of the sectors
-s; k = 0 and k = N/2 have single ones, √(1/N) φ e^{iks2π/N}. φ is a complex mode of one sector (`cyclic_stiffness`).
+A harmonic 0 < k < N/2 has pairs of modes, u_s = √(2/N) Re(φ e^{iks2π/N}) and Im of the same, in the frames of the
+sectors s; k = 0 and k = N/2 have single ones, √(1/N) φ e^{iks2π/N}. φ is a complex mode of one sector
+(`cyclic_stiffness`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +15,7 @@ import scipy.sparse as sp
 from scipy.linalg import eigh
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from evolvent.gears.modes.cyclic_stiffness import CyclicFaces, CyclicInverse, CyclicStiffness, Numbers
+from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, CyclicInverse, CyclicStiffness, Numbers
 from evolvent_meshes.arrays import Floats, Ints
 
 FEW = 60
@@ -64,14 +66,29 @@ class RingModes:
         return np.cos(angle) * amplitudes + crossed
 
 
-def ring_modes(sector: SectorMatrices, sectors: int, count: int) -> RingModes:
-    """The lowest `count` modes of each harmonic, pairs counted once. Raises NotPositiveDefinite, OutOfMemory."""
-    cyclic = CyclicStiffness(sector.stiffness, sector.faces)
+def harmonics(sectors: int) -> range:
+    """0 … N/2."""
+    return range(sectors // 2 + 1)
+
+
+def modes_below(sector: SectorMatrices, sectors: int, highest: float) -> list[int]:
+    """How many modes each harmonic has below a frequency [rad/s], pairs counted once.
+
+    Raises NotPositiveDefinite where the interior alone, with its cut faces held, vibrates below it; OutOfMemory.
+    """
+    shifted = CyclicStiffness((sector.stiffness - highest**2 * sector.mass).tocsr(), sector.faces)
+    return [shifted.negative(_phase(k, sectors)) for k in harmonics(sectors)]
+
+
+def ring_modes(sector: SectorMatrices, sectors: int, counts: Sequence[int]) -> RingModes:
+    """The lowest modes of each harmonic, so many, pairs counted once. Raises NotPositiveDefinite, OutOfMemory."""
     size = sector.stiffness.shape[0]
+    cyclic = CyclicStiffness(sector.stiffness, sector.faces) if any(counts) else None
     frequencies, harmonic, imaginary, shapes = [], [], [], []
-    for k in range(sectors // 2 + 1 if count else 0):
-        single = 2 * k in (0, sectors)
-        phase = np.real(np.exp(2j * np.pi * k / sectors)) if single else np.exp(2j * np.pi * k / sectors)
+    for k, count in enumerate(counts):
+        if not count or cyclic is None:
+            continue
+        single, phase = 2 * k in (0, sectors), _phase(k, sectors)
         ω, φ = _modes(sector, cyclic.inverse(phase), phase, count)
         whole = sector.faces.expanded(φ, phase, size) * np.sqrt((1.0 if single else 2.0) / sectors)
         copies = 1 if single else 2
@@ -82,8 +99,14 @@ def ring_modes(sector: SectorMatrices, sectors: int, count: int) -> RingModes:
     if not shapes:
         nothing = np.zeros(0, dtype=np.int64)
         return RingModes(sectors, np.zeros(0), nothing, nothing, np.zeros((size, 0)))
-    parts = [np.concatenate(each) for each in (frequencies, harmonic, imaginary)]
-    return RingModes(sectors, parts[0], parts[1], parts[2], np.concatenate(shapes, axis=1))
+    numbers = np.concatenate(harmonic), np.concatenate(imaginary)
+    return RingModes(sectors, np.concatenate(frequencies), *numbers, np.concatenate(shapes, axis=1))
+
+
+def _phase(k: int, sectors: int) -> complex:
+    """e^{2πik/N}, a real number where it is one."""
+    turned = np.exp(2j * np.pi * k / sectors)
+    return complex(turned) if 2 * k not in (0, sectors) else float(np.real(turned))
 
 
 def _modes(

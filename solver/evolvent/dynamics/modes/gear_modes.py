@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
+from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces
+from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.kinematics import turn
-from evolvent.gears.modes.cyclic_stiffness import CyclicFaces
-from evolvent.gears.modes.ring_modes import RingModes, SectorMatrices, ring_modes
 from evolvent_meshes.arrays import Floats, Ints
 
 
@@ -37,8 +37,24 @@ class GearModes:
         return self.modes.of_sector(tooth, rows)
 
 
-def gear_modes(body: GearBody, count: int) -> GearModes:
-    """The lowest `count` modes of each harmonic, on the sector mesh of a condensed gear.
+@dataclass(frozen=True)
+class ModeChoice:
+    """Which modes are computed."""
+
+    highest: float
+    """All up to this frequency [rad/s]."""
+    per_harmonic: int | None = None
+    """So many of each harmonic instead, pairs counted once."""
+
+    def counts(self, sector: SectorMatrices, sectors: int) -> list[int]:
+        """Of each harmonic. Raises NotPositiveDefinite, OutOfMemory."""
+        if self.per_harmonic is not None:
+            return [self.per_harmonic for _ in harmonics(sectors)]
+        return modes_below(sector, sectors, self.highest)
+
+
+def gear_modes(body: GearBody, choice: ModeChoice) -> GearModes:
+    """Modes on the sector mesh of a condensed gear.
 
     Raises NotPositiveDefinite, OutOfMemory, CompileError, CacheError.
     """
@@ -51,7 +67,8 @@ def gear_modes(body: GearBody, count: int) -> GearModes:
     interior = np.setdiff1d(np.arange(len(parts.free)), np.concatenate([low, high]))
     about = sp.kron(sp.eye(len(low) // body.d), turn(pitch, body.d)).tocsr()
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
-    found = ring_modes(SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about)), N, count)
+    sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
+    found = ring_modes(sector, N, choice.counts(sector, N))
     r = _turning(body.mesh.points, body.d)
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)

@@ -1,9 +1,9 @@
 """The stiffness of a ring of equal sectors in one of its harmonics, inverted by one real factor for all harmonics.
 
-In harmonic k of N sectors the displacements of a sector's high cut face are those of its low one turned by the pitch and
-times e^{iθ}, θ = 2πk/N. With these eliminated, K(θ) u = b on interior and low face (n complex unknowns), whose interior
-does not depend on θ: it is factored once, and a dense block of the low face's size for each harmonic (Thomas, Int. J.
-Numer. Meth. Eng. 14 (1979) 81-102).
+In harmonic k of N sectors the displacements of a sector's high cut face are those of its low one turned by the pitch
+and times e^{iθ}, θ = 2πk/N. With these eliminated, K(θ) u = b on interior and low face (n complex unknowns), whose
+interior does not depend on θ: it is factored once, and a dense block of the low face's size for each harmonic (Thomas,
+Int. J. Numer. Meth. Eng. 14 (1979) 81-102).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scipy.linalg import cho_factor, cho_solve
 from evolvent.fem.condensation.schur_complement import Factor
 from evolvent_meshes.arrays import Floats, Ints
 
-Numbers = NDArray[np.float64] | NDArray[np.complex128]
+Numbers = NDArray[np.float64 | np.complex128]
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,18 @@ class CyclicStiffness:
 
     def inverse(self, phase: complex) -> CyclicInverse:
         """K(θ)⁻¹ at e^{iθ}."""
-        i, low, high = self.faces.interior, self._low, self._high
+        across = (self._low + phase * self._high).tocsr()
+        return CyclicInverse(self._inside, across, cho_factor(self._face(phase), lower=True), across.shape[0])
+
+    def negative(self, phase: complex) -> int:
+        """How many eigenvalues of K(θ) are negative: all are of the low face, as the interior was factored (Wittrick
+        and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263-284)."""
+        return int(np.count_nonzero(np.linalg.eigvalsh(self._face(phase)) < 0.0))
+
+    def _face(self, phase: complex) -> Numbers:
+        """(c, c) of the low face without the interior."""
         S, c = self._schur, len(self.faces.low)
-        block = S[:c, :c] + S[c:, c:] + phase * S[:c, c:] + np.conj(phase) * S[c:, :c]
-        return CyclicInverse(self._inside, (low + phase * high).tocsr(), cho_factor(block, lower=True), len(i))
+        return S[:c, :c] + S[c:, c:] + phase * S[:c, c:] + np.conj(phase) * S[c:, :c]
 
     @cached_property
     def _low(self) -> sp.csr_matrix:
@@ -113,6 +121,6 @@ class CyclicInverse:
 
     def _solved(self, right: Numbers) -> Numbers:
         if not np.iscomplexobj(right):
-            return self.inside.solve(right)
+            return self.inside.solve(np.real(right))
         parts = self.inside.solve(np.column_stack([right.real, right.imag]))
         return parts[:, 0] + 1j * parts[:, 1]

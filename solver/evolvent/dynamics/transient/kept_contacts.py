@@ -1,0 +1,85 @@
+"""The contacts of a mesh period's positions, searched once each and kept.
+
+The gap of a position is linear in ψ near where it was searched. Searches are made at whole multiples of twice
+`search_window`'s reach, so that a pair that vibrates needs one or a few for each position.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from evolvent.contact.newton.equilibrium import Equilibrium
+from evolvent.contact.newton.snes import NotConverged
+from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.dynamics.transient.pair_step import SearchedContact
+from evolvent.gears.contact.pair_contact import gear_contact
+from evolvent.gears.kinematics import Stand
+
+REACH = 1e-3
+"""Displacement of the flanks [modules] for which a search serves."""
+BEYOND = 1.5
+"""Half-multiples to which it may serve where the next search would send the solution back."""
+WIDER = 1.5
+"""Windows over those of statics: vibration widens contacts."""
+ROUNDS = 8
+
+
+@dataclass(frozen=True)
+class KeptContacts:
+    """Of one pair, for any number of transients with the same number of components."""
+
+    pair: MovingPair
+    """With inertia."""
+    positions: int
+    """Time steps of a mesh period."""
+    components: int
+    """k: 1 without friction, else the dimension of space."""
+    kept: dict[tuple[int, int], SearchedContact] = field(default_factory=dict, repr=False)
+    """By position and multiple."""
+
+    @property
+    def step_angle(self) -> float:
+        """Of the pinion [rad]."""
+        return 2.0 * np.pi / self.pair.model.pair.pinion.z / self.positions
+
+    def solved(
+        self, phase: int, predicted: float, solve: Callable[[SearchedContact], Equilibrium]
+    ) -> tuple[SearchedContact, Equilibrium]:
+        """The solution of a position, on the contact searched near to it. predicted: ψ [rad]. Raises NotConverged."""
+        multiple = round(predicted / self._spacing)
+        for _ in range(ROUNDS):
+            at = self._at(phase, multiple)
+            found = solve(at)
+            shift = float(found.motion[0]) / self._spacing
+            if abs(shift) <= 0.5 * BEYOND:
+                return at, found
+            multiple += round(shift)
+        raise NotConverged(
+            f"pinion at {np.degrees(phase * self.step_angle):.3f}°: wanted flanks searched where they come to, found "
+            f"them {self._spacing * self.pair.lever * 1e3:.2f} µm away after {ROUNDS} searches; take more positions"
+        )
+
+    def _at(self, phase: int, multiple: int) -> SearchedContact:
+        key = phase, multiple
+        if key not in self.kept:
+            self.kept[key] = self._searched(phase * self.step_angle, multiple * self._spacing)
+        return self.kept[key]
+
+    def _searched(self, angle: float, ψ: float) -> SearchedContact:
+        model = self.pair.model
+        stand = Stand(model.pair, angle, self.pair.drive.rotations(ψ))
+        contact = gear_contact(model.bodies, stand, list(model.teeth), WIDER * model.half_width)
+        if not contact.geometry.teeth:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the pair "
+                "may be thrown apart further than the search looks: give it more damping or another speed"
+            )
+        return SearchedContact.of(self.pair, contact, ψ, self.components)
+
+    @property
+    def _spacing(self) -> float:
+        """ψ between two searches [rad]."""
+        return 2.0 * REACH * self.pair.model.pair.pinion.normal_module / self.pair.lever

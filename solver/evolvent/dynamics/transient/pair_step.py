@@ -1,0 +1,90 @@
+"""A time step of a gear pair as the contact system of a position.
+
+With Φ the jumps of the contact by unit modes, H those by ψ, A the static compliance, D the matrix and b the known part
+of the time step (contact/transient/time_scheme.py), eliminating the modes leaves, at ψ_s where the flanks were searched
+and with ψ = ψ_s + δ,
+
+    J = Φ D_q⁻¹ (b_q − D_qψ ψ_s) + H' δ − (A − Φ (Ω⁻² − D_q⁻¹) Φᵀ) f ,    H' = H − Φ D_q⁻¹ D_qψ ,
+    H'ᵀ f + D' δ = T + b_ψ − D_ψq D_q⁻¹ b_q − D' ψ_s ,                    D' = D_ψψ − D_ψq D_q⁻¹ D_qψ .
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evolvent.contact.newton.contact_equations import CondensedSystem
+from evolvent.contact.newton.equilibrium import Equilibrium, with_components
+from evolvent.contact.newton.jump_compliance import DenseCompliance
+from evolvent.contact.transient.time_scheme import MotionState, TimeStep
+from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.gears.contact.pair_contact import GearContact
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True)
+class SearchedContact:
+    """The contact of a position as searched, with k components, n·k jumps and m modes: no state enters it."""
+
+    contact: GearContact
+    """Where the flanks face each other."""
+    searched: float
+    """ψ_s [rad]."""
+    compliance: Floats
+    """A (n·k, n·k) [mm/N]."""
+    modes: Floats
+    """Φ (n·k, m)."""
+    turned: Floats
+    """H (n·k,) [mm/rad]."""
+    k: int
+    """Components."""
+
+    @staticmethod
+    def of(pair: MovingPair, contact: GearContact, searched: float, k: int) -> SearchedContact:
+        """Puts compliance and modes together."""
+        geometry = contact.geometry
+        matrix = geometry.compliance(k).matrix
+        assert matrix is not None
+        turned = sum(share * spin[:, :k] for share, spin in zip(pair.drive.shares, geometry.spins))
+        return SearchedContact(contact, searched, matrix, pair.mode_jumps(geometry, k), np.ravel(turned), k)
+
+
+@dataclass(frozen=True)
+class PairStep:
+    """One time step of a pair with m modes."""
+
+    pair: MovingPair
+    """The pair."""
+    step: TimeStep
+    """From the state at its begin, on modes and ψ (m + 1)."""
+
+    def system(self, at: SearchedContact) -> CondensedSystem:
+        """The contact system at its end, on δ = ψ − ψ_s."""
+        m, D, b = self.pair.count, self.step.matrix, self.step.known
+        push, slow = D[:m, m] / self._modal, 1.0 / self.pair.frequencies**2 - 1.0 / self._modal
+        resistance = D[m, m] - D[m, :m] @ push
+        load = self.pair.drive.torque + b[m] - push @ b[:m] - resistance * at.searched
+        return CondensedSystem(
+            operator=at.contact.operator,
+            compliance=DenseCompliance(at.compliance - (at.modes * slow) @ at.modes.T, at.k),
+            motion=(at.turned - at.modes @ push)[:, None],
+            jump=at.modes @ (b[:m] / self._modal - push * at.searched),
+            load=np.array([load]),
+            resistance=np.array([[resistance]]),
+            lever=np.array([self.pair.lever]),
+        )
+
+    def state(self, at: SearchedContact, found: Equilibrium) -> MotionState:
+        """The state at its end."""
+        m, D, b = self.pair.count, self.step.matrix, self.step.known
+        ψ = at.searched + float(found.motion[0])
+        pushed = at.modes.T @ with_components(found.force, at.k).ravel()
+        q = (b[:m] - D[:m, m] * ψ - pushed) / self._modal
+        return self.step.after(np.append(q, ψ))
+
+    @cached_property
+    def _modal(self) -> Floats:
+        """D_q (m,)."""
+        return np.diag(self.step.matrix)[: self.pair.count]

@@ -1,0 +1,118 @@
+"""A gear pair over time: its static limit, slow and fast rotation, its modes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
+from evolvent.dynamics.transient.kept_contacts import KeptContacts
+from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
+from evolvent.dynamics.transient.pair_transient import PairMoment, PairTransient
+from evolvent.dynamics.transient.quasi_static_start import quasi_static_start
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent_meshes.arrays import Floats
+from tests.support.gear_cases import helical_scene, model_of, spur_scene
+
+POSITIONS = 10
+
+
+@cache
+def condensed(kind: str) -> GearModel:
+    return model_of(spur_scene("mesh.level=quick") if kind == "spur" else helical_scene())
+
+
+@cache
+def modes(kind: str, count: int) -> tuple[GearModes, GearModes]:
+    pinion, wheel = (gear_modes(body, ModeChoice(0.0, count)) for body in condensed(kind).bodies)
+    return pinion, wheel
+
+
+def moving(kind: str, friction: float, rpm: float, count: int = 1, free: bool = False) -> PairTransient:
+    """Ten time steps a mesh period; the gear with the torque swings alone, or both do."""
+    model, gears = condensed(kind), modes(kind, count)
+    inertias = gears[0].moment_of_inertia, gears[1].moment_of_inertia
+    on, u = model.load.on, model.pair.ratio
+    torques = model.load.torque, model.load.torque * u
+    drive = Drive.at_constant_speed(on, inertias[on], torques)
+    if free:
+        drive = Drive.free(u, inertias, torques)
+    damping = 0.1 * np.sqrt(3e5 * inertias[0]) / drive.lever((1.0, 1.0))
+    pair = MovingPair(model, gears, drive, 0.02, damping / model.pair.pinion.base_radius)
+    kept = KeptContacts(pair, POSITIONS, 1 if friction == 0.0 else model.bodies[0].d)
+    return PairTransient(pair, friction, 2.0 * np.pi * rpm / 60.0, TimeScheme(0.5), kept)
+
+
+def moments(transient: PairTransient, periods: int) -> list[PairMoment]:
+    return list(transient.run(quasi_static_start(transient), periods))
+
+
+def static(kind: str, friction: float) -> list[PositionResult]:
+    """The same positions, the second of two pitches, so that friction has its history."""
+    model = condensed(kind)
+    pitch = uniform_pitch(model.pair.pinion.z, POSITIONS, 2)
+    return [p.results[0] for p in sweep_pitch(model, pitch, [friction], initial_state([friction]))][POSITIONS:]
+
+
+def errors(results: list[PositionResult]) -> Floats:
+    return np.array([result.transmission_error for result in results])
+
+
+@pytest.mark.parametrize("count", [0, 1, 4])
+@pytest.mark.parametrize(("kind", "friction"), [("spur", 0.0), ("spur", 0.2), ("helical", 0.2)])
+def test_slow_rotation_is_the_quasi_static_sweep(kind: str, friction: float, count: int) -> None:
+    """30 r/min, with none, one and four modes of each harmonic: transmission errors and torques of the second mesh
+    period are those of the quasi-static sweep within 0.5 % of their largest. A step is eight periods of the pair on its
+    mesh here: ρ_∞ = 0."""
+    slow = replace(moving(kind, friction, 30.0, count), scheme=TimeScheme(0.0))
+    last = [moment.result for moment in moments(slow, 2)[-POSITIONS:]]
+    wanted = static(kind, friction)
+    found = np.roll(errors(last), 1)
+    assert found == pytest.approx(errors(wanted), abs=0.005 * np.abs(errors(wanted)).max())
+    for gear in range(2):
+        torque = np.array([result.torques[gear] for result in wanted])
+        moved = np.roll([result.torques[gear] for result in last], 1)
+        assert moved == pytest.approx(torque, abs=0.005 * np.abs(torque).max())
+
+
+@pytest.mark.parametrize("count", [0, 4])
+def test_long_steps_are_statics(count: int) -> None:
+    """Time steps of 1e6 s each, without friction: on the same searched contacts the equilibrium of statics to 1e-10,
+    for any number of modes."""
+    slow = moving("spur", 0.0, 1.0, count)
+    slow = replace(slow, speed=slow.contacts.step_angle / 1e6)
+    frozen = moving("spur", 0.0, 1.0, 0)
+    frozen = replace(frozen, speed=slow.speed, contacts=replace(frozen.contacts, kept={}))
+    for one, other in zip(moments(slow, 1), moments(frozen, 1)):
+        assert one.result.transmission_error == pytest.approx(other.result.transmission_error, rel=1e-10)
+        assert one.mesh_force == pytest.approx(slow.pair.drive.torque / slow.pair.lever, rel=1e-10)
+        assert np.abs(one.state.vibration).max(initial=0.0) < 1e-10 * np.abs(one.state.motion.position).max()
+
+
+def test_mean_force_of_a_steady_state_is_the_load() -> None:
+    """2000 r/min, both gears free, no friction: after 40 mesh periods the motion repeats, and the mean mesh force is the
+    torque over its lever to 1e-3, as no momentum is left over."""
+    fast = moving("spur", 0.0, 2000.0, free=True)
+    force = np.array([moment.mesh_force for moment in moments(fast, 40)])
+    last, before = force[-POSITIONS:], force[-2 * POSITIONS : -POSITIONS]
+    assert np.abs(last - before).max() < 1e-3 * np.ptp(last)
+    assert last.mean() == pytest.approx(fast.pair.drive.torque / fast.pair.lever, rel=1e-3)
+    assert np.ptp(last) > 0.2 * last.mean()
+
+
+def test_teeth_are_renumbered_after_a_pitch() -> None:
+    """The same start, seen a pitch later with the other teeth: the motion that follows is the same to 1e-9."""
+    fast = moving("helical", 0.0, 3000.0, count=2)
+    start = quasi_static_start(fast)
+    once = [moment.mesh_force for moment in fast.run(start, 1)]
+    pair, motion = fast.pair, start.motion
+    rounded = type(motion)(*(pair.earlier(pair.earlier(each, 1), -1) for each in (
+        motion.position, motion.velocity, motion.acceleration)))  # fmt: skip
+    again = [moment.mesh_force for moment in fast.run(replace(start, motion=rounded), 1)]
+    assert again == pytest.approx(once, rel=1e-9)

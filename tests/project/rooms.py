@@ -59,7 +59,11 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "meshes.*", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "dynamics.excitation",
         "dynamics.oscillator",
     ),
-    "dynamics.modes": ("meshes", "fem.modes", "fem.condensation", "gears"),
+    "dynamics.modes": (
+        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.modes", "fem.condensation",
+        "contact.nitsche",
+        "gears.problem", "gears.meshing", "gears.two_level", "gears",
+    ),
     "dynamics.transient": (
         "meshes", "meshes.gears", "contact.newton", "contact.transient", "gears.ring", "gears", "gears.contact",
         "gears.sweep", "dynamics.modes",

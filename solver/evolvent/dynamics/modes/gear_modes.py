@@ -7,12 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces
+from evolvent.contact.nitsche.flux_recovery import NitscheTraction
+from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
 from evolvent.fem.modes.mass_matrix import mass_matrix
+from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
 from evolvent.gears.kinematics import turn
+from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.mesh.mesh_data import MeshData
 
 
 @dataclass(frozen=True)
@@ -53,13 +57,30 @@ class ModeChoice:
         return modes_below(sector, sectors, self.highest)
 
 
-def gear_modes(body: GearBody, choice: ModeChoice) -> GearModes:
-    """Modes on the sector mesh of a condensed gear.
+def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None) -> GearModes:
+    """Modes of a condensed gear.
+
+    mesh: of another sector of it, whose modes are interpolated to the flank's nodes; None: on its own, exactly.
 
     Raises NotPositiveDefinite, OutOfMemory, CompileError, CacheError.
     """
-    elastic, pitch, N = sector_body(body.mesh, body.material, body.member), 2.0 * np.pi / body.gear.z, body.gear.z
-    parts = sector_parts(elastic, body.flank, body.traction, pitch)
+    sector, traction, to_flank = body.mesh, body.traction, None
+    if mesh is not None:
+        # traction-free there: the modes' own flux on a coarse flank is nothing but its error
+        sector, traction, to_flank = mesh, None, FlankLattice.of(surface_of(mesh, "flank").points)
+    found, moment, spun, functionals = _on_mesh(body, sector, traction, choice)
+    if to_flank is not None:
+        across = sp.kron(to_flank.interpolation(body.flank.points), sp.eye(body.d)).tocsr()
+        functionals = across @ functionals
+    return GearModes(replace(found, shapes=functionals), moment, spun)
+
+
+def _on_mesh(
+    body: GearBody, sector_of: MeshData, traction: NitscheTraction | None, choice: ModeChoice
+) -> tuple[RingModes, float, Floats, Numbers]:
+    """Modes, moment of inertia and `GearModes.spun` on a sector mesh, and the modes at its flank's functionals."""
+    elastic, pitch, N = sector_body(sector_of, body.material, body.member), 2.0 * np.pi / body.gear.z, body.gear.z
+    parts = sector_parts(elastic, surface_of(sector_of, "flank"), traction, pitch)
     M = mass_matrix(elastic)
     place = np.full(M.shape[0], -1)
     place[parts.free] = np.arange(len(parts.free))
@@ -69,11 +90,10 @@ def gear_modes(body: GearBody, choice: ModeChoice) -> GearModes:
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
     sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
     found = ring_modes(sector, N, choice.counts(sector, N))
-    r = _turning(body.mesh.points, body.d)
+    r = _turning(sector_of.points, body.d)
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)
-    flank = parts.functionals.tocsc()[:, parts.free] @ found.shapes
-    return GearModes(replace(found, shapes=flank), float(N * (r @ (M @ r))), spun)
+    return found, float(N * (r @ (M @ r))), spun, parts.functionals.tocsc()[:, parts.free] @ found.shapes
 
 
 def _turning(points: Floats, d: int) -> Floats:

@@ -96,8 +96,8 @@ def test_long_steps_are_statics(count: int) -> None:
 
 
 def test_mean_force_of_a_steady_state_is_the_load() -> None:
-    """2000 r/min, both gears free, no friction: after 40 mesh periods the motion repeats, and the mean mesh force is the
-    torque over its lever to 1e-3, as no momentum is left over."""
+    """2000 r/min, both gears free, no friction: after 40 mesh periods the motion repeats, and the mean mesh force is
+    the torque over its lever to 1e-3, as no momentum is left over."""
     fast = moving("spur", 0.0, 2000.0, free=True)
     force = np.array([moment.mesh_force for moment in moments(fast, 40)])
     last, before = force[-POSITIONS:], force[-2 * POSITIONS : -POSITIONS]

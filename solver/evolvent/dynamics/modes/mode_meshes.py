@@ -1,0 +1,34 @@
+"""The sector mesh on which a gear's modes are computed: its own where that is small, else a coarse one.
+
+Natural modes up to the mesh frequency's harmonics are as long as the gear: they need no flank that resolves a contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from evolvent.gears.meshing.companion_meshes import coarser
+from evolvent.gears.meshing.sector_meshes import gear_mesh
+from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.mesh.mesh_data import MeshData
+from evolvent_meshes.sector.section import SectorResolution
+
+OWN_NODES = 6000
+"""Nodes of a sector up to which its own mesh serves: its modes take seconds."""
+
+
+def mode_mesh(problem: GearProblem, member: Member, own: MeshData) -> MeshData | None:
+    """A coarse sector of the pinion or the wheel, None where its own mesh serves. Raises MeshError."""
+    if len(own.points) <= OWN_NODES:
+        return None
+    settings = replace(MeshSettings("quick"), shape=problem.mesh.shape)
+    return gear_mesh(replace(problem, mesh=settings), member, adapted=_coarse_flank)
+
+
+def _coarse_flank(fine: SectorResolution) -> SectorResolution:
+    """Half as many elements along profile, face and root, but all below the teeth: what the bore holds bends there."""
+    return replace(
+        coarser(fine), core_elements=fine.core_elements, rim_elements=fine.rim_elements,
+        web_elements=fine.web_elements, hub_elements=fine.hub_elements,
+    )  # fmt: skip

@@ -21,6 +21,7 @@ from evolvent.dynamics.results.response import BranchRow, DriveSummary, Response
 from evolvent.dynamics.results.spectrum import SpectrumRow
 from evolvent.dynamics.results.tables import ExcitationRow, HarmonicRow
 from evolvent.dynamics.results.torque_map import MapRow
+from evolvent.dynamics.results.transient import TransientFacts, TransientRow, TransientToothRow
 from evolvent.results.archive.error_bar_data import FigureErrors
 from evolvent.results.archive.run_cost import Timings
 from evolvent.results.drawing.labels import UNITS, ending
@@ -74,6 +75,9 @@ FILES = (
     ("torque_map.csv", "`evolvent dynamics`: a line per torque and speed of the map"),
     ("dynamics.json", "`evolvent dynamics`: what the vibration is computed from, and its jumps"),
     ("operation.json", "`evolvent run` at an operating speed: the vibration under whose force contact was computed"),
+    ("transient.csv", "`evolvent transient`: a line per speed, friction coefficient and position of the mesh period"),
+    ("transient_teeth.csv", "`evolvent transient`: a line per speed, coefficient and rotation of a tooth"),
+    ("transient.json", "`evolvent transient`: figures of each speed and coefficient"),
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
     ("strength.toml", "`evolvent strength`: the scene that was computed, with all its defaults"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
@@ -134,6 +138,9 @@ SECTIONS = (
     ("`torque_map.csv`", MapRow, "Of `evolvent dynamics` with `dynamics.map_percents`; the lightest torque first."),
     ("`dynamics.json`", DriveSummary, ""),
     ("`operation.json`", OperationFigures, "Of `evolvent run`, where `dynamics.operating_rpm` is given."),
+    ("`transient.csv`", TransientRow, "Of `evolvent transient`, at ascending rotations."),
+    ("`transient_teeth.csv`", TransientToothRow, "Of `evolvent transient`, at ascending rotations of a tooth."),
+    ("`transient.json`, each entry", TransientFacts, "Of `evolvent transient`."),
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
     ("`gauges.csv`", GaugeRow, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),

@@ -21,11 +21,13 @@ from evolvent.computing import (
     LOADS_EPILOG,
     RUN_EPILOG,
     STRENGTH_EPILOG,
+    TRANSIENT_EPILOG,
     dynamics,
     excitation,
     loads,
     run,
     strength,
+    transient,
 )
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
 from evolvent.fem.backend.cache_folder import keep_fonts
@@ -48,7 +50,7 @@ from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-SHARED = ("run", "loads", "excitation", "dynamics", "strength")
+SHARED = ("run", "loads", "excitation", "dynamics", "transient", "strength")
 """The commands that all ranks take part in."""
 app = typer.Typer(
     name="evolvent",
@@ -76,6 +78,7 @@ app.command(epilog=RUN_EPILOG)(run)
 app.command(epilog=LOADS_EPILOG)(loads)
 app.command(epilog=EXCITATION_EPILOG)(excitation)
 app.command(epilog=DYNAMICS_EPILOG)(dynamics)
+app.command(epilog=TRANSIENT_EPILOG)(transient)
 app.command(epilog=STRENGTH_EPILOG)(strength)
 app.command(epilog=STUDY_EPILOG)(study)
 

@@ -1,5 +1,5 @@
-"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `strength`. All ranks take
-part in them."""
+"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `transient`, `strength`.
+All ranks take part in them."""
 
 from __future__ import annotations
 
@@ -68,6 +68,12 @@ Examples:
 {STATUSES}"""
 
 
+TRANSIENT_EPILOG = f"""\b
+Examples:
+  evolvent transient demos/he2022.toml --out out/transient --level quick --set transient.speeds_rpm=[2000,3000]
+  mpirun -n 2 evolvent transient demos/yang2022.toml --out out/fast --level quick --set transient.speeds_rpm=[1500]
+
+{STATUSES}"""
 STRENGTH_EPILOG = f"""\b
 Examples:
   evolvent strength demos/zhang2023.toml --out out/zhang2023 --set pinion.face_width_mm=25
@@ -197,6 +203,33 @@ def dynamics(
         _warn(run_dynamics(loaded, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             _done(out, "response.csv", "dynamics.json", "pictures/vibration.png", "pictures/waterfall.png")
+
+
+def transient(
+    scene: SceneFile,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
+    ],
+    level: LevelOption = None,
+    settings: Overrides = None,
+    no_skip: NoSkip = None,
+    force: Force = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute a pair's contact with inertia, over time.
+
+    At each speed of the section [transient] and each friction coefficient, until the motion repeats with the mesh:
+    transmission error, mesh force and contact pressure, beside those without inertia.
+    """
+    with reported(parallel=True):
+        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        from evolvent.run.dynamics.transient import run_transient
+
+        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
+        _warn(run_transient(_unworn(loaded), out, overwrite, quiet))
+        if not quiet and MPI.COMM_WORLD.rank == 0:
+            _done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png")
 
 
 def strength(

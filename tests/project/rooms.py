@@ -112,8 +112,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "results.*", "dynamics", "wear", "wear.gears",
     ),
     "dynamics.results": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "results.archive",
-        "results.error_bars", "results.tables",
+        "meshes", "gears", "gears.pressure", "gears.sweep", "dynamics", "dynamics.transient", "dynamics.excitation",
+        "dynamics.oscillator", "results.archive", "results.error_bars", "results.tables",
     ),
     "dynamics.figures": (
         "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
@@ -133,8 +133,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "strength.standard", "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
-        "meshes", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears", "gears.sweep", "scene",
-        "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
+        "gears.sweep", "scene", "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

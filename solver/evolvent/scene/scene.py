@@ -21,7 +21,7 @@ from evolvent.scene.backlash import backlash_conflict
 from evolvent.scene.gear_pair import ImpossibleGears, make_pair
 from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
-from evolvent.scene.schema.dynamics import DynamicsSection
+from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
@@ -58,6 +58,7 @@ class Scene(SceneSection):
     sweep: SweepSection = SweepSection()
     wear: WearSection | None = None
     dynamics: DynamicsSection | None = None
+    transient: TransientSection | None = None
     strength: StrengthSection | None = None
     output: OutputSection = OutputSection()
     skip: SkipSection = SkipSection()

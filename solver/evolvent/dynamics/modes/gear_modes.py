@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from evolvent.contact.nitsche.flux_recovery import NitscheTraction
 from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, Numbers
 from evolvent.dynamics.modes.ring_modes import RingModes, SectorMatrices, harmonics, modes_below, ring_modes
+from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
@@ -41,6 +42,10 @@ class GearModes:
         return self.modes.of_sector(tooth, rows)
 
 
+FIRST = 8
+"""Modes of each harmonic that are looked for first where they cannot be counted beforehand."""
+
+
 @dataclass(frozen=True)
 class ModeChoice:
     """Which modes are computed."""
@@ -50,11 +55,24 @@ class ModeChoice:
     per_harmonic: int | None = None
     """So many of each harmonic instead, pairs counted once."""
 
-    def counts(self, sector: SectorMatrices, sectors: int) -> list[int]:
-        """Of each harmonic. Raises NotPositiveDefinite, OutOfMemory."""
+    def of(self, sector: SectorMatrices, sectors: int) -> RingModes:
+        """The modes. Raises NotPositiveDefinite, OutOfMemory."""
         if self.per_harmonic is not None:
-            return [self.per_harmonic for _ in harmonics(sectors)]
-        return modes_below(sector, sectors, self.highest)
+            return ring_modes(sector, sectors, [self.per_harmonic for _ in harmonics(sectors)])
+        try:
+            return ring_modes(sector, sectors, modes_below(sector, sectors, self.highest))
+        except NotPositiveDefinite:  # a sector between held cut faces vibrates below it, too
+            return self._by_search(sector, sectors)
+
+    def _by_search(self, sector: SectorMatrices, sectors: int) -> RingModes:
+        """More and more of each harmonic, until one beyond the highest is among them."""
+        count = FIRST
+        while True:
+            found = ring_modes(sector, sectors, [count for _ in harmonics(sectors)])
+            beyond = found.harmonic[found.frequencies > self.highest]
+            if count >= sector.stiffness.shape[0] // 2 or len(np.unique(beyond)) == len(harmonics(sectors)):
+                return found.some(found.frequencies <= self.highest)
+            count *= 2
 
 
 def gear_modes(body: GearBody, choice: ModeChoice, mesh: MeshData | None = None) -> GearModes:
@@ -89,7 +107,7 @@ def _on_mesh(
     about = sp.kron(sp.eye(len(low) // body.d), turn(pitch, body.d)).tocsr()
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
     sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
-    found = ring_modes(sector, N, choice.counts(sector, N))
+    found = choice.of(sector, N)
     r = _turning(sector_of.points, body.d)
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)

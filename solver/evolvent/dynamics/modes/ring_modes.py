@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from evolvent.dynamics.modes.cyclic_stiffness import CyclicFaces, CyclicInverse, CyclicStiffness, Numbers
-from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.arrays import Bools, Floats, Ints
 
 FEW = 60
 """Unknowns of a harmonic below which its dense eigenproblem is solved."""
@@ -54,6 +54,13 @@ class RingModes:
         turned = np.exp(2j * np.pi * self.harmonic * number / self.sectors - 0.5j * np.pi * self.imaginary)
         shapes = self.shapes if rows is None else self.shapes[rows]
         return np.real(shapes * turned)
+
+    def some(self, wanted: Bools) -> RingModes:
+        """Those that are wanted, (m,) bool: both of a pair or none."""
+        return RingModes(
+            self.sectors, self.frequencies[wanted], self.harmonic[wanted], self.imaginary[wanted],
+            self.shapes[:, wanted],
+        )  # fmt: skip
 
     def earlier(self, amplitudes: Floats, pitches: int) -> Floats:
         """Amplitudes (m,) of the same motion, in which sector s moves as sector s + pitches did."""

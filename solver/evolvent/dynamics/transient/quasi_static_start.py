@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from evolvent.contact.transient.time_scheme import MotionState
 from evolvent.dynamics.transient.moving_pair import MovingPair
-from evolvent.dynamics.transient.pair_transient import PairState, PairTransient
+from evolvent.dynamics.transient.pair_transient import PairState
+from evolvent.gears.sweep.contact_patch import ContactPatch
+from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state, sweep_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
@@ -15,16 +20,34 @@ BEFORE = 4
 """Positions that are solved before the first one: friction then has a history."""
 
 
-def quasi_static_start(transient: PairTransient) -> PairState:
-    """At pinion rotation 0. Raises NotConverged, SearchError."""
-    pair, step, μ = transient.pair, transient.contacts.step_angle, transient.friction
-    pitch = Pitch(tuple(float(step * k) for k in range(-BEFORE, 1)))
-    swept = list(sweep_pitch(pair.model, pitch, [μ], initial_state([μ])))
-    earlier, last = (_coordinates(pair, position.results[0]) for position in swept[-2:])
-    rate = (last - earlier) / transient.time_step
-    motion = MotionState(last, rate, np.zeros(len(rate)))
-    (history,) = swept[-1].state.histories
-    return PairState(motion, history, np.zeros(pair.count), swept[-1].state.patch)
+@dataclass(frozen=True)
+class QuasiStaticStart:
+    """The static equilibrium at pinion rotation 0, with m modes."""
+
+    position: Floats
+    """Modes and ψ (m + 1,)."""
+    change: Floats
+    """Their change since the position before (m + 1,)."""
+    history: FrictionHistory | None
+    """Of friction, None without it."""
+    patch: ContactPatch | None
+    """The contact patch."""
+
+    def at(self, time_step: float) -> PairState:
+        """The state, for a step between positions [s]."""
+        motion = MotionState(self.position, self.change / time_step, np.zeros(len(self.position)))
+        return PairState(motion, self.history, np.zeros(len(self.position) - 1), self.patch)
+
+
+def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence[float]) -> list[QuasiStaticStart]:
+    """At each friction coefficient. step_angle: between positions [rad]. Raises NotConverged, SearchError."""
+    pitch = Pitch(tuple(float(step_angle * k) for k in range(-BEFORE, 1)))
+    before, last = list(sweep_pitch(pair.model, pitch, frictions, initial_state(frictions)))[-2:]
+    starts = []
+    for earlier, result, history in zip(before.results, last.results, last.state.histories):
+        now = _coordinates(pair, result)
+        starts.append(QuasiStaticStart(now, now - _coordinates(pair, earlier), history, last.state.patch))
+    return starts
 
 
 def _coordinates(pair: MovingPair, result: PositionResult) -> Floats:

@@ -103,7 +103,7 @@ def position_result(
         weights=weights,
         traction=traction,
         iterations=iterations,
-        residual=equilibrium.residual / float(np.sum(equilibrium.force[:, 0])),
+        residual=equilibrium.residual / (float(np.sum(equilibrium.force[:, 0])) or 1.0),  # nothing touches in flight
         stiffness=stiffness,
         pinion_rows=pinion_rows,
         wheel_rows=wheel_rows,

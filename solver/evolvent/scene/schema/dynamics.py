@@ -1,13 +1,13 @@
-"""The section [dynamics]: vibration that the mesh excites."""
+"""The sections [dynamics], vibration that the mesh excites, and [transient], contact of a pair with inertia."""
 
 from __future__ import annotations
 
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from evolvent.scene.schema.errors import NOTHING, InputProblem, shown, validation_error
-from evolvent.scene.schema.section import SceneSection, key
+from evolvent.scene.schema.section import SceneSection, as_tuple, key
 
 MOST_SPEEDS = 5000
 FASTEST = 1e6
@@ -20,6 +20,9 @@ MAP = 2, 12
 MAP_RANGE = 1.0, 400.0
 """[%]."""
 MAP_PERCENTS = f"{MAP[0]} to {MAP[1]} different numbers from {MAP_RANGE[0]:g} to {MAP_RANGE[1]:g}"
+
+TRANSIENT_SPEEDS = f"a list of 1 to 12 different speeds above 0 up to {FASTEST:g}, in r/min"
+Speed = Annotated[float, Field(gt=0, le=FASTEST)]
 
 
 def _inertia(gear: str) -> Any:
@@ -183,3 +186,46 @@ class DynamicsSection(SceneSection):
                 )
             )  # fmt: skip
         return self
+
+
+class TransientSection(SceneSection):
+    """[transient]: `evolvent transient` reads it, with damping, density and inertias of [dynamics]."""
+
+    speeds_rpm: Annotated[tuple[Speed, ...], BeforeValidator(as_tuple)] = key(
+        "speeds of the pinion", TRANSIENT_SPEEDS, "write transient.speeds_rpm = [1500, 3000]", min_length=1,
+        max_length=12,
+    )  # fmt: skip
+    drive: Literal["free", "constant_speed"] = key(
+        "how the gears turn: both swing against each other, as in the torsional model, or the gear without the torque "
+        "turns at constant speed, as behind a large flywheel",
+        '"free" or "constant_speed"', default="free",
+    )  # fmt: skip
+    mesh_periods: int = key(
+        "mesh periods that are computed at most, until the motion repeats", "a whole number from 2 to 10000",
+        "raise it where a sentence says that a motion does not repeat yet", default=60, ge=2, le=10_000,
+    )  # fmt: skip
+    steady_change: float = key(
+        "largest change of the transmission error from one mesh period to the next, over its peak-to-peak value, at "
+        "which the motion counts as steady",
+        "a number from 1e-6 to 0.1", default=0.005, ge=1e-6, le=0.1,
+    )  # fmt: skip
+    mode_damping_ratio: float = key(
+        "damping of each natural mode of the gears, over its critical one", "a number from 0 to 1", default=0.01, ge=0,
+        le=1,
+    )  # fmt: skip
+    modes_per_harmonic: int | None = key(
+        "natural modes of each harmonic of the ring of teeth; by default all modes that have four time steps a "
+        "period at the highest speed",
+        "a whole number from 0 to 50", "delete the key for the default", default=None, ge=0, le=50,
+    )  # fmt: skip
+    spectral_radius: float = key(
+        "what a time step leaves of motions that are too fast for it", "a number from 0 to 1",
+        "0.8 is usual; 0 for speeds at which a step takes several natural periods", default=0.8, ge=0, le=1,
+    )  # fmt: skip
+
+    @field_validator("speeds_rpm")
+    @classmethod
+    def _different(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
+        if len(set(speeds)) < len(speeds):
+            raise validation_error(InputProblem("speeds_rpm", shown(speeds), TRANSIENT_SPEEDS, "give each once"))
+        return speeds

@@ -87,6 +87,17 @@ def test_modes_up_to_a_frequency(kind: str) -> None:
     assert not gear_modes(body, ModeChoice(2.0 * np.pi * 100.0)).count
 
 
+def test_modes_beyond_those_of_a_held_sector() -> None:
+    """Up to 150 kHz, where a sector between held cut faces vibrates, too, so that modes cannot be counted beforehand:
+    all of ten in each harmonic that are below, and no others."""
+    body = bodies("spur")[0]
+    highest = 2.0 * np.pi * 150e3
+    every = gear_modes(body, ModeChoice(0.0, per_harmonic=10)).modes.frequencies
+    assert every.max() > highest
+    found = gear_modes(body, ModeChoice(highest)).modes.frequencies
+    assert np.sort(found) == pytest.approx(np.sort(every[every <= highest]), rel=1e-8)
+
+
 def test_a_motion_a_pitch_earlier() -> None:
     """Random amplitudes: sector s moves with those of a pitch earlier as sector s + 1 did, to rounding."""
     body = bodies("spur")[0]

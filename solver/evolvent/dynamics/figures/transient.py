@@ -1,0 +1,82 @@
+"""Picture of a pair's transient contact: transmission error and contact pressure of a tooth, beside statics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from evolvent.dynamics.results.transient import TransientFacts, TransientRow, TransientToothRow
+from evolvent.results.drawing.style import FAINT, foot, friction_colours, note, png, sheet, styled
+
+Colour = tuple[float, ...]
+STATIC = {"ls": "--", "lw": 1.0}
+SUBTITLE = "The last mesh period, repeated. Solid: with inertia. Dashed: without, at the same positions."
+
+
+def transient_picture(
+    title: str, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow], facts: Sequence[TransientFacts]
+) -> bytes:
+    """PNG of `transient_figure`."""
+    with styled():
+        return png(transient_figure(title, rows, teeth, facts))
+
+
+def transient_figure(
+    title: str, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow], facts: Sequence[TransientFacts]
+) -> Figure:
+    """A line of panels for each speed: transmission error over a pitch, pressure of a tooth over its engagement."""
+    speeds = sorted({fact.speed_rpm for fact in facts})
+    figure = sheet(f"{title}: contact with inertia", SUBTITLE, (11.0, 1.4 + 3.0 * len(speeds)))
+    grid = figure.subplots(len(speeds), 2, squeeze=False, width_ratios=(1.0, 1.3))
+    frictions = sorted({fact.friction for fact in facts})
+    for (errors, pressures), speed in zip(grid, speeds):
+        for friction, colour in zip(frictions, friction_colours(frictions)):
+            _errors(errors, [r for r in rows if (r.speed_rpm, r.friction) == (speed, friction)], colour, friction)
+            _pressures(pressures, [r for r in teeth if (r.speed_rpm, r.friction) == (speed, friction)], colour)
+        errors.set_ylabel("transmission error [µm]")
+        pressures.set_ylabel("peak pressure [MPa]")
+        note(errors, f"{speed:g} r/min")
+    for axes in grid[:, 0]:
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high + 0.15 * (high - low))
+    grid[0][0].legend(loc="upper right", ncols=3)
+    grid[-1][0].set_xlabel("rotation of the pinion [°]")
+    grid[-1][1].set_xlabel("rotation of the pinion since the tooth met at the pitch point [°]")
+    unsteady = [fact for fact in facts if not fact.steady]
+    foot(
+        figure,
+        "Pressure: largest of the fitted half-ellipses along the contact line, between the tip-edge zones."
+        + (f" Not steady yet: {len(unsteady)} of {len(facts)} motions." if unsteady else ""),
+    )
+    return figure
+
+
+def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, friction: float) -> None:
+    """Over two pitches."""
+    angle = np.array([row.pinion_angle_deg for row in rows])
+    pitch = len(angle) * float(np.diff(angle).mean())
+    over = np.concatenate([angle, angle + pitch])
+    for values, style in (
+        ([row.transmission_error_um for row in rows], {"label": f"μ = {friction:g}"}),
+        ([row.static_transmission_error_um for row in rows], STATIC),
+    ):
+        axes.plot(over, np.tile(values, 2), color=colour, **style)
+    axes.set_xlim(0.0, 2.0 * pitch)
+    axes.axvline(pitch, color=FAINT, lw=0.8, zorder=0)
+
+
+def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour) -> None:
+    """Over the engagement, with gaps where no pressure is known."""
+    angle = np.array([row.tooth_angle_deg for row in rows])
+    if not len(angle):
+        return
+    step = min((b - a for a, b in pairwise(np.unique(np.round(angle, 9)))), default=1.0)
+    breaks = np.flatnonzero(np.diff(angle) > 1.5 * step) + 1
+    for values, style in (
+        ([row.max_pressure_MPa for row in rows], {}), ([row.static_max_pressure_MPa for row in rows], STATIC),
+    ):  # fmt: skip
+        axes.plot(np.insert(angle, breaks, np.nan), np.insert(values, breaks, np.nan), color=colour, **style)

@@ -1,0 +1,63 @@
+"""A transient followed until it repeats with the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from evolvent.dynamics.transient.pair_transient import PairMoment, PairState, PairTransient
+from evolvent_meshes.arrays import Floats
+
+
+@dataclass(frozen=True)
+class MeshPeriods:
+    """A transient's last mesh period, and what led to it."""
+
+    moments: tuple[PairMoment, ...]
+    """Its positions, at ascending rotations of the pinion from 0 on."""
+    errors: Floats
+    """Transmission error [mm] at all positions since the start."""
+    changes: Floats
+    """Largest change of the transmission error from each mesh period to the next, over its peak-to-peak value."""
+    wanted: float
+    """Change at which it counts as steady."""
+
+    @property
+    def periods(self) -> int:
+        """How many were computed."""
+        return len(self.errors) // len(self.moments)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the last one repeats the one before."""
+        return len(self.changes) > 0 and bool(self.changes[-1] <= self.wanted)
+
+    @property
+    def mean_force(self) -> float:
+        """Of the mesh over the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left."""
+        return float(np.mean([moment.mesh_force for moment in self.moments]))
+
+
+def until_steady(
+    transient: PairTransient, start: PairState, most: int, wanted: float, reached: Callable[[], None] = lambda: None
+) -> MeshPeriods:
+    """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
+    next, `most` at most. reached: called after each. Raises NotConverged, SearchError."""
+    count, errors, changes = transient.contacts.positions, [], []
+    moments: list[PairMoment] = []
+    for moment in transient.run(start, most):
+        moments.append(moment)
+        errors.append(moment.result.transmission_error)
+        if len(moments) < count:
+            continue
+        last, before = np.array(errors[-count:]), np.array(errors[-2 * count : -count])
+        period = [moments[-1], *moments[:-1]]  # the last one stands at rotation 0 again
+        moments = []
+        reached()
+        if len(before):
+            changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
+            if changes[-1] <= wanted:
+                break
+    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted)

@@ -72,7 +72,8 @@ def frictionless(
 ) -> Equilibrium:
     """Equilibrium without friction, of a system with k = 1.
 
-    start: (q,) bool, points assumed in contact in the first, linear, solve; by default all.
+    start: (q,) bool, points assumed in contact in the first, linear, solve; by default all, and of bodies with inertia
+        those that would overlap without contact forces.
     near: a guess of the solution, taken instead.
     tolerance: residual force over the load.
     Raises NotConverged.
@@ -81,8 +82,18 @@ def frictionless(
     if near is not None:
         x = problem.join(near.force, near.motion)
     else:
-        x = _assumed_contact(system, np.ones(len(system.operator.weights), dtype=bool) if start is None else start)
+        x = _assumed_contact(system, _overlapping(system) if start is None else start)
     return _converged(problem, x, "contact without friction", tolerance)
+
+
+def _overlapping(system: CondensedSystem) -> Bools:
+    """(q,) bool: the points that overlap without contact forces; all where contact alone holds the free motions."""
+    every = np.ones(len(system.operator.weights), dtype=bool)
+    if not system.resistance.any() or np.linalg.cond(system.resistance) > 1.0 / np.finfo(float).eps:
+        return every
+    force, motion = np.zeros((len(system.operator.nodes), system.k)), np.linalg.solve(system.resistance, system.load)
+    jump = system.jumps(force, motion)
+    return np.asarray(system.operator.trial(jump, None)[:, 0] > 0.0)
 
 
 def stuck(system: CondensedSystem, slip: Floats) -> Equilibrium:

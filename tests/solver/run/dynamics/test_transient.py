@@ -1,0 +1,155 @@
+"""`evolvent transient` on He's pair in plane strain: its tables, picture, refusals and ranks."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evolvent.cli import main
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.dynamics.transient import BackFlanks, run_transient
+from evolvent.scene.scene import Scene, SceneError, load_scene
+from evolvent_meshes.errors import InputError
+from tests.support.checkout import ROOT
+from tests.support.running.processes import Run, on_ranks
+
+POSITIONS = 10
+SETTINGS = (
+    "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[30,2000]",
+    "transient.spectral_radius=0.0", "dynamics.backlash_um=50", "transient.drive=constant_speed",
+)  # fmt: skip
+
+
+def scene(*settings: str) -> Scene:
+    return load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings])
+
+
+def rows(path: Path) -> list[dict[str, float]]:
+    with open(path, encoding="utf-8") as stream:
+        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(stream)]
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("transient")
+    assert run_transient(scene(), folder, quiet=True) == []
+    return folder
+
+
+def test_tables_have_every_speed_and_coefficient(out: Path) -> None:
+    """Two speeds, two coefficients, ten positions; the picture is there; angles ascend over one pitch of 7.2°."""
+    found = rows(out / "transient.csv")
+    assert len(found) == 2 * 2 * POSITIONS
+    assert (out / "pictures/transient.png").stat().st_size > 10_000
+    for speed in (30.0, 2000.0):
+        for friction in (0.0, 0.2):
+            own = [row for row in found if (row["speed_rpm"], row["friction"]) == (speed, friction)]
+            assert [row["pinion_angle_deg"] for row in own] == pytest.approx(0.72 * np.arange(POSITIONS))
+
+
+def test_slow_rotation_stands_beside_equal_statics(out: Path) -> None:
+    """30 r/min: transmission errors within 0.5 % of their largest, pressures within 1 % of those without inertia, also
+    forces of each tooth."""
+    slow = [row for row in rows(out / "transient.csv") if row["speed_rpm"] == 30.0]
+    largest = max(row["static_transmission_error_um"] for row in slow)
+    for row in slow:
+        calm = row["static_transmission_error_um"]
+        assert row["transmission_error_um"] == pytest.approx(calm, abs=0.005 * largest)
+        assert row["max_pressure_MPa"] == pytest.approx(row["static_max_pressure_MPa"], rel=0.01)
+    teeth = [row for row in rows(out / "transient_teeth.csv") if row["speed_rpm"] == 30.0]
+    largest = max(row["normal_force_N"] for row in teeth)
+    for row in teeth:
+        assert row["normal_force_N"] == pytest.approx(row["static_normal_force_N"], abs=0.01 * largest)
+
+
+def test_teeth_share_the_force(out: Path) -> None:
+    """Without friction the normal forces of all teeth at a position are the mesh force, 20 mm wide: within 1 %."""
+    whole, teeth = rows(out / "transient.csv"), rows(out / "transient_teeth.csv")
+    for row in (row for row in whole if row["friction"] == 0.0):
+        force = sum(
+            each["normal_force_N"]
+            for each in teeth
+            if (each["speed_rpm"], each["friction"]) == (row["speed_rpm"], 0.0)
+            and abs((each["tooth_angle_deg"] - row["pinion_angle_deg"] + 3.6) % 7.2 - 3.6) < 1e-6
+        )
+        assert force == pytest.approx(row["mesh_force_N"], rel=0.01)
+
+
+def test_facts(out: Path) -> None:
+    """All motions are steady, their mean mesh force is 170 N·m over the base radius within 1 %; at 2000 r/min the mesh
+    force rises by more than 10 %, at 30 r/min by less than 1 %."""
+    facts = json.loads((out / "transient.json").read_text())
+    assert [(fact["speed_rpm"], fact["friction"]) for fact in facts] == [
+        (30.0, 0.0), (30.0, 0.2), (2000.0, 0.0), (2000.0, 0.2)]  # fmt: skip
+    for fact in facts:
+        assert fact["steady"]
+        assert fact["last_change"] <= 0.005
+        assert fact["load_N"] == pytest.approx(2412.1, rel=1e-4)
+        assert fact["mean_force_N"] == pytest.approx(fact["load_N"], rel=0.01)
+        assert fact["separated"] == 0.0
+        assert (fact["dynamic_factor"] > 1.1) == (fact["speed_rpm"] == 2000.0)
+        assert (fact["dynamic_factor"] < 1.01) == (fact["speed_rpm"] == 30.0)
+
+
+def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
+    """A second call says --overwrite."""
+    with pytest.raises(FolderError, match="--overwrite"):
+        run_transient(scene(), out, quiet=True)
+
+
+def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
+    """Two mesh periods of a lightly damped pair from statics are not enough."""
+    few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
+                "dynamics.damping_ratio=0.01", "output.pictures=false")  # fmt: skip
+    (said,) = run_transient(few, tmp_path, quiet=True)
+    assert "not steady after 2 mesh periods" in said
+
+
+def test_back_flanks_are_refused(tmp_path: Path) -> None:
+    """Near resonance with hardly damping the pair is thrown apart further than a backlash of 1 µm."""
+    thrown = scene("transient.speeds_rpm=[4200]", "contact.friction=0", "dynamics.damping_ratio=0.005",
+                   "dynamics.backlash_um=1", "transient.spectral_radius=0.9", "transient.drive=free")  # fmt: skip
+    with pytest.raises(BackFlanks, match="back flanks"):
+        run_transient(thrown, tmp_path, quiet=True)
+    assert not (tmp_path / "transient.csv").exists()
+
+
+def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
+    """No section; two positions; flanks in levels."""
+    bare = load_scene(ROOT / "demos/he2022.toml", ["mesh.level=quick"])
+    with pytest.raises(InputError, match=r"transient\.speeds_rpm"):
+        run_transient(bare, tmp_path, quiet=True)
+    with pytest.raises(SceneError, match=r"sweep\.positions"):
+        run_transient(scene("sweep.positions=2"), tmp_path, quiet=True)
+    levels = load_scene(ROOT / "demos/yang2022.toml", ["mesh.level=standard", "transient.speeds_rpm=[1500]"])
+    with pytest.raises(InputError, match="meshed in levels"):
+        run_transient(levels, tmp_path, quiet=True)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", on_ranks(2))
+def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+    """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false"]
+    for setting in SETTINGS:
+        arguments += ["--set", setting]
+    done = run_script("-c", code, *arguments, ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("done: ") == 1
+    one, two = (rows(folder / "transient.csv") for folder in (out, tmp_path / "out"))
+    assert len(one) == len(two)
+    for first, second in zip(one, two):
+        assert list(second.values()) == pytest.approx(list(first.values()), rel=1e-6, abs=1e-6)
+
+
+def test_command_line_without_a_speed_ends_with_status_2(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Of a scene without the section: what is wanted, and nothing is written."""
+    words = ["transient", str(ROOT / "demos/he2022.toml"), "--out", str(tmp_path), "--level", "quick"]
+    assert main(words) == 2
+    assert "transient.speeds_rpm" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -13,6 +13,8 @@ from evolvent.dynamics.results.transient import TransientFacts, TransientRow, Tr
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, note, png, sheet, styled
 
 Colour = tuple[float, ...]
+LONG = 5
+"""Entries of a legend in one column, at most one less."""
 STATIC = {"ls": "--", "lw": 1.0}
 SUBTITLE = "The last mesh period, repeated. Solid: with inertia. Dashed: without, at the same positions."
 
@@ -35,15 +37,16 @@ def transient_figure(
     frictions = sorted({fact.friction for fact in facts})
     for (errors, pressures), speed in zip(grid, speeds):
         for friction, colour in zip(frictions, friction_colours(frictions)):
-            _errors(errors, [r for r in rows if (r.speed_rpm, r.friction) == (speed, friction)], colour, friction)
-            _pressures(pressures, [r for r in teeth if (r.speed_rpm, r.friction) == (speed, friction)], colour)
+            _errors(errors, [row for row in rows if (row.speed_rpm, row.friction) == (speed, friction)], colour)
+            own = [row for row in teeth if (row.speed_rpm, row.friction) == (speed, friction)]
+            _pressures(pressures, own, colour, friction)
         errors.set_ylabel("transmission error [µm]")
         pressures.set_ylabel("peak pressure [MPa]")
         note(errors, f"{speed:g} r/min")
     for axes in grid[:, 0]:
         low, high = axes.get_ylim()
         axes.set_ylim(low, high + 0.15 * (high - low))
-    grid[0][0].legend(loc="upper right", ncols=3)
+    grid[0][1].legend(loc="upper right", ncols=1 if len(frictions) < LONG else 2)
     grid[-1][0].set_xlabel("rotation of the pinion [°]")
     grid[-1][1].set_xlabel("rotation of the pinion since the tooth met at the pitch point [°]")
     unsteady = [fact for fact in facts if not fact.steady]
@@ -55,13 +58,13 @@ def transient_figure(
     return figure
 
 
-def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, friction: float) -> None:
+def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour) -> None:
     """Over two pitches."""
     angle = np.array([row.pinion_angle_deg for row in rows])
     pitch = len(angle) * float(np.diff(angle).mean())
     over = np.concatenate([angle, angle + pitch])
     for values, style in (
-        ([row.transmission_error_um for row in rows], {"label": f"μ = {friction:g}"}),
+        ([row.transmission_error_um for row in rows], {}),
         ([row.static_transmission_error_um for row in rows], STATIC),
     ):
         axes.plot(over, np.tile(values, 2), color=colour, **style)
@@ -69,7 +72,7 @@ def _errors(axes: Axes, rows: Sequence[TransientRow], colour: Colour, friction: 
     axes.axvline(pitch, color=FAINT, lw=0.8, zorder=0)
 
 
-def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour) -> None:
+def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour, friction: float) -> None:
     """Over the engagement, with gaps where no pressure is known."""
     angle = np.array([row.tooth_angle_deg for row in rows])
     if not len(angle):
@@ -77,6 +80,7 @@ def _pressures(axes: Axes, rows: Sequence[TransientToothRow], colour: Colour) ->
     step = min((b - a for a, b in pairwise(np.unique(np.round(angle, 9)))), default=1.0)
     breaks = np.flatnonzero(np.diff(angle) > 1.5 * step) + 1
     for values, style in (
-        ([row.max_pressure_MPa for row in rows], {}), ([row.static_max_pressure_MPa for row in rows], STATIC),
-    ):  # fmt: skip
+        ([row.max_pressure_MPa for row in rows], {"label": f"μ = {friction:g}"}),
+        ([row.static_max_pressure_MPa for row in rows], STATIC),
+    ):
         axes.plot(np.insert(angle, breaks, np.nan), np.insert(values, breaks, np.nan), color=colour, **style)

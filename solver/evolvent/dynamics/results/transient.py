@@ -92,7 +92,8 @@ class TransientFacts:
     mean_force_N: float
     """Of the mesh, over the last period."""
     load_N: float
-    """The load along the line of action: the same in a steady state."""
+    """The load along the line of action: the same in a steady state. Where both gears are free, the mean of what loads
+    either."""
     peak_to_peak_um: float
     """Of the transmission error."""
     static_peak_to_peak_um: float
@@ -119,6 +120,8 @@ class TransientCase:
     """The transient."""
     static: tuple[PositionResult, ...]
     """Its positions without inertia."""
+    load: float
+    """Along the line of action [N; N/mm in 2D]."""
 
     @property
     def results(self) -> tuple[PositionResult, ...]:
@@ -144,9 +147,11 @@ class CasePressures:
 
 def case_pressures(model: GearModel, cases: Sequence[TransientCase]) -> list[CasePressures]:
     """Of all cases, between the same tip-edge zones."""
-    columns = [results for case in cases for results in (case.results, case.static)]
+    still = {case.friction: case.static for case in cases}  # the same at all speeds
+    columns = [*(case.results for case in cases), *still.values()]
     found = pitch_pressures(model, [tuple(column[k] for column in columns) for k in range(len(columns[0]))])
-    return [CasePressures(case, *found[2 * i : 2 * i + 2]) for i, case in enumerate(cases)]
+    static = dict(zip(still, found[len(cases) :]))
+    return [CasePressures(case, moving, static[case.friction]) for case, moving in zip(cases, found)]
 
 
 def transient_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator[TransientRow]:
@@ -182,14 +187,14 @@ def tooth_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator
 
 
 def transient_facts(
-    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats, load: float
+    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats
 ) -> list[TransientFacts]:
-    """Of all cases. frequencies: of the modes [rad/s]; load: [N; N/mm in 2D]."""
+    """Of all cases. frequencies: of the modes [rad/s]."""
     width, facts = model.width_factor, []
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
     for each in pressures:
         case, found, (moving, still) = each.case, each.case.found, each.peaks()
-        force = np.array([moment.mesh_force for moment in found.moments])
+        force, load = np.array([moment.mesh_force for moment in found.moments]), case.load
         errors = np.array([result.transmission_error for result in case.results])
         facts.append(TransientFacts(
             case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,

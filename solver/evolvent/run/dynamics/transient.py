@@ -153,7 +153,7 @@ def _moving_pair(
 ) -> MovingPair:  # fmt: skip
     on, u, torque = model.load.on, model.pair.ratio, model.load.torque
     pinion, wheel = (inertia / model.width_factor for inertia in settings.inertias)
-    torques = (torque, torque * u) if on == 0 else (torque / u, torque)
+    torques = (torque, torque * u) if on == 0 else (torque / u, torque)  # but for friction
     drive = Drive.free(u, (pinion, wheel), torques)
     if section.drive == "constant_speed":
         drive = Drive.at_constant_speed(on, (pinion, wheel)[on], torques)
@@ -179,18 +179,28 @@ def _cases(
         found = []
         for number, (speed, index) in enumerate(tasks):
             if number % comm.size == comm.rank:
-                omega = 2.0 * np.pi * speed / 60.0
-                transient = PairTransient(pair, frictions[index], omega, TimeScheme(section.spectral_radius), kept)
+                omega, own = 2.0 * np.pi * speed / 60.0, _loaded(pair, static[index])
+                transient = PairTransient(own, frictions[index], omega, TimeScheme(section.spectral_radius), kept)
                 start = starts[index].at(transient.time_step)
                 periods = until_steady(transient, start, section.mesh_periods, section.steady_change)
-                _check_motion(periods, speed, pair, settings.backlash)
-                found.append((number, TransientCase(speed, frictions[index], periods, static[index])))
+                _check_motion(periods, speed, own, settings.backlash)
+                load = own.drive.torque / own.lever
+                found.append((number, TransientCase(speed, frictions[index], periods, static[index], load)))
         return found
 
     gathered = comm.gather(together(comm, solved))
     if gathered is None:
         return []
     return [case for _, case in sorted((each for part in gathered for each in part), key=lambda each: each[0])]
+
+
+def _loaded(pair: MovingPair, static: Sequence[PositionResult]) -> MovingPair:
+    """The pair under the torque of the scene on one gear, and the mean one that statics have on the other: less or more
+    by friction."""
+    other = 1 - pair.model.load.on
+    torques = list(pair.drive.torques)
+    torques[other] = float(np.mean([result.torques[other] for result in static]))
+    return replace(pair, drive=replace(pair.drive, torques=(torques[0], torques[1])))
 
 
 def _check_motion(found: MeshPeriods, speed: float, pair: MovingPair, backlash: float) -> None:
@@ -214,7 +224,7 @@ def _written(scene: Scene, pair: MovingPair, cases: Sequence[TransientCase], out
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     pressures = case_pressures(pair.model, cases)
     rows, teeth = list(transient_rows(pair.model, pressures)), list(tooth_rows(pair.model, pressures))
-    facts = transient_facts(pair.model, pressures, pair.frequencies, pair.drive.torque / pair.lever)
+    facts = transient_facts(pair.model, pressures, pair.frequencies)
 
     def drawn() -> bytes:
         from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import

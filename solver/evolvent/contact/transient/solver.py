@@ -5,7 +5,6 @@ docs/transient.md has the method.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,10 +22,12 @@ from evolvent.contact.transient.moving_response import MovingResponse
 from evolvent.contact.transient.settings import InitialState, TransientSettings
 from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
-from evolvent_meshes.errors import InputError
+from evolvent_meshes.errors import InputError, ResultError
 from evolvent_meshes.input_checks import instance, refuse
 
-LOG = logging.getLogger("evolvent")
+GROWTH = 0.02
+"""Of the largest energy so far: by how much it may seem to grow. Within a blow the sum of energies at the ends of time
+steps swings by 0.4 % with 20 steps a blow of a ball, 0.05 % with 40."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,12 @@ class _Reached:
     deformed: DeformedSurfaces | None
     energy: Energy
     work: float
+    first: float
+    largest: float
+
+
+class EnergyGrowth(ResultError):
+    """The bodies have more energy than they had at the start and were given by loads."""
 
 
 class Transient:
@@ -94,7 +101,8 @@ class Transient:
     def solve(self, step: Step | None = None) -> Moment:
         """The end of the next time step, under the loads and prescribed motions of `step` (by default the full load).
 
-        Raises InputError, NotConverged, SearchError, PairingNotSettled, SmallStrainExceeded, NotPositiveDefinite.
+        Raises InputError, NotConverged, SearchError, PairingNotSettled, SmallStrainExceeded, NotPositiveDefinite,
+        EnergyGrowth.
         """
         step = Step() if step is None else step
         check_step(self.problem, step)
@@ -105,6 +113,7 @@ class Transient:
         )
         solution, deformed = self._solved(step, reached.deformed, responses)
         after = self._after(reached, responses, solution, deformed)
+        _refuse_energy_growth(after)
         self._reached = after
         velocities = tuple(state.velocity[body.count :] for body, state in zip(self.bodies, after.states))
         return Moment(after.time, solution, velocities, after.energy, after.work)
@@ -146,7 +155,8 @@ class Transient:
         )
         energy = self._energy(states, responses, solution)
         time = before.time + self.settings.time_step
-        return _Reached(time, states, responses, forces, deformed, energy, work)
+        largest = max(before.largest, energy.total)
+        return _Reached(time, states, responses, forces, deformed, energy, work, before.first, largest)
 
     def _energy(
         self, states: tuple[MotionState, ...], responses: tuple[MovingResponse, ...], solution: Solution | None
@@ -179,7 +189,8 @@ class Transient:
             states.append(_initial(response, positions[index], self._velocity(index), forces[index]))
             responses.append(response)
         energy = self._energy(tuple(states), tuple(responses), solution)
-        return _Reached(0.0, tuple(states), tuple(responses), forces, deformed, energy, 0.0)
+        total = energy.total
+        return _Reached(0.0, tuple(states), tuple(responses), forces, deformed, energy, 0.0, total, total)
 
     def _velocity(self, index: int) -> Floats:
         """Of modes and rigid motions (m + r). Raises InputError for one that the body's supports do not allow."""
@@ -200,6 +211,18 @@ class Transient:
             )  # fmt: skip
         velocity[body.count + body.free] = rates
         return velocity
+
+
+def _refuse_energy_growth(at: _Reached) -> None:
+    """Raises EnergyGrowth. Prescribed motions do work that is not counted: with them nothing is checked."""
+    if any(len(response.body.free) < len(response.prescribed) for response in at.responses):
+        return
+    gained = at.energy.total - at.first - at.work
+    if gained > GROWTH * at.largest:
+        raise EnergyGrowth(
+            f"transient at {at.time:.4g} s: wanted at most the energy of the start and the work of the loads, found "
+            f"{gained / at.largest:.1%} more; take shorter time steps, or a smaller spectral_radius"
+        )
 
 
 def _contact_force(response: MovingResponse, forces: Floats) -> Floats:

@@ -6,7 +6,8 @@
 It is the member of the generalised-α family with all forces at the end of the step (Int. J. Numer. Meth. Eng. 15 (1980)
 1562-1566; Chung and Hulbert, J. Appl. Mech. 60 (1993) 371-375, with α_f = 0). Second order for every spectral radius
 0 <= ρ_∞ <= 1 at infinite frequency. The others weigh the forces of both ends: where contact opens and closes within a
-few steps their energy grew fivefold over 84 blows of a bar at ρ_∞ = 0.8, while that of this one fell in every step.
+few steps their energy grew fivefold over 84 blows of a bar at ρ_∞ = 0.8, while with this one it never exceeded that
+of the start.
 
 With a_{n+1} and v_{n+1} from z_{n+1}, a step reads
 

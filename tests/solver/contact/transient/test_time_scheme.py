@@ -1,11 +1,25 @@
-"""The time scheme on linear systems."""
+"""The time scheme: on linear systems, and with contact that stays closed."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from evolvent import (
+    Body,
+    Contact,
+    Fixed,
+    InitialState,
+    Material,
+    Problem,
+    Step,
+    Traction,
+    Transient,
+    TransientSettings,
+)  # fmt: skip
 from evolvent.contact.transient.time_scheme import LinearSystem, MotionState, TimeScheme, TimeStep
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.shapes.blocks import rectangle
 
 MASS, DAMPING, STIFFNESS = 2.0, 0.3, 50.0
 
@@ -54,3 +68,29 @@ def test_motions_too_fast_for_the_step_fall_by_the_spectral_radius(spectral_radi
     # the three-step matrix is defective at ρ_∞: its eigenvalues scatter by the square root of rounding
     found = np.abs(np.linalg.eigvals(np.array(columns).T)).max()
     assert found == pytest.approx(spectral_radius, abs=2e-3)
+
+
+def test_second_order_with_contact_that_stays_closed() -> None:
+    """A block pressed on another one by a traction that rises and falls smoothly within 40 µs, three modes each, from
+    statics: velocity, force and displacements at the end, against 256 steps. The error of 32 steps is four times that
+    of 64."""
+
+    def at_the_end(count: int) -> Floats:
+        steel = Material(210e3, 0.3)
+        load = (Traction("top", (0.0, -100.0)),)
+        upper = Body(rectangle(10.0, 10.0, 3, 3, origin=(0.0, 10.0)), steel, (Fixed("left", "x"),), load)
+        lower = Body(rectangle(10.0, 10.0, 2, 2), steel, (Fixed("left", "x"), Fixed("bottom")))
+        problem = Problem((upper, lower), (Contact((0, "bottom"), (1, "top")),))
+        run = Transient(problem, TransientSettings(4e-5 / count, 3, 0.02), InitialState(Step()))
+        shares = 1.0 + 0.3 * np.sin(np.pi * np.arange(1, count + 1) / count) ** 4
+        moments = list(run.run([Step(float(share)) for share in shares]))
+        assert all((moment.solution.contacts[0].pressure > 0.0).all() for moment in moments)
+        last = moments[-1].solution
+        return np.concatenate(
+            [moments[-1].velocities[0] / 100.0, last.contacts[0].force / 1e3, 1e3 * last.displacement(0).ravel()]
+        )
+
+    exact = at_the_end(256)
+    coarse, fine = (np.linalg.norm(at_the_end(count) - exact) for count in (32, 64))
+    assert coarse < 0.03 * np.linalg.norm(exact)
+    assert np.log2(coarse / fine) == pytest.approx(2.05, abs=0.15)  # 2.07 for the error of the reference itself

@@ -1,0 +1,121 @@
+"""`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
+
+Seven friction coefficients at 1500 and 3000 r/min under a constant torque on the pinion, and two of them as the paper
+drives the pair: the pinion at constant speed, the torque on the wheel. Runs that an earlier call has ended are read
+again. `python -m evidence.pages` then writes the page.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evidence.checkout import DEMOS, DOCS
+from evidence.pages.papers import kept
+from evidence.pages.papers.kept import Named
+from evidence.pages.papers.zhang_figures import Runs, read
+from evidence.processes import module_run
+from evidence.tables import markdown
+
+KEPT = "yang2022/transient.csv"
+COMMAND = "python -m evidence.pages.papers.yang_transient --out DIR"
+SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
+FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
+WAYS = {
+    "pinion": ("transient.drive=free", f"contact.friction={list(FRICTIONS)}"),
+    "wheel": ("transient.drive=constant_speed", f"contact.friction={[LOW, HIGH]}", "load.on=wheel",
+              "load.torque_Nm=882.353"),
+}  # fmt: skip
+"""Which gear holds the torque -> settings."""
+
+
+def figures(runs: Runs) -> Named:
+    """(name, value) of each figure. Raises RunFailed."""
+    for on, settings in WAYS.items():
+        speeds = f"transient.speeds_rpm={list(SPEEDS)}"
+        set_to = [f"--set={each}" for each in (*settings, speeds, "output.animation=false")]
+        words = module_run("evolvent", "transient", DEMOS / "yang2022.toml", "--level", "quick", "--overwrite",
+                           "--quiet", *set_to)  # fmt: skip
+        folder, cost = runs.ended(on, "transient.json", *words)
+        facts = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
+        yield f"{on}_minutes", cost.cpu / 60.0
+        yield from _of_cases(on, facts)
+        yield from _of_teeth(on, folder)
+
+
+def _of_cases(on: str, facts: list[dict[str, Any]]) -> Named:
+    """What inertia changes at each speed."""
+    for speed in SPEEDS:
+        own = [fact for fact in facts if fact["speed_rpm"] == speed]
+        yield f"{on}_{speed}_periods", max(fact["mesh_periods"] for fact in own)
+        yield f"{on}_{speed}_change_percent", 100.0 * max(fact["last_change"] for fact in own)
+        yield f"{on}_{speed}_modes", own[0]["modes"]
+        yield f"{on}_{speed}_force_percent", 100.0 * (max(fact["dynamic_factor"] for fact in own) - 1.0)
+        swing = [fact["peak_to_peak_um"] / fact["static_peak_to_peak_um"] - 1.0 for fact in own]
+        yield f"{on}_{speed}_swing_least_percent", 100.0 * min(swing)
+        yield f"{on}_{speed}_swing_most_percent", 100.0 * max(swing)
+        peaks = [fact["max_pressure_MPa"] / fact["static_max_pressure_MPa"] - 1.0 for fact in own]
+        yield f"{on}_{speed}_largest_percent", 100.0 * max(peaks, key=abs)
+
+
+def _of_teeth(on: str, folder: Path) -> Named:
+    """Pressure of a tooth over its engagement: what inertia changes, and what friction does at each speed."""
+    rows = read(folder / "transient_teeth.csv")
+    for speed in SPEEDS:
+        curves = {}
+        for friction in (LOW, HIGH):
+            own = [row for row in rows if (float(row["speed_rpm"]), float(row["friction"])) == (speed, friction)]
+            columns = ("tooth_angle_deg", "max_pressure_MPa", "static_max_pressure_MPa")
+            curves[friction] = np.array([[float(row[name]) for name in columns] for row in own])
+        moved = np.concatenate([curve[:, 1] / curve[:, 2] - 1.0 for curve in curves.values()])
+        yield f"{on}_{speed}_pressure_percent", 100.0 * float(np.nanmax(np.abs(moved)))
+        for name, column in (("moving", 1), ("static", 2)):
+            low, high = (_known(curve, column) for curve in curves.values())
+            both = np.intersect1d(low[0], high[0])
+            change = np.interp(both, *high) / np.interp(both, *low) - 1.0
+            yield f"{on}_{speed}_{name}_before_percent", 100.0 * float(np.median(change[both < -10.0]))
+            yield f"{on}_{speed}_{name}_after_percent", 100.0 * float(np.median(change[both > 10.0]))
+
+
+def _known(curve: np.ndarray[Any, np.dtype[np.float64]], column: int) -> tuple[Any, Any]:
+    """Angles and pressures where these are known."""
+    known = np.isfinite(curve[:, column])
+    return np.round(curve[known, 0], 6), curve[known, column]
+
+
+def table(docs: Path) -> str:
+    """Both drives at both speeds, level quick."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    ways = {"pinion": "torque on the pinion, both gears free", "wheel": "torque on the wheel, pinion at constant speed"}
+    rows = [
+        (
+            words, f"{speed}", f"{f[f'{on}_{speed}_periods']:.0f}", f"{f[f'{on}_{speed}_force_percent']:+.2f} %",
+            f"{f[f'{on}_{speed}_swing_least_percent']:+.1f} to {f[f'{on}_{speed}_swing_most_percent']:+.1f} %",
+            f"{f[f'{on}_{speed}_largest_percent']:+.2f} %", f"{f[f'{on}_{speed}_pressure_percent']:.1f} %",
+            f"{f[f'{on}_{speed}_moving_before_percent']:+.1f} / {f[f'{on}_{speed}_moving_after_percent']:+.1f} %",
+        )
+        for on, words in ways.items()
+        for speed in SPEEDS
+    ]  # fmt: skip
+    head = (
+        "drive", "speed [r/min]", "mesh periods until steady", "largest mesh force over the load",
+        "peak-to-peak transmission error over statics", "largest pressure over statics",
+        "pressure of a tooth: largest difference from statics",
+        "friction, μ 0.07 to 0.30: pressure of a tooth at −25° to −10° / 10° to 30°",
+    )  # fmt: skip
+    return markdown(head, rows)
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
+
+
+if __name__ == "__main__":
+    main()

@@ -69,6 +69,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.sweep", "dynamics.modes",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
+    "strength.fatigue": ("meshes",),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "scene.schema.guesses"),
     "scene": (

@@ -1,0 +1,96 @@
+"""Fatigue criteria on histories with a known answer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evolvent.strength.fatigue.criteria import (
+    dang_van,
+    fatemi_socie,
+    largest_shear,
+    orthogonal_shear_range,
+    von_mises,
+)
+from evolvent.strength.fatigue.half_plane import hertz_tractions, plane_strain
+from evolvent_meshes.arrays import Floats
+
+PHASES = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+def tension(mean: float, amplitude: float) -> Floats:
+    """Uniaxial stress along x."""
+    stress = np.zeros((len(PHASES), 3, 3))
+    stress[:, 0, 0] = mean + amplitude * np.sin(PHASES)
+    return stress
+
+
+def torsion(amplitude: float, normal: float = 0.0) -> Floats:
+    """Shear τ_xz that alternates, with a constant normal stress along z."""
+    stress = np.zeros((len(PHASES), 3, 3))
+    stress[:, 0, 2] = stress[:, 2, 0] = amplitude * np.sin(PHASES)
+    stress[:, 2, 2] = normal
+    return stress
+
+
+def test_dang_van_of_uniaxial_stress() -> None:
+    """σ_m + σ_a sin t: the deviator's path is a straight line, shear about its middle is σ_a/2, hydrostatic stress
+    (σ_m + σ_a)/3 at the same time: σ_a/2 + a (σ_m + σ_a)/3."""
+    assert dang_van(tension(100.0, 300.0), 0.4) == pytest.approx(150.0 + 0.4 * 400.0 / 3.0, rel=1e-6)
+
+
+def test_dang_van_of_alternating_torsion() -> None:
+    """τ_a, whatever a."""
+    assert dang_van(torsion(200.0), 0.7) == pytest.approx(200.0, rel=1e-6)
+
+
+def test_dang_van_out_of_phase() -> None:
+    """σ_x and τ_xz 90° apart, τ_a = σ_a/√3: the deviator goes round a circle, its centre is 0; largest of shear
+    √(σ²/4 + τ²) plus a σ/3 over the cycle."""
+    stress = tension(0.0, 300.0)
+    stress[:, 0, 2] = stress[:, 2, 0] = 300.0 / np.sqrt(3.0) * np.cos(PHASES)
+    t = np.linspace(0.0, 2.0 * np.pi, 100_001)
+    wanted = np.sqrt((150.0 * np.sin(t)) ** 2 + (300.0 / np.sqrt(3.0) * np.cos(t)) ** 2) + 0.3 * 100.0 * np.sin(t)
+    assert dang_van(stress, 0.3) == pytest.approx(float(wanted.max()), rel=2e-6)
+
+
+def test_fatemi_socie_of_torsion_with_a_normal_stress() -> None:
+    """Δγ/2 = τ_a/G, on planes normal to z with the constant tension σ: (1 + kσ/σ_y) τ_a/G; under compression the plane
+    normal to x, without normal stress, is as bad: τ_a/G."""
+    G, σy, k = 80e3, 700.0, 0.6
+    assert fatemi_socie(torsion(200.0), G, σy, k) == pytest.approx(200.0 / G * (1.0 + k * _normal(200.0, σy, k) / σy))
+    small = fatemi_socie(torsion(1e-3, 350.0), G, σy, k)  # so small that shear adds no normal stress
+    assert small == pytest.approx(1e-3 / G * (1.0 + k * 350.0 / σy), rel=1e-5)
+
+
+def _normal(amplitude: float, σy: float, k: float) -> float:
+    """Largest normal stress on the worst plane of alternating torsion, turned by θ from that of the shear: it maximises
+    cos 2θ (1 + k τ sin 2θ/σ_y), and its own value is such that the product is the maximum."""
+    θ = np.linspace(0.0, np.pi / 4.0, 1_000_001)
+    product = np.cos(2.0 * θ) * (1.0 + k * amplitude * np.sin(2.0 * θ) / σy)
+    return float((product.max() - 1.0) * σy / k)
+
+
+def test_orthogonal_shear_below_a_line_contact() -> None:
+    """Range 0.5 p0 at 0.5 b, whatever the friction (Johnson, 4.2): to 1e-3."""
+    b, x = 1.0, np.linspace(-6.0, 6.0, 1201)
+    for μ in (0.0, 0.1):
+        history = plane_strain(hertz_tractions(b, 1000.0, μ).stress(x, np.full_like(x, 0.5)), 0.3)
+        assert orthogonal_shear_range(history) == pytest.approx(500.0, rel=2e-2 if μ else 1e-3)
+
+
+def test_what_friction_changes_below_a_line_contact() -> None:
+    """μ = 0.132 against 0.107: the largest von Mises stress and shear below the surface change by less than 1.2 %, the
+    largest von Mises stress at the surface by 3 to 6 %, its tension by 23.4 %."""
+    x = np.linspace(-1.5, 1.5, 301)
+    deep, surface, tension = [], [], []
+    for μ in (0.107, 0.132):
+        loads = hertz_tractions(1.0, 1000.0, μ, 801)
+        grid = [plane_strain(loads.stress(x, np.full_like(x, z)), 0.3) for z in np.linspace(0.5, 1.0, 11)]
+        deep.append([max(criterion(each).max() for each in grid) for criterion in (von_mises, largest_shear)])
+        at_surface = plane_strain(loads.stress(x, np.zeros_like(x)), 0.3)
+        surface.append(float(von_mises(at_surface).max()))
+        tension.append(float(at_surface[:, 0, 0].max()))
+    assert all(1.0 < ratio < 1.012 for ratio in np.array(deep[1]) / deep[0])
+    assert 1.03 < surface[1] / surface[0] < 1.06
+    assert tension[1] / tension[0] == pytest.approx(0.132 / 0.107, rel=2e-3)

@@ -37,6 +37,9 @@ class KeptContacts:
     """Time steps of a mesh period."""
     components: int
     """k: 1 without friction, else the dimension of space."""
+    most: float = np.inf
+    """Memory that may be kept [bytes]; what has no room is searched again each time. The first ones are kept: as each
+    period needs all of them in turn, dropping the oldest would keep none that is needed next."""
     kept: dict[tuple[int, int], SearchedContact] = field(default_factory=dict, repr=False)
     """By position and multiple."""
 
@@ -64,9 +67,12 @@ class KeptContacts:
 
     def _at(self, phase: int, multiple: int) -> SearchedContact:
         key = phase, multiple
-        if key not in self.kept:
-            self.kept[key] = self._searched(phase * self.step_angle, multiple * self._spacing)
-        return self.kept[key]
+        if key in self.kept:
+            return self.kept[key]
+        searched = self._searched(phase * self.step_angle, multiple * self._spacing)
+        if searched.bytes + sum(each.bytes for each in self.kept.values()) <= self.most:
+            self.kept[key] = searched
+        return searched
 
     def _searched(self, angle: float, ψ: float) -> SearchedContact:
         model = self.pair.model

@@ -41,6 +41,11 @@ class SearchedContact:
     k: int
     """Components."""
 
+    @property
+    def bytes(self) -> int:
+        """Of its matrices."""
+        return self.compliance.nbytes + self.modes.nbytes
+
     @staticmethod
     def of(pair: MovingPair, contact: GearContact, searched: float, k: int) -> SearchedContact:
         """Puts compliance and modes together."""

@@ -30,6 +30,7 @@ from evolvent.dynamics.transient.pair_transient import PairTransient
 from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel, Preparer, prepare_model
 from evolvent.gears.meshing.levelled_meshes import is_two_level
@@ -52,6 +53,8 @@ PICTURE, MODES, STEPS = "transient.png", "natural modes", "mesh periods"
 WRITTEN = TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}"
 RESOLVED = 0.25
 """Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
+KEPT = 0.35
+"""Of the machine's memory: what the contacts of positions may take, beside the gears."""
 MEAN_FORCE = 0.01
 """Of the load: what the mean mesh force of a steady state may differ from it."""
 
@@ -172,7 +175,8 @@ def _cases(
     tasks = [(speed, index) for speed in section.speeds_rpm for index in range(len(frictions))]
     progress.stage(STEPS)
     normal_only = not any(frictions)
-    kept = KeptContacts(pair, scene.sweep.positions, 1 if normal_only else pair.model.bodies[0].d)
+    room = KEPT * 1e6 * machine_megabytes() / comm.size
+    kept = KeptContacts(pair, scene.sweep.positions, 1 if normal_only else pair.model.bodies[0].d, room)
 
     def solved() -> list[tuple[int, TransientCase]]:
         starts = quasi_static_starts(pair, kept.step_angle, frictions)

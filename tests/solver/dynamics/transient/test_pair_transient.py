@@ -116,6 +116,17 @@ def test_mean_force_of_a_steady_state_is_the_load() -> None:
     )
 
 
+def test_contacts_that_are_not_kept_are_searched_again() -> None:
+    """Without room for any, and with room for some: the same forces to the last digit."""
+    fast = moving("spur", 0.2, 2000.0)
+    wanted = [moment.mesh_force for moment in moments(fast, 2)]
+    one = next(iter(fast.contacts.kept.values())).bytes
+    for most, count in ((0.0, 0), (3.5 * one, 3)):
+        kept = KeptContacts(fast.pair, POSITIONS, fast.contacts.components, most)
+        assert [moment.mesh_force for moment in moments(replace(fast, contacts=kept), 2)] == wanted
+        assert len(kept.kept) in (count, count + 1)
+
+
 def test_teeth_are_renumbered_after_a_pitch() -> None:
     """The same start, seen a pitch later with the other teeth: the motion that follows is the same to 1e-9."""
     fast = moving("helical", 0.0, 3000.0, count=2)

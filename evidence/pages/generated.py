@@ -12,7 +12,7 @@ from pathlib import Path
 from evidence import mutations
 from evidence.checkout import ROOT
 from evidence.pages import outputs, promises, readme, tutorial
-from evidence.pages.papers import he, yang, yang_fatigue, zhang
+from evidence.pages.papers import he, yang, yang_fatigue, yang_transient, zhang
 from evidence.robustness import study_page
 
 
@@ -27,7 +27,9 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
             "accuracy": yang.accuracy(docs),
         },
         docs / "scene.md": {"levels": yang.levels(docs)},
-        docs / "yang2022.md": {"accuracy": yang.accuracy(docs), "points": yang.points(docs)},
+        docs / "yang2022.md": {
+            "accuracy": yang.accuracy(docs), "points": yang.points(docs), "transient": yang_transient.table(docs),
+        },
         docs / "he2022.md": {"points": he.points(docs), "sensitivity": he.sensitivity(docs)},
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"line_contact": yang_fatigue.table(docs)},

@@ -1,8 +1,7 @@
 """`python -m evidence.pages.papers.yang_transient --out DIR`: Yang's pair at both speeds, for docs/yang2022.md.
 
-Seven friction coefficients at 1500 and 3000 r/min under a constant torque on the pinion, and two of them as the paper
-drives the pair: the pinion at constant speed, the torque on the wheel. Runs that an earlier call has ended are read
-again. `python -m evidence.pages` then writes the page.
+Seven friction coefficients at 1500 and 3000 r/min under a constant torque on the pinion. Runs that an earlier call has
+ended are read again. `python -m evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
@@ -27,9 +26,7 @@ SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
 FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
 WAYS = {
     "pinion": ("transient.drive=free", f"contact.friction={list(FRICTIONS)}"),
-    "wheel": ("transient.drive=constant_speed", f"contact.friction={[LOW, HIGH]}", "load.on=wheel",
-              "load.torque_Nm=882.353"),
-}  # fmt: skip
+}
 """Which gear holds the torque -> settings."""
 
 
@@ -88,9 +85,9 @@ def _known(curve: np.ndarray[Any, np.dtype[np.float64]], column: int) -> tuple[A
 
 
 def table(docs: Path) -> str:
-    """Both drives at both speeds, level quick."""
+    """Both speeds, level quick."""
     f = kept.kept(docs / KEPT, COMMAND)
-    ways = {"pinion": "torque on the pinion, both gears free", "wheel": "torque on the wheel, pinion at constant speed"}
+    ways = {"pinion": "torque on the pinion, both gears free"}
     rows = [
         (
             words, f"{speed}", f"{f[f'{on}_{speed}_periods']:.0f}", f"{f[f'{on}_{speed}_force_percent']:+.2f} %",

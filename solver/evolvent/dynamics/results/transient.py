@@ -89,6 +89,10 @@ class TransientFacts:
     """Natural modes of both gears together."""
     lowest_mode_Hz: float | None
     """The lowest of them; null without modes."""
+    natural_frequency_Hz: float
+    """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics."""
+    steps_per_natural_period: float
+    """Time steps in a period of it; of fewer than eight what the mesh excites of it is not resolved."""
     mean_force_N: float
     """Of the mesh, over the last period."""
     load_N: float
@@ -187,18 +191,22 @@ def tooth_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator
 
 
 def transient_facts(
-    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats
+    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats, mass: float
 ) -> list[TransientFacts]:
-    """Of all cases. frequencies: of the modes [rad/s]."""
+    """Of all cases. frequencies: of the modes [rad/s]; mass: along the line of action [t; t/mm in 2D]."""
     width, facts = model.width_factor, []
     lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
     for each in pressures:
         case, found, (moving, still) = each.case, each.case.found, each.peaks()
         force, load = np.array([moment.mesh_force for moment in found.moments]), case.load
         errors = np.array([result.transmission_error for result in case.results])
+        stiffness = float(np.mean([still.stiffness for still in case.static]))
+        natural = float(np.sqrt(stiffness / mass)) / (2.0 * np.pi)
+        step = found.moments[-1].time - found.moments[-2].time
         facts.append(TransientFacts(
             case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,
-            found.is_steady, len(frequencies), lowest, width * found.mean_force, width * load,
+            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step), width * found.mean_force,
+            width * load,
             UM * float(np.ptp(errors)), UM * float(np.ptp([still.transmission_error for still in case.static])),
             float(force.max() / load), float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
             _largest(moving), _largest(still),

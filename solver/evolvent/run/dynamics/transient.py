@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,7 @@ from evolvent.dynamics.results.transient import (
     TRANSIENT_FACTS,
     TRANSIENT_TEETH,
     TransientCase,
+    TransientFacts,
     case_pressures,
     tooth_rows,
     transient_facts,
@@ -53,6 +55,8 @@ PICTURE, MODES, STEPS = "transient.png", "natural modes", "mesh periods"
 WRITTEN = TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}"
 RESOLVED = 0.25
 """Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
+ENOUGH_STEPS = 8.0
+"""A period of the pair's own vibration."""
 KEPT = 0.35
 """Of the machine's memory: what the contacts of positions may take, beside the gears."""
 MEAN_FORCE = 0.01
@@ -228,7 +232,7 @@ def _written(scene: Scene, pair: MovingPair, cases: Sequence[TransientCase], out
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     pressures = case_pressures(pair.model, cases)
     rows, teeth = list(transient_rows(pair.model, pressures)), list(tooth_rows(pair.model, pressures))
-    facts = transient_facts(pair.model, pressures, pair.frequencies)
+    facts = transient_facts(pair.model, pressures, pair.frequencies, pair.drive.inertia / pair.lever**2)
 
     def drawn() -> bytes:
         from evolvent.dynamics.figures.transient import transient_picture  # matplotlib takes a second to import
@@ -245,4 +249,16 @@ def _written(scene: Scene, pair: MovingPair, cases: Sequence[TransientCase], out
         for fact in facts
         if not fact.steady
     ]
-    return [*failures, *unsteady]
+    return [*failures, *unsteady, *_unresolved(facts, scene.sweep.positions)]
+
+
+def _unresolved(facts: Sequence[TransientFacts], positions: int) -> list[str]:
+    """A sentence for each speed at which the pair's own vibration has too few time steps a period."""
+    coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
+    return [
+        f"{speed:g} r/min: the pair's own vibration of {fact.natural_frequency_Hz:.0f} Hz has "
+        f"{fact.steps_per_natural_period:.2g} time steps a period; wanted {ENOUGH_STEPS:g}: what the mesh excites of "
+        f"it is not resolved; sweep.positions = {math.ceil(positions * ENOUGH_STEPS / fact.steps_per_natural_period)} "
+        "resolves it, transient.spectral_radius = 0 leaves statics where that is too many"
+        for speed, fact in coarse.items()
+    ]

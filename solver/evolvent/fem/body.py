@@ -220,11 +220,7 @@ def assemble(body: Body) -> Assembled:
 
 
 def _stiffness_and_load(body: Body) -> tuple[sp.csr_matrix, Floats]:
-    mesh = dolfinx_compat.create_mesh(body.mesh.points, body.mesh.cells, body.mesh.shape, body.mesh.order)
-    space = dolfinx_compat.vector_space(mesh, body.mesh.order)
-    blocks = dolfinx_compat.node_dofs(space, mesh, len(body.mesh.points))
-    d = body.mesh.dimension
-    order = (d * blocks[:, None] + np.arange(d)).ravel()
+    (mesh, space, order), d = dolfinx_compat.displacement_space(body.mesh), body.mesh.dimension
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     λ, μ = (dolfinx_compat.constant(mesh, float(value)) for value in body.material.lame)
     dx = ufl.Measure("dx", domain=mesh, metadata={"quadrature_degree": 2 * body.mesh.order})

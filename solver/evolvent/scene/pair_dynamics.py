@@ -16,8 +16,6 @@ from evolvent_meshes.gears.pair import GearPair
 FEWEST_POSITIONS = 3
 KG_M2 = 1e3
 """t·mm² per kg·m²."""
-KG_M3 = 1e-12
-"""t/mm³ per kg/m³."""
 
 
 def check_positions(scene: Scene) -> None:

@@ -14,7 +14,7 @@ from evolvent.fem.condensation.schur_complement import NotPositiveDefinite
 from evolvent.fem.modes.mass_matrix import mass_matrix
 from evolvent.fem.surface import surface_of
 from evolvent.gears.condensed_gear import GearBody, sector_body, sector_parts
-from evolvent.gears.kinematics import turn
+from evolvent.gears.kinematics import spin, turn
 from evolvent.gears.two_level.flank_lattice import FlankLattice
 from evolvent_meshes.arrays import Floats, Ints
 from evolvent_meshes.mesh.mesh_data import MeshData
@@ -108,14 +108,8 @@ def _on_mesh(
     stiffness, mass = (matrix.tocsr()[parts.free][:, parts.free] for matrix in (parts.stiffness, M))
     sector = SectorMatrices(stiffness, mass, CyclicFaces(interior, low, high, about))
     found = choice.of(sector, N)
-    r = _turning(sector_of.points, body.d)
+    r = spin(sector_of.points[:, : body.d], np.zeros(body.d)).ravel()
     pushed = np.real(found.shapes.T @ (M @ r)[parts.free])
     spun = np.where(found.harmonic == 0, N * pushed, 0.0)
     return found, float(N * (r @ (M @ r))), spun, parts.functionals.tocsc()[:, parts.free] @ found.shapes
 
-
-def _turning(points: Floats, d: int) -> Floats:
-    """Displacements (N·d,) by a unit turn about the axis."""
-    moved = np.zeros((len(points), d))
-    moved[:, 0], moved[:, 1] = -points[:, 1], points[:, 0]
-    return moved.ravel()

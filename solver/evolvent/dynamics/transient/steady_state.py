@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,11 +39,9 @@ class MeshPeriods:
         return float(np.mean([moment.mesh_force for moment in self.moments]))
 
 
-def until_steady(
-    transient: PairTransient, start: PairState, most: int, wanted: float, reached: Callable[[], None] = lambda: None
-) -> MeshPeriods:
+def until_steady(transient: PairTransient, start: PairState, most: int, wanted: float) -> MeshPeriods:
     """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
-    next, `most` at most. reached: called after each. Raises NotConverged, SearchError."""
+    next, `most` at most. Raises NotConverged, SearchError."""
     count, errors, changes = transient.contacts.positions, [], []
     moments: list[PairMoment] = []
     for moment in transient.run(start, most):
@@ -55,7 +52,6 @@ def until_steady(
         last, before = np.array(errors[-count:]), np.array(errors[-2 * count : -count])
         period = [moments[-1], *moments[:-1]]  # the last one stands at rotation 0 again
         moments = []
-        reached()
         if len(before):
             changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
             if changes[-1] <= wanted:

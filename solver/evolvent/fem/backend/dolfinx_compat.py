@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from evolvent.fem.backend.form_compiler import compiling, form_directory, logging_kept
 from evolvent.fem.backend.petsc import PETSc  # before dolfinx, which would start it
 from evolvent_meshes.arrays import Floats, Ints
-from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshError
+from evolvent_meshes.mesh.mesh_data import CELL_DIMENSION, MeshData, MeshError
 from evolvent_meshes.mesh.reference_cells import node_count
 from evolvent_meshes.mesh.soundness import check_cells
 
@@ -73,6 +73,14 @@ def vector_space(mesh: Mesh, order: int) -> Space:
             return fem.functionspace(mesh, ("Lagrange", order, (dimension,)), **_compiler_options(fem.functionspace))
         element = ufl.VectorElement("Lagrange", mesh.ufl_cell(), order)
         return fem.FunctionSpace(mesh, element, **_compiler_options(fem.FunctionSpace.__init__))
+
+
+def displacement_space(mesh: MeshData) -> tuple[Mesh, Space, Ints]:
+    """dolfinx' mesh and space of the displacements of a body with N nodes, and where each of the degrees of freedom
+    d·node + component is among those of the space, (N·d,)."""
+    made = create_mesh(mesh.points, mesh.cells, mesh.shape, mesh.order)
+    space, d = vector_space(made, mesh.order), mesh.dimension
+    return made, space, (d * node_dofs(space, made, len(mesh.points))[:, None] + np.arange(d)).ravel()
 
 
 def input_nodes(mesh: Mesh) -> Ints:

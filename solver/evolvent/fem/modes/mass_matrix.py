@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import cast
 
-import numpy as np
 import scipy.sparse as sp
 import ufl
 
@@ -17,11 +16,7 @@ def mass_matrix(body: Body) -> sp.csr_matrix:
 
     Raises CompileError and CacheError where dolfinx cannot compile the form.
     """
-    mesh = dolfinx_compat.create_mesh(body.mesh.points, body.mesh.cells, body.mesh.shape, body.mesh.order)
-    space = dolfinx_compat.vector_space(mesh, body.mesh.order)
-    d = body.mesh.dimension
-    blocks = dolfinx_compat.node_dofs(space, mesh, len(body.mesh.points))
-    order = (d * blocks[:, None] + np.arange(d)).ravel()
+    (mesh, space, order), d = dolfinx_compat.displacement_space(body.mesh), body.mesh.dimension
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     ρ = dolfinx_compat.constant(mesh, float(body.material.density))
     # exact for the shape functions; the Jacobian of curved cells adds (order − 1)·d degrees

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from evolvent.contact.transient.time_scheme import TimeScheme
+from evolvent.dynamics.gear_inertia import TONNE_PER_MM3
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.modes.mode_meshes import mode_mesh
 from evolvent.dynamics.pair_model import DriveSettings
@@ -45,7 +46,7 @@ from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import CONDENSING, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import KG_M3, check_positions, drive_settings
+from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.skips import wanted_output
@@ -146,7 +147,7 @@ def _modes(
     scene: Scene, problem: GearProblem, model: GearModel, section: TransientSection
 ) -> tuple[GearModes, GearModes]:
     """Of pinion and wheel, with the density of the scene."""
-    density = KG_M3 * (scene.dynamics or DynamicsSection()).density_kg_m3
+    density = TONNE_PER_MM3 * (scene.dynamics or DynamicsSection()).density_kg_m3
     sampled = max(section.speeds_rpm) / 60.0 * model.pair.pinion.z * scene.sweep.positions  # Hz
     choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, section.modes_per_harmonic)
     heavy = [replace(body, material=replace(body.material, density=density)) for body in model.bodies]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Complexes = NDArray[np.complex128]
 Singles = NDArray[np.float32]
 Reals = NDArray[Any]
 """Of single or double precision."""

@@ -10,12 +10,9 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
-from evolvent_meshes.arrays import Floats, Ints
-
-Complexes = NDArray[np.complex128]
+from evolvent_meshes.arrays import Complexes, Floats, Ints
 
 
 class JoinedSectors(Protocol):

@@ -16,11 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from evolvent_meshes.arrays import Floats
+from evolvent_meshes.arrays import Complexes, Floats
 
-Complexes = NDArray[np.complex128]
 SURFACE = 1e-9
 """Depth at which stress at the surface is evaluated, over the width of the tractions: the logarithms of neighbouring
 intervals cancel there to rounding."""

@@ -32,6 +32,8 @@ from evolvent.results.tables.summary_rows import SCHEMA_VERSION, ErrorBars, Fric
 from evolvent.run.study.results.check_figures import CheckFigures
 from evolvent.run.study.results.scene_record import SceneRecord
 from evolvent.scene.skips import Skipped
+from evolvent.strength.results.fatigue_facts import FatigueFacts
+from evolvent.strength.results.fatigue_rows import FatigueDepthRow, FatigueLifeRow, FatigueMapRow, FatigueRow
 from evolvent.strength.results.gauge_table import GaugeRow
 from evolvent.strength.results.tables import RootStressRow, StrengthRow
 from evolvent.wear.gears.gear_study import BlockRow
@@ -83,6 +85,12 @@ FILES = (
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),
     ("root_stress.csv", "`evolvent strength`: a line per gear, friction coefficient and rotation of a tooth"),
     ("gauges.csv", "`evolvent strength` with `strength.gauges`: a line per strain gauge, coefficient and rotation"),
+    ("fatigue.toml", "`evolvent fatigue`: the scene that was computed, with all its defaults"),
+    ("fatigue.csv", "`evolvent fatigue`: where each criterion is largest, a line per gear, coefficient and place"),
+    ("fatigue_life.csv", "likewise: lives at several friction coefficients over that at the first"),
+    ("fatigue_map.csv", "likewise: each criterion over the flank"),
+    ("fatigue_depth.csv", "likewise: each criterion below the point with the largest contact pressure"),
+    ("fatigue.json", "`evolvent fatigue`: what these figures rest on"),
     ("study.csv", "`evolvent study`: parameters and figures of each scene, [studies.md](studies.md)"),
     ("study.json", "`evolvent study`: what its table is of"),
     ("scenes/*", "`evolvent study`: a folder per scene, with what the command of the computation leaves"),
@@ -144,6 +152,11 @@ SECTIONS = (
     ("`strength.csv`", StrengthRow, "Of `evolvent strength`: the pinion first, formulas before finite elements."),
     ("`root_stress.csv`", RootStressRow, "Of `evolvent strength`, at ascending rotations."),
     ("`gauges.csv`", GaugeRow, "Of `evolvent strength` with `strength.gauges`, at ascending rotations."),
+    ("`fatigue.csv`", FatigueRow, "Of `evolvent fatigue`: the pinion first."),
+    ("`fatigue_life.csv`", FatigueLifeRow, "Of `evolvent fatigue` with more than one friction coefficient."),
+    ("`fatigue_map.csv`", FatigueMapRow, "Of `evolvent fatigue`, from the root of the pinion on."),
+    ("`fatigue_depth.csv`", FatigueDepthRow, "Of `evolvent fatigue`, from the surface down."),
+    ("`fatigue.json`, each entry", FatigueFacts, "Of `evolvent fatigue`."),
     ("`study_scene.json`", SceneRecord, "Of each scene of `evolvent study`."),
     ("`check.json`", CheckFigures, "Of each scene of `evolvent study` with `compute = \"check\"`."),
     ("`wear.csv`", BlockRow, ""),

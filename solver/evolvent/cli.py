@@ -1,8 +1,8 @@
 """The command line `evolvent`, also `python -m evolvent`: parses arguments, calls the API, returns an exit status.
 
 0 done, 2 bad input, 3 not converged or out of balance, 1 anything else. Under mpirun all ranks take part in the
-commands of `evolvent.computing`; only rank 0 prints, but a rank that fails alone does, and ends all. Rank 0 alone does
-all else.
+commands of `computing.py` and `strength_commands.py`; only rank 0 prints, but a rank that fails alone does, and ends
+all. Rank 0 alone does all else.
 """
 
 from __future__ import annotations
@@ -20,13 +20,11 @@ from evolvent.computing import (
     EXCITATION_EPILOG,
     LOADS_EPILOG,
     RUN_EPILOG,
-    STRENGTH_EPILOG,
     TRANSIENT_EPILOG,
     dynamics,
     excitation,
     loads,
     run,
-    strength,
     transient,
 )
 from evolvent.failures import STATUSES, Exit, leave, reported, silent_except_on_first, tolerate_terminal_encoding
@@ -45,12 +43,13 @@ from evolvent.options import (
 )  # fmt: skip
 from evolvent.scene.gear_problem import gear_problem
 from evolvent.scene_argument import loaded_scene, require, require_room
+from evolvent.strength_commands import FATIGUE_EPILOG, STRENGTH_EPILOG, fatigue, strength
 from evolvent.study_command import STUDY_EPILOG, study
 from evolvent_meshes.files import require_writable, write_bytes
 
 # commands import what they need beyond the scene: `check` and `info` must not wait for PETSc or pyvista
 
-SHARED = ("run", "loads", "excitation", "dynamics", "transient", "strength")
+SHARED = ("run", "loads", "excitation", "dynamics", "transient", "strength", "fatigue")
 """The commands that all ranks take part in."""
 app = typer.Typer(
     name="evolvent",
@@ -80,6 +79,7 @@ app.command(epilog=EXCITATION_EPILOG)(excitation)
 app.command(epilog=DYNAMICS_EPILOG)(dynamics)
 app.command(epilog=TRANSIENT_EPILOG)(transient)
 app.command(epilog=STRENGTH_EPILOG)(strength)
+app.command(epilog=FATIGUE_EPILOG)(fatigue)
 app.command(epilog=STUDY_EPILOG)(study)
 
 

@@ -1,5 +1,5 @@
-"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `transient`, `strength`.
-All ranks take part in them."""
+"""The commands of `evolvent` that compute a scene: `run`, `loads`, `excitation`, `dynamics`, `transient`. All ranks
+take part in them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 from mpi4py import MPI
 
+from evolvent.command_output import done, warn
 from evolvent.failures import STATUSES, reported
 from evolvent.options import (
     Force,
@@ -25,7 +26,7 @@ from evolvent.options import (
     given_percents,
 )  # fmt: skip
 from evolvent.scene.scene import Scene
-from evolvent.scene_argument import loaded_scene, require, require_room
+from evolvent.scene_argument import loaded_scene, require, require_room, unworn
 
 # commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
 
@@ -74,13 +75,6 @@ Examples:
   mpirun -n 2 evolvent transient demos/yang2022.toml --out out/fast --level quick --set transient.speeds_rpm=[1500]
 
 {STATUSES}"""
-STRENGTH_EPILOG = f"""\b
-Examples:
-  evolvent strength demos/zhang2023.toml --out out/zhang2023 --set pinion.face_width_mm=25
-  evolvent strength demos/he2022.toml --out out/roots --level quick --set contact.friction=[0,0.1]
-
-{STATUSES}"""
-
 
 def run(
     scene: SceneFile,
@@ -139,9 +133,9 @@ def loads(
         from evolvent.run.load_list import run_loads
 
         scenes = _scenes(loaded, percent, force)
-        _warn(run_loads(scenes, out, resume, quiet, overwrite, scene))
+        warn(run_loads(scenes, out, resume, quiet, overwrite, scene))
         if not quiet:
-            _done(out, "loads.csv", "pictures/loads.png")
+            done(out, "loads.csv", "pictures/loads.png")
 
 
 def excitation(
@@ -171,9 +165,9 @@ def excitation(
 
         torques = scene_torques(loaded, percent)
         require_room(torques.scene, "run", force, MPI.COMM_WORLD)
-        _warn(run_excitation(torques, out, resume, overwrite, quiet))
+        warn(run_excitation(torques, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            _done(out, "excitation.csv", "harmonics.csv", "pictures/excitation.png")
+            done(out, "excitation.csv", "harmonics.csv", "pictures/excitation.png")
 
 
 def dynamics(
@@ -199,10 +193,10 @@ def dynamics(
         require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.vibration import run_dynamics
 
-        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
-        _warn(run_dynamics(loaded, out, resume, overwrite, quiet))
+        require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
+        warn(run_dynamics(loaded, out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            _done(out, "response.csv", "dynamics.json", "pictures/vibration.png", "pictures/waterfall.png")
+            done(out, "response.csv", "dynamics.json", "pictures/vibration.png", "pictures/waterfall.png")
 
 
 def transient(
@@ -226,51 +220,10 @@ def transient(
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
         from evolvent.run.dynamics.transient import run_transient
 
-        require_room(_unworn(loaded), "run", force, MPI.COMM_WORLD)
-        _warn(run_transient(_unworn(loaded), out, overwrite, quiet))
+        require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
+        warn(run_transient(unworn(loaded), out, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            _done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png")
-
-
-def strength(
-    scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
-    ],
-    level: LevelOption = None,
-    settings: Overrides = None,
-    no_skip: NoSkip = None,
-    force: Force = False,
-    overwrite: Overwrite = False,
-    quiet: Quiet = False,
-) -> None:
-    """Compute the stress at the roots of a pair's teeth.
-
-    By finite elements over the whole engagement of a tooth, on both sides, beside ISO 6336-3 and formulas for chosen
-    points of load. Nominal stresses: load factors multiply them.
-    """
-    with reported(parallel=True):
-        loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
-        from evolvent.run.strength.strength_run import run_strength
-
-        require_room(_unworn(loaded), "strength", force, MPI.COMM_WORLD)
-        _warn(run_strength(loaded, out, overwrite, quiet))
-        if not quiet and MPI.COMM_WORLD.rank == 0:
-            from evolvent.run.strength.summary_lines import summary_lines
-
-            for line in summary_lines(out):
-                typer.echo(line)
-            _done(out, "strength.toml", "strength.csv", "root_stress.csv", "gauges.csv", "pictures/root_stress.png")
-
-
-def _done(out: Path, *names: str) -> None:
-    """Names the files that were written: pictures, and tables that a scene asks for, may be missing."""
-    typer.echo("done: " + ", ".join(str(out / name) for name in names if (out / name).exists()))
-
-
-def _unworn(scene: Scene) -> Scene:
-    """The scene without [wear], as these commands solve it: the gears as they are."""
-    return scene.model_copy(update={"wear": None})
+            done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png")
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:
@@ -281,9 +234,3 @@ def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str
     for each in scenes.values():
         require_room(each, "run", force, MPI.COMM_WORLD)
     return scenes
-
-
-def _warn(sentences: Sequence[str]) -> None:
-    """Prints what a command has returned to be read."""
-    for sentence in sentences:
-        typer.echo(f"evolvent: warning: {sentence}", err=True)

@@ -54,3 +54,8 @@ def require(holds: bool, message: str) -> None:
     """Raises a usage error unless `holds`. message: with key, found, allowed and remedy."""
     if not holds:
         raise typer.BadParameter(message)
+
+
+def unworn(scene: Scene) -> Scene:
+    """The scene without [wear], as these commands solve it: the gears as they are."""
+    return scene.model_copy(update={"wear": None})

@@ -69,7 +69,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.sweep", "dynamics.modes",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
-    "strength.fatigue": ("meshes",),
+    "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
     "scene.schema.guesses": (),
     "scene.schema": ("meshes", "scene.schema.guesses"),
     "scene": (
@@ -121,17 +121,18 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "strength.results": (
         "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",
-        "strength",
+        "strength.fatigue", "strength",
     ),
-    "strength.figures": ("meshes.gears", "results.drawing", "strength.results"),
+    "strength.figures": ("meshes.gears", "results.drawing", "strength.fatigue", "strength.results"),
     "run": (
         "meshes.*", "fem.backend", "fem.parallel", "gears.meshing", "gears", "gears.sweep", "gears.solution",
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing",
-        "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
-        "strength.standard", "strength", "strength.results", "strength.figures", "run",
+        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.backend", "fem.parallel", "gears.problem",
+        "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
+        "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
+        "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
         "meshes", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",

@@ -22,7 +22,7 @@ from evolvent.strength.fatigue.criteria import (
     orthogonal_shear_range,
     von_mises,
 )
-from evolvent.strength.fatigue.half_plane import hertz_tractions, plane_strain
+from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
 from evolvent_meshes.arrays import Floats
 
 KEPT = "fatigue/line_contact.csv"
@@ -55,7 +55,7 @@ def figures() -> Named:
     for name, criterion in CRITERIA.items():
         found = {}
         for μ in (COATED, UNCOATED):
-            loads = hertz_tractions(1.0, PEAK, μ, 801)
+            loads = HertzTractions(1.0, PEAK, μ)
             at = [criterion(plane_strain(loads.stress(x, np.full_like(x, z)), POISSON)) for z in (0.0, *DEPTHS)]
             found[μ] = at[0], max(at[1:])
         for place, index in (("surface", 0), ("below", 1)):

@@ -23,6 +23,7 @@ from evolvent.scene.scene_text import nested_values, scene_text
 from evolvent.scene.schema.bodies import MaterialSection, MeshSection
 from evolvent.scene.schema.dynamics import DynamicsSection, TransientSection
 from evolvent.scene.schema.errors import InputProblem, SceneError, problems_of, section_of, shown, validation_error
+from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.schema.gears import GearSection, PairSection
 from evolvent.scene.schema.loading import ContactSection, LoadSection, SweepSection
 from evolvent.scene.schema.output import OutputSection, SkipSection
@@ -60,6 +61,7 @@ class Scene(SceneSection):
     dynamics: DynamicsSection | None = None
     transient: TransientSection | None = None
     strength: StrengthSection | None = None
+    fatigue: FatigueSection | None = None
     output: OutputSection = OutputSection()
     skip: SkipSection = SkipSection()
 

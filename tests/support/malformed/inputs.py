@@ -107,7 +107,7 @@ RECORDS: dict[str, tuple[bytes, str, str]] = {
 
 TEST = ["--force-N", "500", "--pin-diameter-mm", "6"]
 SCENE = "{scene}"
-COMMANDS = "run, loads, excitation, dynamics, transient, strength, study, check, mesh"
+COMMANDS = "run, loads, excitation, dynamics, transient, strength, fatigue, study, check, mesh"
 
 # arguments of the command line; key, what was found and a part of what is allowed or of the remedy
 OPTIONS: dict[str, tuple[list[str], str, str, str]] = {

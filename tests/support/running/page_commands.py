@@ -23,6 +23,7 @@ CHEAP = (
 FEW = ("sweep.positions=6",)
 FEWER = {
     "run": CHEAP, "loads": CHEAP, "excitation": FEW, "strength": FEW, "transient": FEW,
+    "fatigue": CHEAP,
     "study": (*FEW, "mesh.level=quick", "output.error_bars=false"),
     "dynamics": (*FEW, "dynamics.speeds=20", "dynamics.torque_percents=[50,100,200]", "dynamics.mesh=\"tangent\""),
 }

@@ -79,19 +79,25 @@ class ToothSummary:
 def slices(result: PositionResult, heights: Floats, materials: tuple[Material, Material]) -> Slices:
     """The slices of a position. heights: (n,) z of the pinion flank's nodes [mm]; materials: (pinion, wheel)."""
     c, edges = result.contact, layer_edges(heights)
-    layers = len(edges) - 1
-    layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, layers - 1)
-    keys, number = np.unique(c.tooth * layers + layer, return_inverse=True)
-    tooth, layer = np.divmod(keys, layers)
-    edge = np.bincount(number, c.edge, len(keys)) > 0.0
+    tooth, layer, number = slice_numbers(c, edges)
+    edge = np.bincount(number, c.edge, len(tooth)) > 0.0
     width = np.diff(edges)[layer]
-    force = np.bincount(number, c.pressure * c.weights, len(keys))
+    force = np.bincount(number, c.pressure * c.weights, len(tooth))
     load = force * np.cos(result.stand.pair.pinion.base_helix_angle) / width
     ξ, radius = _places(result, number, edge)
     hertz = line_peak_pressure(np.maximum(load, 0.0), radius, contact_modulus(*materials))
     largest, peak, half = _fits(c, number, load, edge)
     z = 0.5 * (edges[:-1] + edges[1:])[layer]
     return Slices(tooth, z, ξ, width, load, peak, largest, half, hertz, radius, edge)
+
+
+def slice_numbers(c: ContactPoints, edges: Floats) -> tuple[Ints, Ints, Ints]:
+    """Tooth pair and layer (n,) of each slice, and the slice (q,) of each point. edges: (l + 1,) [mm]."""
+    layers = len(edges) - 1
+    layer = np.clip(np.searchsorted(edges, c.z, side="right") - 1, 0, layers - 1)
+    keys, number = np.unique(c.tooth * layers + layer, return_inverse=True)
+    tooth, layer = np.divmod(keys, layers)
+    return tooth, layer, number
 
 
 def on_tip_edge(cut: Slices, tooth: int, z: Floats) -> Bools:

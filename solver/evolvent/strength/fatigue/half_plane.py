@@ -7,8 +7,7 @@ Mechanics, 1985, 2.2 and 2.3)
     σ_z = −P/π [−z Re w⁻² − Im w⁻¹] + Q/π z Im w⁻²
     τ_xz = P/π z Im w⁻² − Q/π [z Re w⁻² − Im w⁻¹] ,
 
-so that those of tractions follow from ∫ p/(w − t) dt and ∫ p/(w − t)² dt, which are closed where p is linear between
-nodes.
+so that those of tractions follow from ∫ p/(w − t) dt and ∫ p/(w − t)² dt, which are closed for Hertz' half-ellipse.
 """
 
 from __future__ import annotations
@@ -19,43 +18,51 @@ import numpy as np
 
 from evolvent_meshes.arrays import Complexes, Floats
 
-SURFACE = 1e-9
-"""Depth at which stress at the surface is evaluated, over the width of the tractions: the logarithms of neighbouring
-intervals cancel there to rounding."""
+Integrals = tuple[Complexes, Complexes]
+"""∫ v/(w − t) dt and ∫ v/(w − t)² dt (k,) of a traction v."""
+SURFACE = 1e-14
+"""Depth over half-width at which stress at the surface is evaluated, as the integrals are singular at the contact's
+edges."""
 
 
 @dataclass(frozen=True)
-class SurfaceTractions:
-    """Tractions on a strip of the surface z = 0, linear between n nodes, zero beside it."""
+class HertzTractions:
+    """Hertz' half-ellipse of pressure, and friction in a constant ratio to it."""
 
-    nodes: Floats
-    """x (n,) of the nodes, ascending [mm]."""
-    pressure: Floats
-    """p (n,) [MPa]."""
-    friction: Floats
-    """q (n,), tangential traction on the body towards +x [MPa]."""
+    half_width: float
+    """b [mm]."""
+    peak: float
+    """p0 [MPa]."""
+    friction: float
+    """Tangential traction on the body towards +x over the pressure: μ where the contact slides."""
 
     def stress(self, x: Floats, z: Floats) -> Floats:
-        """(k, 3) σ_x, σ_z, τ_xz [MPa] at places x, z (k,), z >= 0 into the body [mm]."""
-        depth = np.maximum(z, SURFACE * np.ptp(self.nodes))
-        w = x + 1j * depth
-        (p1, p2), (q1, q2) = (self._integrals(w, values) for values in (self.pressure, self.friction))
-        across = depth * p2.real - p1.imag, depth * q2.real - q1.imag
-        σx = -across[0] - (2.0 * q1.real + depth * q2.imag)
-        σz = depth * p2.real + p1.imag + depth * q2.imag
-        τ = depth * p2.imag - across[1]
-        return np.column_stack([σx, σz, τ]) / np.pi
+        """(k, 3) σ_x, σ_z, τ_xz [MPa] at places x, z (k,) from its middle, z >= 0 into the body [mm]."""
+        depth = np.maximum(z, SURFACE * self.half_width)
+        u = (x + 1j * depth) / self.half_width
+        root = np.sqrt(u - 1.0) * np.sqrt(u + 1.0)  # the branch that cancels u at infinity
+        pressure = np.pi * self.peak * (u - root), np.pi * self.peak / self.half_width * (u / root - 1.0)
+        return _stress(depth, pressure, (self.friction * pressure[0], self.friction * pressure[1]))
 
-    def _integrals(self, w: Complexes, values: Floats) -> tuple[Complexes, Complexes]:
-        """∫ v/(w − t) dt and ∫ v/(w − t)² dt (k,) of values (n,) at the nodes."""
-        step = np.diff(self.nodes)
-        slope = np.diff(values) / step
-        apart = w[:, None] - self.nodes
-        logarithm = np.diff(np.log(apart), axis=1)
-        here = values[:-1] + slope * apart[:, :-1]  # the linear function, continued to w
-        first = -(slope * step + here * logarithm).sum(axis=1)
-        second = (slope * logarithm + here * np.diff(1.0 / apart, axis=1)).sum(axis=1)
-        return first, second
+
+@dataclass(frozen=True)
+class LineForces:
+    """Forces per length on lines of the surface, n of them: what a contact solution has at its quadrature points."""
+
+    places: Floats
+    """x (n,) [mm]."""
+    pressing: Floats
+    """P (n,), into the body [N/mm]."""
+    dragging: Floats
+    """Q (n,), on the body towards +x [N/mm]."""
+
+    def stress(self, x: Floats, z: Floats) -> Floats:
+        """(k, 3) σ_x, σ_z, τ_xz [MPa] at places x, z (k,), z > 0 into the body [mm]; that of tractions where z is not
+        small beside the spacing."""
+        inverse: Complexes = np.reciprocal(x[:, None] - self.places + 1j * z[:, None])
+        square = inverse**2
+        P, Q = self.pressing.astype(complex), self.dragging.astype(complex)
+        return _stress(z, (inverse @ P, square @ P), (inverse @ Q, square @ Q))
 
 
 def plane_strain(stress: Floats, poissons_ratio: float) -> Floats:
@@ -67,8 +74,11 @@ def plane_strain(stress: Floats, poissons_ratio: float) -> Floats:
     return full
 
 
-def hertz_tractions(half_width: float, peak: float, friction: float, count: int = 401) -> SurfaceTractions:
-    """Hertz' half-ellipse of pressure that slides over the body, q = μp; nodes are dense at its edges."""
-    x = -half_width * np.cos(np.linspace(0.0, np.pi, count))
-    p = peak * np.sqrt(np.maximum(1.0 - (x / half_width) ** 2, 0.0))
-    return SurfaceTractions(x, p, friction * p)
+def _stress(depth: Floats, pressure: Integrals, friction: Integrals) -> Floats:
+    """(k, 3) σ_x, σ_z, τ_xz [MPa] at depths (k,) [mm]."""
+    (p1, p2), (q1, q2) = pressure, friction
+    across = depth * p2.real - p1.imag, depth * q2.real - q1.imag
+    σx = -across[0] - (2.0 * q1.real + depth * q2.imag)
+    σz = depth * p2.real + p1.imag + depth * q2.imag
+    τ = depth * p2.imag - across[1]
+    return np.column_stack([σx, σz, τ]) / np.pi

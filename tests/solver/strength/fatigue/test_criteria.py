@@ -12,7 +12,7 @@ from evolvent.strength.fatigue.criteria import (
     orthogonal_shear_range,
     von_mises,
 )
-from evolvent.strength.fatigue.half_plane import hertz_tractions, plane_strain
+from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
 from evolvent_meshes.arrays import Floats
 
 PHASES = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -75,7 +75,7 @@ def test_orthogonal_shear_below_a_line_contact() -> None:
     """Range 0.5 p0 at 0.5 b, whatever the friction (Johnson, 4.2): to 1e-3."""
     b, x = 1.0, np.linspace(-6.0, 6.0, 1201)
     for μ in (0.0, 0.1):
-        history = plane_strain(hertz_tractions(b, 1000.0, μ).stress(x, np.full_like(x, 0.5)), 0.3)
+        history = plane_strain(HertzTractions(b, 1000.0, μ).stress(x, np.full_like(x, 0.5)), 0.3)
         assert orthogonal_shear_range(history) == pytest.approx(500.0, rel=2e-2 if μ else 1e-3)
 
 
@@ -85,7 +85,7 @@ def test_what_friction_changes_below_a_line_contact() -> None:
     x = np.linspace(-1.5, 1.5, 301)
     deep, surface, tension = [], [], []
     for μ in (0.107, 0.132):
-        loads = hertz_tractions(1.0, 1000.0, μ, 801)
+        loads = HertzTractions(1.0, 1000.0, μ)
         grid = [plane_strain(loads.stress(x, np.full_like(x, z)), 0.3) for z in np.linspace(0.5, 1.0, 11)]
         deep.append([max(criterion(each).max() for each in grid) for criterion in (von_mises, largest_shear)])
         at_surface = plane_strain(loads.stress(x, np.zeros_like(x)), 0.3)

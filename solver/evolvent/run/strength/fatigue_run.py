@@ -1,0 +1,180 @@
+"""Contact fatigue of a scene's flanks, from start to finish. `evolvent fatigue` calls only this."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from evolvent.fem.backend import dolfinx_compat
+from evolvent.fem.material import Material
+from evolvent.fem.parallel.ranks import on_first, together
+from evolvent.gears.gear_model import Preparer, prepare_model
+from evolvent.gears.meshed_gear import MeshedGear
+from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
+from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
+from evolvent.gears.sweep.pitch_sweep import initial_state
+from evolvent.results.archive.error_bar_data import EstimatedErrors
+from evolvent.results.archive.gear_shapes import gear_shape
+from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.drawing.picture_files import Picture, draw
+from evolvent.results.error_bars.estimation import estimated_errors
+from evolvent.results.run_data import RunData, run_data
+from evolvent.results.tables.tables import csv_text
+from evolvent.run.coarse_run import solve_companion
+from evolvent.run.folder_checks import writing_to
+from evolvent.run.pitch_run import pitch_of
+from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
+from evolvent.scene.gear_problem import gear_problem
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.fatigue import FatigueSection
+from evolvent.scene.skips import wanted_output, with_deflected_flanks
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
+from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
+from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, FatigueFacts, facts_text, fatigue_facts
+from evolvent.strength.results.fatigue_rows import (
+    FATIGUE,
+    FATIGUE_DEPTH,
+    FATIGUE_LIFE,
+    FATIGUE_MAP,
+    FrictionFatigue,
+    depth_rows,
+    fatigue_rows,
+    life_rows,
+    map_rows,
+)
+
+PICTURE, SCENE = "fatigue.png", "fatigue.toml"
+WRITTEN = SCENE, FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_FACTS, f"pictures/{PICTURE}"
+
+
+def run_fatigue(
+    scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
+) -> list[str]:
+    """Computes the pitch and what it does to the flanks, and writes scene, tables and picture to `out`. Returns a
+    sentence where a picture could not be drawn or error bars not be estimated. Collective.
+
+    scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
+    calls share.
+
+    Raises FolderError, MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, WriteError.
+    """
+    comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
+    scene = scene.model_copy(update={"wear": None})
+    dolfinx_compat.silence_logs()
+    with writing_to(out, comm, lambda: _check(out, overwrite)), Progress(hidden=hidden) as progress:
+        solved, run = _certified(scene, comm, progress, prepare)
+        companion = None
+        if wanted_output(scene).error_bars:
+            progress.stage(ERROR_BARS)
+            companion = solve_companion(solved, pitch_of(solved), comm, prepare)
+        progress.stage(OUTPUT)
+
+        def written() -> list[str]:
+            assert run is not None
+            errors = run.errors if companion is None else estimated_errors(run, companion)
+            said = [errors.missing] if companion is not None and errors.missing else []
+            return [*said, *_written(run, errors, out)]
+
+        return on_first(comm, written)
+
+
+def _check(out: Path, overwrite: bool) -> None:
+    RunFolder(out).require_free(WRITTEN)
+    if (out / FATIGUE).exists() and not overwrite:
+        raise FolderError(
+            f"{out}: found {FATIGUE} of an earlier call; allowed: a folder without; remedy: --overwrite computes it "
+            "anew, --out names another folder"
+        )
+
+
+def _certified(
+    scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer
+) -> tuple[Scene, RunData | None]:  # fmt: skip
+    """The pitch, on rank 0, and the scene that it belongs to: on deflected flanks where its energy does not balance
+    otherwise. Collective. Raises BalanceError."""
+    try:
+        return scene, _solved(scene, comm, progress, prepare)
+    except PitchImbalance:
+        deflected = with_deflected_flanks(scene)
+        if deflected is scene:
+            raise
+        return deflected, _solved(deflected, comm, progress, prepare)
+
+
+def _solved(scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer) -> RunData | None:
+    progress.stage(MESHING)
+    model = prepare(gear_problem(scene), comm, meshed=lambda: progress.stage(CONDENSING)).model
+    pitch, frictions, swept = pitch_of(scene), scene.contact.friction, []
+    progress.stage(POSITIONS, len(pitch.angles))
+    for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
+        certify(position.results)
+        swept.append(position)
+        progress.advance(more=not position.closes)
+    certify_pitch(position.results for position in one_pitch(swept))
+
+    def assembled() -> RunData | None:
+        shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]
+        return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept)) if comm.rank == 0 else None
+
+    return together(comm, assembled)
+
+
+def _positions(run: RunData, index: int) -> list[LoadedPosition]:
+    """At the friction coefficient with this index."""
+    return [
+        LoadedPosition(k, each[index].result, each[index].cut, run.flank.z) for k, each in enumerate(run.positions)
+    ]
+
+
+def _fatigue(run: RunData, index: int, error: float) -> FrictionFatigue:
+    """error: of the largest pressure [MPa]."""
+    section, friction = run.scene.fatigue or FatigueSection(), run.frictions[index]
+    loads = FlankLoads.joined([each.loads(run.inner_path) for each in _positions(run, index)])
+    found: dict[FatigueMaterial, FlankFatigue] = {}
+    for material in (_material(each, section) for each in run.scene.materials()):
+        if material not in found:  # both flanks bear the same tractions
+            found[material] = flank_fatigue(loads, friction, section.depths, material)
+    pinion, wheel = (found[_material(each, section)] for each in run.scene.materials())
+    return FrictionFatigue(friction, (pinion, wheel), error / float(loads.peak.max(initial=0.0) or float("nan")))
+
+
+def _material(material: Material, section: FatigueSection) -> FatigueMaterial:
+    return FatigueMaterial(
+        material.poissons_ratio, material.lame[1], section.yield_stress_MPa, section.pressure_factor,
+        section.normal_factor,
+    )  # fmt: skip
+
+
+def _facts(run: RunData, index: int, error: float) -> FatigueFacts:
+    poisson = run.scene.materials()[0].poissons_ratio
+    return fatigue_facts(run.frictions[index], _positions(run, index), run.inner_path, poisson, error)
+
+
+def _written(run: RunData, errors: EstimatedErrors, out: Path) -> list[str]:
+    """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
+    section = run.scene.fatigue or FatigueSection()
+    bars = [errors.bar("max_pressure_MPa", index) for index in range(len(run.frictions))]
+    found = [_fatigue(run, index, error) for index, error in enumerate(bars)]
+
+    def drawn() -> bytes:
+        from evolvent.strength.figures.fatigue import fatigue_picture  # matplotlib takes a second to import
+
+        return fatigue_picture(run.scene.title, run.pair, found)
+
+    folder = RunFolder(out)
+    folder.remove(WRITTEN)
+    folder.write_text(SCENE, run.scene.resolved_toml())
+    folder.write_text(FATIGUE, _csv(fatigue_rows(run.pair, found)))
+    folder.write_text(FATIGUE_LIFE, _csv(life_rows(found, section.exponents)))
+    folder.write_text(FATIGUE_MAP, _csv(map_rows(run.pair, found)))
+    folder.write_text(FATIGUE_DEPTH, _csv(depth_rows(found)))
+    folder.write_text(FATIGUE_FACTS, facts_text([_facts(run, index, error) for index, error in enumerate(bars)]))
+    return list(draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures)
+
+
+def _csv(rows: Iterable[Any]) -> str:
+    return csv_text([asdict(row) for row in rows])

@@ -1,0 +1,60 @@
+"""The section [fatigue]: criteria of contact fatigue over the flanks and the depth below them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from evolvent.scene.schema.errors import InputProblem, shown, validation_error
+from evolvent.scene.schema.section import SceneSection, as_tuple, key
+
+DEPTHS = (
+    "a list of 2 to 60 ascending numbers from 0 to 10, the first 0, the last at least 0.2, in half-widths of the "
+    "contact"
+)
+DEEP = 0.2
+"""Half-widths from which on a depth counts as below the surface."""
+EXPONENTS = "a list of up to 12 different numbers from 1 to 100"
+Depth = Annotated[float, Field(ge=0, le=10)]
+Exponent = Annotated[float, Field(ge=1, le=100)]
+
+
+class FatigueSection(SceneSection):
+    """[fatigue]: `evolvent fatigue` reads it."""
+
+    depths: Annotated[tuple[Depth, ...], BeforeValidator(as_tuple)] = key(
+        "depths at which criteria are evaluated", DEPTHS, "begin with 0, the surface", min_length=2, max_length=60,
+        default=(0.0, 0.02, 0.05, *(round(0.1 * k, 1) for k in range(1, 26))),
+    )  # fmt: skip
+    yield_stress_MPa: float | None = key(
+        "yield stress of the flanks' material; without it the criterion of Fatemi and Socie is left out",
+        "a number from 50 to 5000", default=None, ge=50, le=5000,
+    )  # fmt: skip
+    pressure_factor: float = key(
+        "factor a on hydrostatic stress of the criterion of Dang Van: 3 τ_w/σ_w − 1.5 of the fatigue limits in "
+        "alternating torsion and bending; 0.3 has τ_w/σ_w = 0.6",
+        "a number from 0 to 2", default=0.3, ge=0, le=2,
+    )  # fmt: skip
+    normal_factor: float = key(
+        "factor k on the largest normal stress of the criterion of Fatemi and Socie", "a number from 0 to 5",
+        default=1.0, ge=0, le=5,
+    )  # fmt: skip
+    exponents: Annotated[tuple[Exponent, ...], BeforeValidator(as_tuple)] = key(
+        "exponents of stress over life for which lives are compared, beside those that a criterion has by its source",
+        EXPONENTS, max_length=12, default=(5.0, 10.0, 20.0),
+    )  # fmt: skip
+
+    @field_validator("exponents")
+    @classmethod
+    def _different(cls, exponents: tuple[float, ...]) -> tuple[float, ...]:
+        if len(set(exponents)) < len(exponents):
+            raise validation_error(InputProblem("exponents", shown(exponents), EXPONENTS, "name each once"))
+        return exponents
+
+    @model_validator(mode="after")
+    def _from_the_surface(self) -> Self:
+        rising = all(b > a for a, b in zip(self.depths, self.depths[1:]))
+        if self.depths[0] != 0.0 or self.depths[-1] < DEEP or not rising:
+            raise validation_error(InputProblem("depths", shown(self.depths), DEPTHS, "begin with 0, the surface"))
+        return self

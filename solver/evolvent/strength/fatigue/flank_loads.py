@@ -1,0 +1,104 @@
+"""What loads the points of the flanks over the engagement of a tooth.
+
+While the contact passes over a point of a flank its tractions hardly change. So the history there is that of the
+tractions at the moment when the contact line lies over it, moved on along the profile: a slice of a position stands for
+the point of both flanks below its middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from evolvent.gears.pressure.contact_slices import Slices, layer_edges, slice_numbers
+from evolvent.gears.pressure.line_peaks import between, has_peak, pooled_peaks
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.strength.fatigue.half_plane import HertzTractions, LineForces
+from evolvent_meshes.arrays import Floats, Ints
+
+
+@dataclass(frozen=True)
+class FlankLoads:
+    """The n slices of all positions of a pitch that are loaded between the tip-edge zones."""
+
+    place: Ints
+    """(n, 3) position in the pitch, tooth pair and layer of the face: the same points at other friction coefficients
+    have the same."""
+    roll_distance: Floats
+    """(n,) distance ξ of the contact line from the pitch point along the line of action [mm]."""
+    height: Floats
+    """(n,) of the slice's middle [mm]."""
+    peak: Floats
+    """(n,) p0 of the fitted half-ellipse of pressure, averaged with neighbours as in reported pressures [MPa]."""
+    half_width: Floats
+    """(n,) b across the contact line with the slice's line load, 2F/(π p0) [mm]."""
+    friction: Floats
+    """(n,) tangential force over normal force: μ where all of the slice slides, less where it sticks."""
+
+    @staticmethod
+    def joined(parts: Sequence[FlankLoads]) -> FlankLoads:
+        """Those of several positions in one."""
+        return FlankLoads(*(np.concatenate([getattr(p, each.name) for p in parts]) for each in fields(FlankLoads)))
+
+
+@dataclass(frozen=True)
+class LoadedPosition:
+    """A position and its contact in slices."""
+
+    index: int
+    """In the pitch."""
+    result: PositionResult
+    """The solution."""
+    cut: Slices
+    """Its slices."""
+    heights: Floats
+    """(m,) z of the pinion flank's nodes [mm]."""
+
+    def loads(self, inner: tuple[float, float]) -> FlankLoads:
+        """Of the slices between the tip-edge zones. inner: see `RunData.inner_path`."""
+        chosen = self._chosen(inner)
+        cut, peak = self.cut, pooled_peaks(self.cut)[chosen]
+        half = 2.0 * cut.line_load[chosen] / (np.pi * peak)
+        tooth, layer, _ = self._numbers
+        place = np.column_stack([np.full(len(chosen), self.index), tooth[chosen], layer[chosen]])
+        return FlankLoads(place, cut.roll_distance[chosen], cut.z[chosen], peak, half, self._friction[chosen])
+
+    def solved_and_fitted(self, inner: tuple[float, float]) -> list[tuple[LineForces, HertzTractions]]:
+        """The forces of the same slices as solved, at their quadrature points, beside the fitted tractions, both about
+        the centre of pressure."""
+        own, number = self.loads(inner), self._numbers[2]
+        found = []
+        for k, slice_number in enumerate(self._chosen(inner)):
+            fitted = HertzTractions(float(own.half_width[k]), float(own.peak[k]), float(own.friction[k]))
+            load = float(self.cut.line_load[slice_number])
+            found.append((self._solved(np.flatnonzero(number == slice_number), load), fitted))
+        return found
+
+    def _solved(self, here: Ints, load: float) -> LineForces:
+        """Of a slice with points `here` and a line load [N/mm]."""
+        c = self.result.contact
+        force = c.traction[here] * c.weights[here, None]
+        force *= load / force[:, 0].sum()
+        whole = force[:, 1:].sum(axis=0)
+        along = force[:, 1:] @ (whole / max(float(np.linalg.norm(whole)), 1e-300))
+        centre = force[:, 0] @ c.across[here] / load
+        return LineForces(c.across[here] - centre, force[:, 0], along)
+
+    def _chosen(self, inner: tuple[float, float]) -> Ints:
+        return np.flatnonzero(has_peak(self.cut) & between(self.cut.roll_distance, inner))
+
+    @property
+    def _numbers(self) -> tuple[Ints, Ints, Ints]:
+        return slice_numbers(self.result.contact, layer_edges(self.heights))
+
+    @property
+    def _friction(self) -> Floats:
+        """(slices,) size of the tangential force over the normal force."""
+        c, number = self.result.contact, self._numbers[2]
+        force = c.traction * c.weights[:, None]
+        normal, *tangential = (np.bincount(number, column) for column in force.T)
+        if not tangential:
+            return np.zeros(len(normal))
+        return np.asarray(np.linalg.norm(tangential, axis=0) / normal)

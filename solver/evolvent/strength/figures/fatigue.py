@@ -1,0 +1,101 @@
+"""Picture of contact fatigue: over the flank of the pinion, over the depth below it, and what friction changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+
+from evolvent.results.drawing.style import FAINT, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
+from evolvent.strength.fatigue.criterion import DANG_VAN, ORTHOGONAL_SHEAR, VON_MISES
+from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
+from evolvent.strength.results.fatigue_rows import FrictionFatigue, diameters
+from evolvent_meshes.gears.member import Member
+from evolvent_meshes.gears.pair import GearPair
+
+PROFILES = {VON_MISES: "-", ORTHOGONAL_SHEAR: "--", DANG_VAN: ":"}
+"""Criteria over the depth, and the style of their lines."""
+LEVELS, DEPTHS = 24, 201
+
+
+def fatigue_picture(title: str, pair: GearPair, found: Sequence[FrictionFatigue]) -> bytes:
+    """PNG of `fatigue_figure`."""
+    with styled():
+        return png(fatigue_figure(title, pair, found))
+
+
+def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue]) -> Figure:
+    """The criterion of Dang Van over the pinion's flank and over the depth below mid-face, at the last friction
+    coefficient; three criteria below the most loaded point, at all.
+
+    title: of the scene.
+    """
+    own, last = found[-1].gears[Member.PINION], found[-1].friction
+    figure = sheet(f"{title}: contact fatigue", f"Dang Van's equivalent shear stress on the pinion, μ = {last:g}; "
+                   "right: criteria below the point with the largest contact pressure", (13.5, 5.0))  # fmt: skip
+    over, section, below = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
+    if len(own.loads.peak):
+        _over_flank(over, pair, own)
+        figure.colorbar(_section(section, pair, own), ax=section, label="MPa")
+        _below(below, found)
+    foot(
+        figure,
+        "Elastic half-plane under the pressures and friction of the contact solution, one passage. Points in the zones "
+        "of tip edges, where pressure is singular, are left out.",
+    )
+    return figure
+
+
+def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue) -> None:
+    """Largest at any depth, over face and diameter; over the diameter alone in plane strain."""
+    diameter, values = diameters(pair, Member.PINION, own.loads.roll_distance), own.values[DANG_VAN].max(axis=1)
+    axes.set_title("largest at any depth", fontsize=10)
+    axes.set_ylabel("diameter of the pinion [mm]")
+    if len(np.unique(own.loads.height)) > 1:
+        drawn = axes.tricontourf(own.loads.height, diameter, values, LEVELS, cmap=PRESSURE_MAP)
+        axes.figure.colorbar(drawn, ax=axes, label="MPa")
+        axes.set_xlabel("face [mm]")
+    else:
+        order = np.argsort(diameter)
+        axes.plot(values[order], diameter[order], color="#1f5fa8", marker=".")
+        axes.set_xlabel("MPa")
+    _pitch_line(axes, pair)
+
+
+def _section(axes: Axes, pair: GearPair, own: FlankFatigue) -> ScalarMappable:
+    """Over depth and diameter at mid-face."""
+    heights = np.unique(own.loads.height)
+    middle = np.flatnonzero(own.loads.height == heights[np.argmin(np.abs(heights))])
+    middle = middle[np.argsort(own.loads.roll_distance[middle])]
+    diameter = diameters(pair, Member.PINION, own.loads.roll_distance[middle])
+    known = own.depths_mm[middle]
+    depths = np.linspace(0.0, float(known.max(axis=1).min()), DEPTHS)
+    values = [np.interp(depths, *each) for each in zip(known, own.values[DANG_VAN][middle])]
+    drawn = axes.contourf(1e3 * depths, diameter, values, LEVELS, cmap=PRESSURE_MAP)
+    axes.set_title("below mid-face", fontsize=10)
+    axes.set_xlabel("depth [µm]")
+    _pitch_line(axes, pair)
+    return drawn
+
+
+def _pitch_line(axes: Axes, pair: GearPair) -> None:
+    axes.axhline(pair.working_pitch_diameters[0], color=FAINT, lw=0.8, ls="--")
+
+
+def _below(axes: Axes, found: Sequence[FrictionFatigue]) -> None:
+    for each, colour in zip(found, friction_colours([each.friction for each in found])):
+        own = each.gears[Member.PINION]
+        top = int(np.argmax(own.loads.peak))
+        for criterion, style in PROFILES.items():
+            axes.plot(own.values[criterion][top], 1e3 * own.depths_mm[top], style, color=colour)
+        axes.plot([], [], color=colour, label=f"μ = {each.friction:g}")
+    for criterion, style in PROFILES.items():
+        axes.plot([], [], style, color=FAINT, label=criterion.words)
+    axes.invert_yaxis()
+    axes.set_xlabel("MPa")
+    axes.set_ylabel("depth [µm]")
+    axes.set_xlim(left=0.0)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

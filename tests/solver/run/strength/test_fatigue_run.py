@@ -1,0 +1,147 @@
+"""`evolvent fatigue` on Zhang's pair in plane strain: its tables, picture, refusals and ranks."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.scene_run import run_scene
+from evolvent.run.strength.fatigue_run import run_fatigue
+from evolvent.scene.scene import Scene, SceneError, load_scene
+from tests.support.checkout import ROOT
+from tests.support.running.processes import Run, on_ranks
+
+SETTINGS = (
+    "pinion.face_width_mm=25", "mesh.level=quick", "sweep.positions=8", "output.animation=false",
+    "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=900", "fatigue.depths=[0,0.3,0.5,0.8,1.2]",
+)  # fmt: skip
+
+
+def scene(*settings: str) -> Scene:
+    return load_scene(ROOT / "demos/zhang2023.toml", [*SETTINGS, *settings])
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With error bars."""
+    folder = tmp_path_factory.mktemp("fatigue")
+    assert run_fatigue(scene(), folder, quiet=True) == []
+    return folder
+
+
+def largest(out: Path, gear: str, criterion: str, place: str, friction: float) -> dict[str, str]:
+    (row,) = [
+        row
+        for row in rows(out / "fatigue.csv")
+        if (row["gear"], row["criterion"], row["place"], float(row["friction"])) == (gear, criterion, place, friction)
+    ]
+    return row
+
+
+def test_folder(out: Path) -> None:
+    """The scene with its defaults, tables and a picture."""
+    assert load_scene(out / "fatigue.toml") == scene()
+    assert (out / "pictures/fatigue.png").stat().st_size > 20_000
+
+
+def test_what_a_line_contact_has(out: Path) -> None:
+    """At each coefficient, of the largest contact pressure p0: range of orthogonal shear p0/2 at b/2; largest shear
+    0.300 p0 or, with friction, up to 4 % more; at the surface tension 2μp0 and shear μp0."""
+    for friction in (0.132, 0.107):
+        p0 = float(largest(out, "pinion", "contact_pressure", "surface", friction)["value"])
+        value = {
+            (name, place): float(largest(out, "pinion", name, place, friction)["value"])
+            for name, place in (
+                ("orthogonal_shear", "below"), ("largest_shear", "below"), ("tension", "surface"),
+                ("orthogonal_shear", "surface"),
+            )
+        }  # fmt: skip
+        assert value["orthogonal_shear", "below"] == pytest.approx(0.5 * p0, rel=1e-3)
+        assert 0.295 * p0 < value["largest_shear", "below"] < 0.3003 * 1.04 * p0
+        assert value["tension", "surface"] == pytest.approx(2.0 * friction * p0, rel=1e-3)
+        assert value["orthogonal_shear", "surface"] == pytest.approx(friction * p0, rel=1e-3)
+
+
+def test_largest_pressure_is_that_of_a_run(out: Path, tmp_path: Path) -> None:
+    """`evolvent run` of the same scene: the largest contact pressure is larger by what it interpolates to the limits
+    of the tip-edge zones, 3 % at most, and its error bar is the same share of it."""
+    run_scene(scene("output.pictures=false"), tmp_path, quiet=True)
+    reports = json.loads((tmp_path / "summary.json").read_text())["frictions"]
+    for report in reports:
+        row = largest(out, "pinion", "contact_pressure", "surface", report["friction"])
+        assert 0.97 * report["max_pressure_MPa"] <= float(row["value"]) <= 1.0001 * report["max_pressure_MPa"]
+        bar = report["estimated_error"]["max_pressure_MPa"]
+        assert float(row["value_error"]) == pytest.approx(bar, rel=1e-6)
+
+
+def test_life_ratios_follow_the_changes(out: Path) -> None:
+    """Each is (1 + change)^−m of the largest values, with contact pressure's own exponent of 13.22 too."""
+    lives = rows(out / "fatigue_life.csv")
+    assert {float(row["friction"]) for row in lives} == {0.107}
+    for row in lives:
+        whole = largest(out, row["gear"], row["criterion"], row["place"], 0.107)
+        ratio = 1.0 + float(whole["change_percent"]) / 100.0
+        assert float(row["life_ratio"]) == pytest.approx(ratio ** -float(row["exponent"]), rel=1e-6)
+    assert 13.22 in {float(row["exponent"]) for row in lives if row["criterion"] == "contact_pressure"}
+
+
+def test_less_friction_lowers_the_surface_and_hardly_what_lies_below(out: Path) -> None:
+    """From 0.132 to 0.107: orthogonal shear at the surface falls by 19 % (0.107/0.132 and what pressure changes, 1 % at
+    most), below it changes by 1 % at most."""
+    changes = {
+        place: float(largest(out, "wheel", "orthogonal_shear", place, 0.107)["change_percent"])
+        for place in ("surface", "below")
+    }
+    assert changes["surface"] == pytest.approx(100.0 * (0.107 / 0.132 - 1.0), abs=1.0)
+    assert abs(changes["below"]) < 1.0
+
+
+def test_facts(out: Path) -> None:
+    """Points of both coefficients, none on a tip edge; two elements across the contact: pressures as solved differ."""
+    facts = json.loads((out / "fatigue.json").read_text())
+    assert [fact["friction"] for fact in facts] == [0.132, 0.107]
+    flank = rows(out / "fatigue_map.csv")
+    for fact in facts:
+        own = [row for row in flank if float(row["friction"]) == fact["friction"] and row["gear"] == "wheel"]
+        assert fact["points"] == len({row["roll_distance_mm"] for row in own}) > 8
+        assert 0.0 <= fact["left_out_percent"] < 50.0
+        assert fact["fitted_shear_most_percent"] > 0.0
+
+
+def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
+    """A second call says --overwrite."""
+    with pytest.raises(FolderError, match="--overwrite"):
+        run_fatigue(scene(), out, quiet=True)
+
+
+@pytest.mark.parametrize(
+    "setting",
+    ["fatigue.depths=[0.1,0.5]", "fatigue.depths=[0,0.5,0.5]", "fatigue.depths=[0,0.1]", "fatigue.exponents=[5,5]",
+     "fatigue.yield_stress_MPa=-1"],
+)  # fmt: skip
+def test_sections_that_are_refused(setting: str) -> None:
+    """Depths that do not begin at the surface, do not rise, or end above what counts as below; exponents twice."""
+    with pytest.raises(SceneError, match=setting.split("=")[0]):
+        scene(setting)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", on_ranks(2))
+def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+    """Two ranks divide gears and positions: the same values to 1e-6, and one line at the end."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = ["fatigue", str(out / "fatigue.toml"), "--out", str(tmp_path), "--set", "output.pictures=false"]
+    done = run_script("-c", code, *arguments, ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("done: ") == 1
+    ours, theirs = ([float(row["value"]) for row in rows(each / "fatigue.csv")] for each in (out, tmp_path))
+    assert theirs == pytest.approx(ours, rel=1e-6)

@@ -1,0 +1,119 @@
+"""Tables of contact fatigue of flanks whose values are known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evolvent.scene.scene import load_scene
+from evolvent.strength.fatigue.criterion import CONTACT_PRESSURE, DANG_VAN, ORTHOGONAL_SHEAR, TENSION
+from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
+from evolvent.strength.fatigue.flank_loads import FlankLoads
+from evolvent.strength.results.fatigue_rows import (
+    BELOW,
+    SURFACE,
+    FrictionFatigue,
+    changes,
+    depth_rows,
+    diameters,
+    fatigue_rows,
+    life_rows,
+    map_rows,
+)
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.member import Member
+from tests.support.checkout import ROOT
+
+PAIR = load_scene(ROOT / "demos/he2022.toml").gear_pair()
+DEPTHS = np.array([0.0, 0.1, 0.5])
+
+
+def flank(peaks: list[float], shear: list[list[float]], tension: Floats) -> FlankFatigue:
+    """Of three points at ξ = −2, 0, 3 mm, half-widths of 0.1, 0.2 and 0.1 mm."""
+    n = len(peaks)
+    place = np.column_stack([np.arange(n), np.zeros(n, dtype=int), np.zeros(n, dtype=int)])
+    loads = FlankLoads(
+        place, np.array([-2.0, 0.0, 3.0])[:n], np.zeros(n), np.array(peaks), np.array([0.1, 0.2, 0.1])[:n],
+        np.full(n, 0.1),
+    )  # fmt: skip
+    surface = np.zeros((n, 3))
+    surface[:, 0] = peaks
+    edge = np.zeros((n, 3))
+    edge[:, 0] = tension
+    values = {CONTACT_PRESSURE: surface, ORTHOGONAL_SHEAR: np.array(shear).reshape(n, 3), TENSION: edge}
+    return FlankFatigue(loads, DEPTHS, values)
+
+
+FIRST = flank([1000.0, 900.0, 800.0], [[100, 120, 500], [90, 300, 450], [80, 96, 400]], np.array([200.0, 180.0, 160.0]))
+LESS = flank([1000.0, 900.0, 800.0], [[80, 90, 510], [72, 90, 440], [64, 70, 380]], np.array([150.0, 144.0, 128.0]))
+FOUND = [FrictionFatigue(0.2, (FIRST, FIRST), 0.05), FrictionFatigue(0.15, (LESS, LESS), math.nan)]
+
+
+def test_largest_values_and_their_places() -> None:
+    """Shear is 100 at the surface and 500 at half of 0.1 mm below the point at ξ = −2 mm; what lies between counts to
+    neither place (300 at 0.1 half-widths); the error is 5 % of each."""
+    rows = {(row.gear, row.criterion, row.place): row for row in fatigue_rows(PAIR, FOUND) if row.friction == 0.2}
+    top, deep = (rows["pinion", "orthogonal_shear", place] for place in (SURFACE, BELOW))
+    assert (top.value, top.depth_mm, top.roll_distance_mm, top.pressure_MPa) == (100.0, 0.0, -2.0, 1000.0)
+    assert (deep.value, deep.depth_mm, deep.value_error) == (500.0, 0.05, 25.0)
+    assert ("pinion", "contact_pressure", BELOW) not in rows
+    diameter = 2.0 * np.hypot(PAIR.curvature_radii(np.array([-2.0]))[Member.WHEEL], PAIR.wheel.base_radius)
+    assert rows["wheel", "orthogonal_shear", BELOW].diameter_mm == pytest.approx(float(diameter[0]))
+
+
+def test_changes_of_largest_values_and_at_points() -> None:
+    """Below: 510/500 of the largest; at the points 1.02, 0.978 and 0.95, of which the second is the median. A point
+    that one has alone does not count."""
+    assert changes(LESS, FIRST, ORTHOGONAL_SHEAR, BELOW) == pytest.approx((1.02, 440 / 450))
+    fewer = flank([1000.0, 900.0], [[80, 90, 510], [72, 90, 440]], np.array([150.0, 144.0]))
+    moved = replace(fewer, loads=replace(fewer.loads, place=fewer.loads.place + np.array([1, 0, 0])))
+    assert changes(moved, FIRST, ORTHOGONAL_SHEAR, BELOW)[1] == pytest.approx(np.median([510 / 450, 440 / 400]))
+
+
+def test_lives() -> None:
+    """N ∝ value^−m over the first coefficient: tension falls to 0.75 of itself, at m = 4 the life is 3.16 times as
+    long; contact pressure is the same, with its own exponent too; nothing of the first coefficient itself."""
+    rows = list(life_rows(FOUND, [4.0]))
+    assert {row.friction for row in rows} == {0.15}
+    (tension,) = [row for row in rows if row.criterion == "tension" and row.gear == "pinion"]
+    assert tension.life_ratio == pytest.approx(0.75**-4)
+    assert tension.life_ratio_at_points == pytest.approx(0.8**-4)
+    pressure = [row for row in rows if row.criterion == "contact_pressure" and row.gear == "wheel"]
+    assert [(row.exponent, bool(row.source), row.life_ratio) for row in pressure] == [
+        (13.22, True, 1.0), (4.0, False, 1.0)]  # fmt: skip
+
+
+def test_map_has_every_point_from_the_root_on() -> None:
+    """3 points, 3 criteria, 2 gears, 2 coefficients; roll distances ascend; of contact pressure nothing below."""
+    rows = list(map_rows(PAIR, FOUND))
+    assert len(rows) == 36
+    own = [row for row in rows if (row.gear, row.friction, row.criterion) == ("wheel", 0.2, "contact_pressure")]
+    assert [row.roll_distance_mm for row in own] == [-2.0, 0.0, 3.0]
+    assert [row.at_surface for row in own] == [1000.0, 900.0, 800.0]
+    assert all(math.isnan(row.below) and math.isnan(row.depth_mm) for row in own)
+
+
+def test_depths_below_the_most_loaded_point() -> None:
+    """The point with 1000 MPa: shear at 0, 0.01 and 0.05 mm; contact pressure and tension at the surface alone."""
+    rows = [row for row in depth_rows(FOUND) if (row.gear, row.friction) == ("pinion", 0.2)]
+    shear = [(row.depth_mm, row.value) for row in rows if row.criterion == "orthogonal_shear"]
+    assert shear == [(0.0, 100.0), (pytest.approx(0.01), 120.0), (pytest.approx(0.05), 500.0)]
+    assert sorted(row.criterion for row in rows) == ["contact_pressure", *["orthogonal_shear"] * 3, "tension"]
+
+
+def test_flanks_without_any_point() -> None:
+    """All values are unknown, no line over flank or depth."""
+    nothing = flank([], [], np.zeros(0))
+    found = [FrictionFatigue(0.1, (nothing, nothing), math.nan)]
+    assert all(math.isnan(row.value) for row in fatigue_rows(PAIR, found))
+    assert list(map_rows(PAIR, found)) == [] and list(depth_rows(found)) == []
+    assert DANG_VAN not in nothing.values
+
+
+def test_diameters_at_the_pitch_point() -> None:
+    """ξ = 0: the working pitch circles."""
+    for member, diameter in zip(Member, PAIR.working_pitch_diameters):
+        assert diameters(PAIR, member, np.zeros(1)) == pytest.approx([diameter])

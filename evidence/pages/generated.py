@@ -32,7 +32,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         },
         docs / "he2022.md": {"points": he.points(docs), "sensitivity": he.sensitivity(docs)},
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
-        docs / "fatigue.md": {"line_contact": yang_fatigue.table(docs)},
+        docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {

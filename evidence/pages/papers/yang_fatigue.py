@@ -1,81 +1,139 @@
-"""`python -m evidence.pages.papers.yang_fatigue`: what friction changes below a line contact, for docs/fatigue.md.
+"""`python -m evidence.pages.papers.yang_fatigue --out DIR`: what friction changes of fatigue, for docs/fatigue.md.
 
-`python -m evidence.pages` then writes the page.
+Below a line contact of the same pressure; of Yang's pair from its contact solution; and how far fitted half-ellipses
+stand for the pressures as solved, over the elements across the contact. Runs that an earlier call has ended are read
+again. `python -m evidence.pages` then writes the page.
 """
 
 from __future__ import annotations
 
+import argparse
+import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from evidence.checkout import DOCS
+from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
+from evidence.pages.papers.runs import Runs, read
+from evidence.processes import module_run
 from evidence.tables import markdown
-from evolvent.strength.fatigue.criteria import (
-    dang_van,
-    fatemi_socie,
-    largest_shear,
-    orthogonal_shear_range,
-    von_mises,
+from evolvent.strength.fatigue.criterion import (
+    CONTACT_PRESSURE,
+    DANG_VAN,
+    FATEMI_SOCIE,
+    LARGEST_SHEAR,
+    ORTHOGONAL_SHEAR,
+    TENSION,
+    VON_MISES,
+    Criterion,
 )
-from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
-from evolvent_meshes.arrays import Floats
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
+from evolvent.strength.fatigue.flank_loads import FlankLoads
+from evolvent.strength.results.fatigue_rows import changes, places
 
-KEPT = "fatigue/line_contact.csv"
-COMMAND = "python -m evidence.pages.papers.yang_fatigue"
-COATED, UNCOATED, RATIO = 0.107, 0.132, 3.15
-PEAK, YIELD, SHEAR_MODULUS, POISSON = 1579.0, 900.0, 210e3 / 2.6, 0.3
-"""MPa: Hertz at the pitch point of Yang's pair, a case-hardened core's yield stress, steel."""
-PRESSURE_FACTOR, NORMAL_FACTOR = 0.3, 1.0
-"""a of Dang Van and k of Fatemi and Socie, usual for steels."""
-DEPTHS = np.linspace(0.2, 1.4, 49)
+KEPT = "fatigue/friction.csv"
+COMMAND = "python -m evidence.pages.papers.yang_fatigue --out DIR"
+UNCOATED, COATED, RATIO = 0.132, 0.107, 3.15
+PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 900.0, 0.3, 1.0)
+"""MPa: Hertz at the pitch point of Yang's pair; with the yield stress of a case-hardened core."""
+DEPTHS = (0.0, *np.linspace(0.2, 1.4, 49))
 """Half-widths."""
-CRITERIA: dict[str, Callable[[Floats], float]] = {
-    "orthogonal_shear": orthogonal_shear_range,
-    "largest_shear": lambda history: float(largest_shear(history).max()),
-    "von_mises": lambda history: float(von_mises(history).max()),
-    "dang_van": lambda history: dang_van(history, PRESSURE_FACTOR),
-    "fatemi_socie": lambda history: fatemi_socie(history, SHEAR_MODULUS, YIELD, NORMAL_FACTOR),
-    "tension": lambda history: float(history[:, 0, 0].max()),
-}
-WORDS = {
-    "orthogonal_shear": "range of orthogonal shear", "largest_shear": "largest shear", "von_mises": "von Mises",
-    "dang_van": f"Dang Van, a = {PRESSURE_FACTOR:g}", "fatemi_socie": f"Fatemi-Socie, k = {NORMAL_FACTOR:g}",
-    "tension": "tension along the flank",
-}  # fmt: skip
+CRITERIA = CONTACT_PRESSURE, ORTHOGONAL_SHEAR, LARGEST_SHEAR, VON_MISES, DANG_VAN, FATEMI_SOCIE, TENSION
+PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=900", "output.error_bars=false"
+LEVELS = "quick", "standard", "fine"
 
 
-def figures() -> Named:
-    """(name, value): each criterion at the surface and largest below it, uncoated over coated."""
-    x = np.linspace(-5.0, 5.0, 1601)
-    for name, criterion in CRITERIA.items():
-        found = {}
-        for μ in (COATED, UNCOATED):
-            loads = HertzTractions(1.0, PEAK, μ)
-            at = [criterion(plane_strain(loads.stress(x, np.full_like(x, z)), POISSON)) for z in (0.0, *DEPTHS)]
-            found[μ] = at[0], max(at[1:])
-        for place, index in (("surface", 0), ("below", 1)):
-            # tension below the surface is small, whatever it changes by
-            if found[COATED][index] > 0.0 and (name, place) != ("tension", "below"):
-                yield f"{name}_{place}", found[UNCOATED][index] / found[COATED][index]
+def figures(runs: Runs) -> Named:
+    """(name, value) of each figure. Raises RunFailed."""
+    yield from _line_contact()
+    yield from _pair(runs)
+    yield from _fitted(runs)
 
 
-def table(docs: Path) -> str:
-    """Change of each criterion, and the exponent that would make the paper's ratio of it."""
+def _line_contact() -> Named:
+    """Uncoated over coated, below a line contact of the same pressure."""
+    coated, uncoated = (_below_line(μ) for μ in (COATED, UNCOATED))
+    for criterion in CRITERIA[1:]:
+        for place in places(criterion):
+            yield f"line_{criterion.name}_{place}", changes(uncoated, coated, criterion, place)[0]
+
+
+def _below_line(friction: float) -> FlankFatigue:
+    one = np.ones(1)
+    loads = FlankLoads(np.zeros((1, 3), dtype=int), 0.0 * one, 0.0 * one, PEAK * one, one, friction * one)
+    return flank_fatigue(loads, friction, DEPTHS, STEEL)
+
+
+def _pair(runs: Runs) -> Named:
+    """Uncoated over coated on the pinion of Yang's pair: of the largest values, and the median at its points."""
+    folder = _fatigue(runs, "yang", "yang2022.toml", "output.pictures=true")
+    for row in read(folder / "fatigue.csv"):
+        if row["gear"] != "pinion" or float(row["friction"]) != COATED:
+            continue
+        name = f"{row['criterion']}_{row['place']}"
+        yield f"pair_{name}", 1.0 / (1.0 + float(row["change_percent"]) / 100.0)
+        yield f"points_{name}", 1.0 / (1.0 + float(row["change_at_points_percent"]) / 100.0)
+        yield f"roll_distance_{name}_mm", float(row["roll_distance_mm"])
+    facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
+    for name in ("points", "left_out_percent", "fitted_shear_median_percent", "fitted_shear_most_percent"):
+        yield f"pair_{name}", facts[name]
+
+
+def _fitted(runs: Runs) -> Named:
+    """Zhang's pair in plane strain at three levels: half-ellipses against the pressures as solved."""
+    for level in LEVELS:
+        folder = _fatigue(runs, f"zhang_{level}", "zhang2023.toml", "pinion.face_width_mm=25", "sweep.positions=12",
+                          f"mesh.level={level}", "output.pictures=false")  # fmt: skip
+        facts = json.loads((folder / "fatigue.json").read_text(encoding="utf-8"))[0]
+        yield f"{level}_median_percent", facts["fitted_shear_median_percent"]
+        yield f"{level}_most_percent", facts["fitted_shear_most_percent"]
+
+
+def _fatigue(runs: Runs, name: str, scene: str, *settings: str) -> Path:
+    set_to = [f"--set={each}" for each in (*PAIR, *settings)]
+    words = module_run("evolvent", "fatigue", DEMOS / scene, "--quiet", "--overwrite", *set_to)
+    return runs.ended(name, "fatigue.json", *words)[0]
+
+
+def friction_table(docs: Path) -> str:
+    """Uncoated over coated by each criterion, and the exponent that would make the paper's ratio of it."""
     f = kept.kept(docs / KEPT, COMMAND)
-    rows = []
-    for name, words in WORDS.items():
-        cells = [words]
-        for place in ("surface", "below"):
-            ratio = f.get(f"{name}_{place}")
-            cells += ["–", "–"] if ratio is None else [f"{100.0 * (ratio - 1.0):+.1f} %", _exponent(ratio)]
-        rows.append(tuple(cells))
-    head = ("criterion", "at the surface", "exponent for 3.15", "below, 0.2 to 1.4 half-widths", "exponent for 3.15")
+    rows = [
+        (criterion.words, place, *_cells(f.get(f"line_{criterion.name}_{place}")),
+         *(_percent(f[f"{of}_{criterion.name}_{place}"]) for of in ("pair", "points")),
+         _exponent(f[f"points_{criterion.name}_{place}"]), _life(criterion, f[f"points_{criterion.name}_{place}"]))
+        for criterion in CRITERIA
+        for place in places(criterion)
+    ]  # fmt: skip
+    head = (
+        "criterion", "place", "line contact of the same pressure", "exponent for 3.15", "Yang's pinion, largest",
+        "Yang's pinion, median of its points", "exponent for 3.15", "life ratio by its own exponent",
+    )  # fmt: skip
     return markdown(head, rows)
+
+
+def fitted_table(docs: Path) -> str:
+    """Largest shear stress below the pressures as solved over that below the half-ellipses."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    rows = [
+        (f"Zhang, plane strain, {level}", _percent(1.0 + 0.01 * f[f"{level}_median_percent"]),
+         f"{f[f'{level}_most_percent']:.1f} %")
+        for level in LEVELS
+    ]  # fmt: skip
+    median = _percent(1.0 + 0.01 * f["pair_fitted_shear_median_percent"])
+    rows.append(("Yang, standard", median, f"{f['pair_fitted_shear_most_percent']:.1f} %"))
+    return markdown(("pair and level", "median", "nine in ten within"), rows)
+
+
+def _cells(ratio: float | None) -> tuple[str, str]:
+    return ("–", "–") if ratio is None else (_percent(ratio), _exponent(ratio))
+
+
+def _percent(ratio: float) -> str:
+    return f"{100.0 * (ratio - 1.0):+.1f} %"
 
 
 def _exponent(ratio: float) -> str:
@@ -84,5 +142,18 @@ def _exponent(ratio: float) -> str:
     return f"{math.log(RATIO) / math.log(ratio):.3g}"
 
 
+def _life(criterion: Criterion, ratio: float) -> str:
+    if criterion.exponent is None:
+        return "–"
+    return f"{ratio**criterion.exponent:.2f} (m = {criterion.exponent:g})"
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
+
+
 if __name__ == "__main__":
-    print(kept.keep(DOCS / KEPT, figures()))
+    main()

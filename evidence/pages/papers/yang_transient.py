@@ -16,7 +16,7 @@ import numpy as np
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.pages.papers.zhang_figures import Runs, read
+from evidence.pages.papers.runs import Runs, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 

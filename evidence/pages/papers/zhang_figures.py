@@ -7,7 +7,6 @@ fillets. Runs that an earlier call has ended are read again. `python -m evidence
 from __future__ import annotations
 
 import argparse
-import csv
 import math
 import sys
 import tomllib
@@ -21,7 +20,8 @@ from scipy.optimize import brentq
 from evidence.checkout import DEMOS, DOCS, ROOT
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.processes import Command, Cost, module_run, run
+from evidence.pages.papers.runs import Row, Runs, read
+from evidence.processes import Cost, module_run
 from evolvent.scene.scene import load_scene, scene_from_values
 from evolvent.strength.standard.root_stress import RootLoad, boundary_stresses
 from evolvent_meshes.gears.member import Member
@@ -40,25 +40,11 @@ DEDENDUM = 1.60
 """As in these studies."""
 SHORTENING = 0.0094
 """Δy of the paper's Table 1."""
-TIME_LIMIT = 7200.0  # s
-Row = dict[str, str]
 
 
 @dataclass(frozen=True)
-class Runs:
-    """Where the runs go."""
-
-    out: Path
-
-    def ended(self, name: str, leaves: str, *words: object) -> tuple[Path, Cost]:
-        """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed."""
-        folder, cost = self.out / name, self.out / f"{name}.cost.csv"
-        if not ((folder / leaves).exists() and cost.exists()):
-            self.out.mkdir(parents=True, exist_ok=True)
-            took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
-                               time_limit=TIME_LIMIT))  # fmt: skip
-            cost.write_text(f"{took.wall},{took.cpu},{took.memory_MB}", encoding="utf-8")
-        return folder, Cost(*map(float, cost.read_text(encoding="utf-8").split(",")))
+class ZhangRuns(Runs):
+    """The runs of Zhang's pair."""
 
     def strength(self, name: str, *settings: str) -> tuple[list[Row], Cost]:
         """strength.csv of Zhang's pair."""
@@ -73,13 +59,7 @@ class Runs:
         return read(self.ended(name, "study.csv", *words)[0] / "study.csv")
 
 
-def read(path: Path) -> list[Row]:
-    """The rows of a table."""
-    with open(path, encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
-
-
-def figures(runs: Runs) -> Named:
+def figures(runs: ZhangRuns) -> Named:
     """(name, value) of each figure. Raises RunFailed."""
     yield from _contact_ratio(load_scene(SCENE).gear_pair())
     folder, _ = runs.ended("demo", "table.csv", sys.executable, ROOT / "demos/zhang2023.py")
@@ -140,7 +120,7 @@ def _reasons(rows: list[Row]) -> Named:
     yield "out_of_proportion_percent", max(100.0 * (max(each) / min(each) - 1.0) for each in slopes)
 
 
-def _bores(runs: Runs) -> Named:
+def _bores(runs: ZhangRuns) -> Named:
     """Changes of the tension with other bores, at level quick."""
     quick = PLANE, "mesh.level=quick", "output.error_bars=false"
     usual = _tensions(runs.strength("bore_35", *quick)[0])
@@ -155,7 +135,7 @@ def _tensions(rows: list[Row]) -> dict[str, float]:
     return {row["gear"]: float(row["stress_MPa"]) for row in rows if row["method"] == "finite elements, tension"}
 
 
-def _in_space(runs: Runs) -> Named:
+def _in_space(runs: ZhangRuns) -> Named:
     """Faces of 29 and 25 mm, at level standard."""
     rows, cost = runs.strength("space", "contact.friction=[0.0, 0.05]")
     for row in rows:
@@ -169,7 +149,7 @@ def _in_space(runs: Runs) -> Named:
     yield "space_cpu_min", cost.cpu / 60.0
 
 
-def _root_mesh(runs: Runs) -> Named:
+def _root_mesh(runs: ZhangRuns) -> Named:
     """In plane strain, over the elements around the fillets."""
     for times in REFINEMENTS:
         rows, cost = runs.strength(f"roots_{times}", PLANE, f"strength.root_refinement={times}")
@@ -180,7 +160,7 @@ def _root_mesh(runs: Runs) -> Named:
         yield f"{times}_times_cpu_s", cost.cpu
 
 
-def _studies(runs: Runs) -> Named:
+def _studies(runs: ZhangRuns) -> Named:
     """Contact ratio, tip thickness and tension over addendum and pressure angle."""
     for row in runs.study("zhang2023_addendum"):
         addendum = float(row["pinion.addendum_coefficient"])
@@ -222,7 +202,7 @@ def main() -> None:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
+    print(kept.keep(DOCS / KEPT, figures(ZhangRuns(parser.parse_args().out.resolve()))))
 
 
 if __name__ == "__main__":

@@ -44,7 +44,7 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
     foot(
         figure,
         "Elastic half-plane under the pressures and friction of the contact solution, one passage. Points in the zones "
-        "of tip edges, where pressure is singular, are left out.",
+        "of tip edges, where pressure is singular, are left out. Dashed line: pitch circle.",
     )
     return figure
 
@@ -75,7 +75,7 @@ def _section(axes: Axes, pair: GearPair, own: FlankFatigue) -> ScalarMappable:
     depths = np.linspace(0.0, float(known.max(axis=1).min()), DEPTHS)
     values = [np.interp(depths, *each) for each in zip(known, own.values[DANG_VAN][middle])]
     drawn = axes.contourf(1e3 * depths, diameter, values, LEVELS, cmap=PRESSURE_MAP)
-    axes.set_title("below mid-face", fontsize=10)
+    axes.set_title("below mid-face" if len(heights) > 1 else "below the flank", fontsize=10)
     axes.set_xlabel("depth [µm]")
     _pitch_line(axes, pair)
     return drawn

@@ -1,0 +1,36 @@
+"""Runs behind a page's figures, as processes; those that an earlier call has ended are read again."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+from evidence.checkout import ROOT
+from evidence.processes import Command, Cost, run
+
+TIME_LIMIT = 7200.0  # s
+Row = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Where the runs go."""
+
+    out: Path
+
+    def ended(self, name: str, leaves: str, *words: object) -> tuple[Path, Cost]:
+        """The folder of a run and what it took. words: of the command. leaves: its last file. Raises RunFailed."""
+        folder, cost = self.out / name, self.out / f"{name}.cost.csv"
+        if not ((folder / leaves).exists() and cost.exists()):
+            self.out.mkdir(parents=True, exist_ok=True)
+            took = run(Command((*map(str, words), "--out", str(folder)), ROOT, self.out / f"{name}.log",
+                               time_limit=TIME_LIMIT))  # fmt: skip
+            cost.write_text(f"{took.wall},{took.cpu},{took.memory_MB}", encoding="utf-8")
+        return folder, Cost(*map(float, cost.read_text(encoding="utf-8").split(",")))
+
+
+def read(path: Path) -> list[Row]:
+    """The rows of a table."""
+    with open(path, encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))

@@ -117,7 +117,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.oscillator", "results.archive", "results.error_bars", "results.tables",
     ),
     "dynamics.figures": (
-        "meshes", "dynamics", "dynamics.excitation", "dynamics.oscillator", "dynamics.results", "results.drawing",
+        "meshes", "meshes.gears", "gears.pressure", "dynamics", "dynamics.excitation", "dynamics.oscillator",
+        "dynamics.results", "results.drawing",
     ),
     "strength.results": (
         "meshes", "meshes.gears", "fem", "results.archive", "results.error_bars", "results.tables", "strength.standard",

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
-from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, palette, reduced, sheet
+from evolvent.results.drawing.animations import frame, gif
+from evolvent.results.drawing.style import ABOVE, FAINT, PINION, PRESSURE_MAP, sheet
 from evolvent.results.engagement import Engagement, engagement
 from evolvent.results.figures.flank import pressure_top
 from evolvent.results.figures.scene3d import gear_picture, pair_picture
@@ -22,9 +21,6 @@ from evolvent.results.figures.stress import STRESS, TOOTH_ANGLE
 from evolvent.results.run_data import RunData
 from evolvent.results.tables.figure_rows import position_row
 from evolvent_meshes.gears.member import Member
-
-FRAME_MS = 110
-"""Time of a frame of the animation [ms]."""
 
 
 def loaded_pair(run: RunData, index: int = 0) -> Figure:
@@ -90,12 +86,7 @@ def animation(run: RunData, index: int = 0, step: Callable[[], None] = lambda: N
     for k in range(len(run.positions)):
         frames.append(_frame(run, index, k, curve, top))
         step()
-    colours = palette(frames[0])
-    first, *others = [reduced(frame, colours) for frame in frames]
-    content = io.BytesIO()
-    more = {"append_images": others, "duration": FRAME_MS, "loop": 0, "optimize": True}
-    first.save(content, format="GIF", save_all=True, **more)
-    return content.getvalue()
+    return gif(frames)
 
 
 def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> Image.Image:
@@ -114,12 +105,4 @@ def _frame(run: RunData, index: int, k: int, curve: Engagement, top: float) -> I
     right.plot(np.degrees(curve.angle[here]), curve.max_pressure[here], "o", color=PINION, markersize=8)
     right.set(xlabel=TOOTH_ANGLE.split("   ")[0], ylabel=STRESS)
     right.set_ylim(bottom=0.0)
-    return _drawn(figure)
-
-
-def _drawn(figure: Figure) -> Image.Image:
-    """The figure as an image."""
-    canvas = FigureCanvasAgg(figure)
-    figure.set_dpi(100)
-    canvas.draw()
-    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+    return frame(figure)

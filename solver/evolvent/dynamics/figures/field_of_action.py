@@ -1,0 +1,89 @@
+"""Animation of a pair's transient contact: contact lines in the field of action with their pressure, and mesh force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from evolvent.dynamics.results.transient import CasePressures
+from evolvent.gears.pressure.contact_slices import Slices
+from evolvent.gears.pressure.line_peaks import pooled_peaks
+from evolvent.results.drawing.animations import frame, gif
+from evolvent.results.drawing.style import ABOVE, FAINT, INK, PINION, PRESSURE_MAP, foot, sheet, styled
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.gears.pair import GearPair
+
+
+@dataclass(frozen=True)
+class FieldOfAction:
+    """One speed and friction coefficient, over the last mesh period."""
+
+    title: str
+    """Of the scene."""
+    pair: GearPair
+    """The gears."""
+    pressures: CasePressures
+    """Its pressures."""
+    force: Floats
+    """(n,) mesh force over the load."""
+
+    @property
+    def top(self) -> float:
+        """End of the pressure scale [MPa]: the largest away from tip edges."""
+        peaks = np.concatenate([pooled_peaks(cut) for cut in self.pressures.moving.cuts])
+        return float(np.nanmax(peaks, initial=1.0))
+
+    def animation(self) -> bytes:
+        """GIF of a mesh period; it repeats without a seam once the motion is steady."""
+        with styled():
+            return gif([frame(self.figure(k)) for k in range(len(self.force))])
+
+    def figure(self, k: int) -> Figure:
+        """The frame of position k."""
+        case = self.pressures.case
+        angle = np.degrees(case.results[k].stand.angle)
+        subtitle = f"{case.speed:g} r/min, μ = {case.friction:g}; rotation of the pinion {angle:.2f}°"
+        figure = sheet(f"{self.title}: contact with inertia", subtitle, (10.0, 4.8))
+        field, force = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+        self._lines(field, self.pressures.moving.cuts[k])
+        scale = ScalarMappable(Normalize(0.0, self.top), PRESSURE_MAP)
+        figure.colorbar(scale, ax=field, label="peak pressure [MPa]", extend="max")
+        self._force(force, k)
+        foot(figure, f"Left: field of action; contact lines move to the right, tip-edge zones are grey; {ABOVE}.")
+        return figure
+
+    def _lines(self, axes: Axes, cut: Slices) -> None:
+        """Slices at their roll distances, as wide as their layer."""
+        start, end = self.pair.path_of_contact
+        half = 0.5 * self.pair.face_width
+        inner = self.pressures.moving.inner_path
+        for low, high in ((start, inner[0]), (inner[1], end)):
+            axes.axvspan(low, high, color=FAINT, alpha=0.25, lw=0.0)
+        axes.axvline(0.0, color=FAINT, lw=0.8, ls="--")
+        widths = cut.width if len(np.unique(cut.z)) > 1 else np.full(len(cut.z), 2.0 * half)
+        slope = self.pair.pinion.hand * np.tan(self.pair.pinion.base_helix_angle)
+        ends = [
+            [(ξ - 0.5 * slope * w, z - 0.5 * w), (ξ + 0.5 * slope * w, z + 0.5 * w)]
+            for ξ, z, w in zip(cut.roll_distance, cut.z, widths)
+        ]
+        values = np.where(np.isfinite(peaks := pooled_peaks(cut)), peaks, cut.largest)
+        lines = LineCollection(ends, array=values, cmap=PRESSURE_MAP, norm=Normalize(0.0, self.top), lw=7.0)
+        lines.set_capstyle("butt")
+        axes.add_collection(lines)
+        axes.set(xlim=(start, end), ylim=(-half, half), xlabel="path of contact from the pitch point [mm]",
+                 ylabel="face [mm]")  # fmt: skip
+
+    def _force(self, axes: Axes, k: int) -> None:
+        """Over the mesh period, with a dot at this position."""
+        angle = np.degrees([result.stand.angle for result in self.pressures.case.results])
+        axes.plot(angle, self.force, color=PINION)
+        axes.plot(angle[k], self.force[k], "o", color=PINION, markersize=8.0)
+        axes.axhline(1.0, color=INK, lw=0.8, ls="--")
+        axes.set(xlabel="rotation of the pinion [°]", ylabel="mesh force over load")
+        axes.set_ylim(bottom=min(0.0, float(self.force.min())))

@@ -1,0 +1,69 @@
+"""What the animation of transient contact shows, of a synthetic run: Hertz pressure of an even line load."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from PIL import Image
+
+from evolvent.contact.transient.time_scheme import MotionState
+from evolvent.dynamics.figures.field_of_action import FieldOfAction
+from evolvent.dynamics.results.transient import CasePressures, TransientCase
+from evolvent.dynamics.transient.pair_transient import PairMoment, PairState
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.gears.pressure.line_peaks import has_peak, pooled_peaks
+from evolvent.gears.pressure.pitch_pressure import PitchPressure
+from tests.support.synthetic_run import synthetic_run
+
+FILES = ["demos/yang2022.toml", "demos/he2022.toml"]
+
+
+def field(file: str) -> FieldOfAction:
+    """Forces that rise from 1 to 1.5 of the load."""
+    run = synthetic_run(file=file)
+    results = [position[0].result for position in run.positions]
+    nothing = PairState(MotionState(np.zeros(1), np.zeros(1), np.zeros(1)), None, np.zeros(0))
+    moments = tuple(PairMoment(0.0, result, nothing, 1.0, 0.0) for result in results)
+    periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005)
+    still = PitchPressure(run.pair, tuple(position[0].cut for position in run.positions), run.inner_path)
+    case = TransientCase(1500.0, run.frictions[0], periods, tuple(results), 1.0)
+    forces = np.linspace(1.0, 1.5, len(results))
+    return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still), forces)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_lines_lie_where_the_slices_are(file: str) -> None:
+    """A stroke for each slice, about its roll distance and height, with its peak pressure; strokes are parallel to the
+    contact line: ξ grows by tan β_b a millimetre of face on a right-hand pinion."""
+    drawn = field(file)
+    for k, cut in enumerate(drawn.pressures.moving.cuts):
+        axes = drawn.figure(k).axes[0]
+        (lines,) = [each for each in axes.collections if isinstance(each, LineCollection)]
+        ends = np.array(lines.get_segments())
+        np.testing.assert_allclose(ends.mean(axis=1), np.column_stack([cut.roll_distance, cut.z]), atol=1e-9)
+        along = ends[:, 1] - ends[:, 0]
+        slope = drawn.pair.pinion.hand * np.tan(drawn.pair.pinion.base_helix_angle)
+        np.testing.assert_allclose(along[:, 0], slope * along[:, 1], atol=1e-9)
+        known = has_peak(cut)
+        values = np.asarray(lines.get_array())
+        np.testing.assert_allclose(values[known], pooled_peaks(cut)[known])
+        assert values.max() <= drawn.top or not known.all()
+
+
+def test_force_has_a_dot_at_the_position() -> None:
+    """The dot climbs with the force."""
+    drawn = field(FILES[0])
+    for k, force in enumerate(drawn.force):
+        dot = drawn.figure(k).axes[1].lines[1]
+        assert np.asarray(dot.get_ydata()).tolist() == [force]
+
+
+def test_animation_has_a_frame_a_position() -> None:
+    """As many frames as positions, which repeat for ever."""
+    drawn = field(FILES[1])
+    with Image.open(io.BytesIO(drawn.animation())) as image:
+        assert getattr(image, "n_frames", 1) == len(drawn.force)
+        assert image.info["loop"] == 0

@@ -16,14 +16,14 @@ from evidence.verification.contact import (
     rounded_punch,
     stiff_punch,
 )
-from evidence.verification.friction import ironing, mindlin, partial_slip, rolling, sliding
+from evidence.verification.friction import ironing, mindlin, partial_slip, rolling, sliding, sliding_ball
 from evidence.verification.gears import sharing, torque
 
 PROBLEMS: Mapping[str, Callable[[], Verification]] = {
     module.__name__.rpartition(".")[2]: module.verify
     for module in (
         patch, hertz_line, hertz_point, hertz_ellipse, half_spheres, nafems, rounded_punch, stiff_punch, orders,
-        partial_slip, mindlin, rolling, sliding, ironing, torque, sharing,
+        partial_slip, mindlin, rolling, sliding, sliding_ball, ironing, torque, sharing,
     )
 }  # fmt: skip
 """Name -> what solves it."""

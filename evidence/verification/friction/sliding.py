@@ -21,6 +21,7 @@ from evolvent.fem.material import STEEL
 from evolvent.fem.stress import cell_stress
 from evolvent.fem.surface import surface_of
 from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL
+from evolvent.strength.fatigue.half_plane import LineForces
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.shapes.blocks import cylinder_2d, graded_rectangle
@@ -102,6 +103,18 @@ class Slid:
         here = (-centre[:, 1] > DEPTHS[0]) & (-centre[:, 1] < DEPTHS[1])
         return relative_l2(area[here], computed[here], inner_stress(centre[here]))
 
+    @cached_property
+    def tractions_error(self) -> float:
+        """The same of the half-plane under the forces at the contact's quadrature points."""
+        c, (centre, _, _, area) = self.solution.contacts[0], self.inside
+        here = (-centre[:, 1] > DEPTHS[0]) & (-centre[:, 1] < DEPTHS[1])
+        into = np.sign(c.force[1]) * c.weights[:, None] * c.traction  # z of the half-plane points into the block
+        forces = LineForces(c.points[:, 0] / CASE.half_width, into[:, 1], -into[:, 0])
+        x, depth = centre[here].T
+        σx, σz, τ = forces.stress(x, -depth).T / (CASE.peak * CASE.half_width)
+        found = np.stack([σx, -τ, -τ, σz], axis=1).reshape(-1, 2, 2)
+        return relative_l2(area[here], found, inner_stress(centre[here]))
+
 
 def slide(cells: int) -> Slid:
     """Pressed at rest, then slid; the block carries the pressure, with its flat normals."""
@@ -170,6 +183,7 @@ def _claims(cases: list[Slid]) -> list[Claim]:
             f"σ_xx on the surface, relative L2 error, h = b/{fine.cells}", fine.surface_error, 0.01
         ),
         flamant.bound(f"stress inside, relative L2 error, h = b/{fine.cells}", fine.inside_error, 0.01),
+        flamant.bound(f"the same below the computed tractions, h = b/{fine.cells}", fine.tractions_error, 0.01),
     ]
 
 

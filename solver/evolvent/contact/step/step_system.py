@@ -19,7 +19,7 @@ from evolvent.contact.newton.equilibrium import (
     stuck,
     with_components,
 )
-from evolvent.contact.newton.jump_compliance import DenseCompliance
+from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotion
 from evolvent.contact.newton.snes import NotConverged
 from evolvent.contact.nitsche.contact_operator import ContactOperator, stacked
@@ -27,6 +27,7 @@ from evolvent.contact.problem.body_response import BodyResponse, StaticResponse
 from evolvent.contact.problem.condensed_body import CondensedBody
 from evolvent.contact.problem.definition import Placement, Problem, Side, Step, check_step
 from evolvent.contact.problem.pressure_carrier import pressure_sides
+from evolvent.contact.step.bodies_compliance import BodiesCompliance
 from evolvent.contact.step.contact_result import ContactResult
 from evolvent.contact.step.free_motion import free_motion
 from evolvent.contact.step.paired_surfaces import (
@@ -133,12 +134,10 @@ class StepSystem:
         )
 
     @cached_property
-    def compliance(self) -> Floats:
-        """Σ E_b C_b E_bᵀ of all bodies in local jumps, (Σn·d, Σn·d) [mm/N]: gaps and stabilisers do not change it."""
-        total = np.zeros((self.maps[0].shape[0],) * 2)
-        for E, response in zip(self.maps, self.responses):
-            total += E @ (E @ response.compliance.T).T
-        return total
+    def compliance(self) -> JumpCompliance:
+        """Of all bodies in local jumps: gaps and stabilisers do not change it."""
+        whole = BodiesCompliance(self.maps, [response.compliance for response in self.responses], self.d)
+        return DenseCompliance(whole.matrix, self.d) if self.friction.any() else whole
 
     def load_jump(self) -> Floats:
         """Local jumps without contact forces and rigid motions, (Σn·d,) [mm]."""
@@ -159,9 +158,8 @@ class StepSystem:
             F.append(motions.load[motions.free] + response.load)
         motion, load, resistance = np.hstack(H), np.concatenate(F), [each.resistance for each in self.responses]
         lever = np.abs(motion).max(axis=0, initial=0.0)
-        compliance = DenseCompliance(self.compliance, self.d)
         return CondensedSystem(
-            operator, compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0)
+            operator, self.compliance, motion, jump, load, block_diag(*resistance), np.where(lever > 0.0, lever, 1.0)
         )
 
     def solve(

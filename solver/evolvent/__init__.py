@@ -37,8 +37,10 @@ if TYPE_CHECKING:
     from evolvent.contact.step.small_strain import SmallStrainExceeded as SmallStrainExceeded
     from evolvent.contact.step.step_solution import Solution as Solution
     from evolvent.contact.step.step_system import StepSystem as StepSystem
+    from evolvent.contact.transient.energy import EnergyGrowth as EnergyGrowth
     from evolvent.contact.transient.settings import InitialState as InitialState
     from evolvent.contact.transient.settings import TransientSettings as TransientSettings
+    from evolvent.contact.transient.solver import CoarseTimeStepWarning as CoarseTimeStepWarning
     from evolvent.contact.transient.solver import Moment as Moment
     from evolvent.contact.transient.solver import Transient as Transient
     from evolvent.fem.body import Body as Body

@@ -7,9 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from evolvent.contact.problem.definition import Step
+from evolvent.contact.step.step_system import motions_at
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.time_scheme import MotionState, TimeStep
 from evolvent_meshes.arrays import Floats, Ints
+from evolvent_meshes.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,20 @@ class MovingResponse:
     """(s,) of all loads on the free rigid motions at the end [N, N·mm]."""
     prescribed: Floats
     """(r,) rigid motions at the end, NaN where they are free [mm, rad]."""
+
+    @staticmethod
+    def of(body: MovingBody, index: int, step: Step, time_step: TimeStep) -> MovingResponse:
+        """Of body `index` under the loads and prescribed motions of a step.
+
+        Raises InputError for a step that prescribes what is loaded, or loads what is prescribed.
+        """
+        motions = motions_at(step, index, body.condensed.assembled)
+        if not np.array_equal(motions.free, body.free):
+            raise InputError(
+                f"transient, step: wanted the same motions of body {index} prescribed as in its Rigid, found others; "
+                "give a loaded freedom another load, a prescribed one another displacement"
+            )
+        return MovingResponse(body, time_step, step.load, motions.load[body.free], motions.value)
 
     @cached_property
     def compliance(self) -> Floats:
@@ -47,7 +64,7 @@ class MovingResponse:
     @property
     def load(self) -> Floats:
         """See `BodyResponse.load`."""
-        return self.step.known[self._free] - self.step.matrix[np.ix_(self._free, self._held)] @ self._held_at
+        return self.step.known[self._free] - self.step.matrix[np.ix_(self._free, self.held)] @ self._held_at
 
     def state(self, forces: Floats, motion: Floats) -> MotionState:
         """The body's state at the end, under forces on the functionals (k,) at rigid motions (r,)."""
@@ -88,7 +105,7 @@ class MovingResponse:
     def _pushed(self) -> Floats:
         """(m,) forces on the modes but for those of the contact."""
         m = self.body.count
-        inertia = self.step.known[:m] - self.step.matrix[:m, self._held] @ self._held_at
+        inertia = self.step.known[:m] - self.step.matrix[:m, self.held] @ self._held_at
         return self.body.modal_load(self.factor, self.resultant) + inertia
 
     @property
@@ -96,7 +113,8 @@ class MovingResponse:
         return self.body.count + self.body.free
 
     @property
-    def _held(self) -> Ints:
+    def held(self) -> Ints:
+        """The prescribed ones among modes and rigid motions."""
         return self.body.count + np.flatnonzero(~np.isnan(self.prescribed))
 
     @property

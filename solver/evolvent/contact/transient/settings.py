@@ -13,23 +13,34 @@ MODES = 20
 DAMPED = 0.8
 """ρ_∞ by default: motions too fast for the step lose a fifth of their amplitude in each."""
 
+SHORTEST = 1e-3
+"""Of the longest time step: the shortest one by default."""
+
 
 @dataclass(frozen=True)
 class TransientSettings:
     """The method of a transient.
 
-    time_step: [s].
+    time_step: [s]; with a tolerance the first and the longest one.
     modes: natural modes of each body that have inertia; the others answer at once.
     damping_ratio: of each mode, over the critical one.
     spectral_radius: ρ_∞ of the method, from 0 (motions too fast for the step are gone in one) to 1 (they stay for ever,
         and blows may add energy).
+    tolerance: estimated error of the speeds in a time step, over the largest speed (adaptive_steps.py), up to which it
+        is accepted; None: all steps are equal.
+    shortest_step: [s], accepted with any error, with a warning; by default a thousandth of time_step.
     Raises InputError.
+
+    >>> TransientSettings(time_step=1e-5, tolerance=1e-3).least_step
+    1e-08
     """
 
     time_step: float
     modes: int = MODES
     damping_ratio: float = 0.0
     spectral_radius: float = DAMPED
+    tolerance: float | None = None
+    shortest_step: float | None = None
 
     def __post_init__(self) -> None:
         number("transient, time_step", self.time_step, "a finite number > 0 [s]", "give one in s", lambda h: h > 0.0)
@@ -42,6 +53,25 @@ class TransientSettings:
         number(
             "transient, spectral_radius", self.spectral_radius, "a number from 0 to 1", f"{DAMPED:g} is the default",
             lambda ρ: 0.0 <= ρ <= 1.0,
+        )  # fmt: skip
+        self._check_adaptive()
+
+    @property
+    def least_step(self) -> float:
+        """Shortest time step [s]."""
+        return SHORTEST * self.time_step if self.shortest_step is None else self.shortest_step
+
+    def _check_adaptive(self) -> None:
+        if self.tolerance is not None:
+            wanted, remedy = "a number between 0 and 1", "1e-3 is usual; leave it out for equal steps"
+            number("transient, tolerance", self.tolerance, wanted, remedy, lambda ε: 0.0 < ε < 1.0)
+        if self.shortest_step is None:
+            return
+        if self.tolerance is None:
+            refuse("transient, shortest_step", "none without a tolerance", self.shortest_step, "give a tolerance, too")
+        number(
+            "transient, shortest_step", self.shortest_step, f"a number above 0 and up to time_step, {self.time_step:g}",
+            f"leave it out for {SHORTEST:g} of time_step", lambda h: 0.0 < h <= self.time_step,
         )  # fmt: skip
 
 

@@ -46,6 +46,11 @@ class TimeScheme:
         """β."""
         return 0.25 * (1.0 - self.alpha) ** 2
 
+    @property
+    def error_constant(self) -> float:
+        """c: a step is off by c h² (a_{n+1} − a_n), to leading order (adaptive_steps.py)."""
+        return self.beta + 0.5 * self.alpha - 1.0 / 6.0
+
 
 @dataclass(frozen=True)
 class LinearSystem:
@@ -68,7 +73,7 @@ class MotionState:
     velocity: Floats
     """v (m,)."""
     acceleration: Floats
-    """a (m,), which the method keeps beside the motion; equal to z̈ to first order."""
+    """a (m,), which the method keeps beside the motion: z̈ at t + αh, to second order."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,12 @@ class TimeStep:
     """At its begin."""
     length: float
     """h [s]."""
+
+    @staticmethod
+    def unused(system: LinearSystem, scheme: TimeScheme) -> TimeStep:
+        """For what needs none: the state at a start."""
+        nothing = np.zeros(len(system.stiffness))
+        return TimeStep(system, scheme, MotionState(nothing, nothing, nothing), 1.0)
 
     @cached_property
     def matrix(self) -> Floats:

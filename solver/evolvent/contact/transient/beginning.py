@@ -1,0 +1,96 @@
+"""What a transient begins with at time 0, and problems that can have none."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evolvent.contact.problem.definition import Problem, Step
+from evolvent.contact.step.step_system import StepSystem
+from evolvent.contact.transient.body_motion import BodyMotion
+from evolvent.contact.transient.energy import Energy, EnergyBalance
+from evolvent.contact.transient.moving_body import MovingBody
+from evolvent.contact.transient.moving_response import MovingResponse
+from evolvent.contact.transient.reached import Reached
+from evolvent.contact.transient.settings import InitialState
+from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.input_checks import refuse
+
+
+def begun(
+    problem: Problem, bodies: tuple[MovingBody, ...], scheme: TimeScheme, start: InitialState, first: Step,
+    length: float,
+) -> Reached:  # fmt: skip
+    """The state at time 0. first: the loads, unless the start is a static equilibrium; length: of the first step [s].
+
+    Raises InputError, NotConverged, SearchError.
+    """
+    step = start.step or first
+    solution, deformed = None, None
+    if start.step is not None:
+        solution, deformed = StepSystem(problem, tuple(body.condensed for body in bodies), step).solve(None)
+    motions = []
+    for index, body in enumerate(bodies):
+        position = np.zeros(len(body.system.stiffness))
+        forces = np.zeros(len(body.condensed.compliance))
+        response = MovingResponse.of(body, index, step, TimeStep.unused(body.system, scheme))
+        if solution is not None:
+            forces = solution.nodal_forces[index]
+            position = body.at_rest(forces, step.load, response.resultant, solution.motions[index])
+        velocity = _velocity(body, index, start)
+        still = BodyMotion(MotionState(position, velocity, np.zeros_like(position)), position * 0.0, response, forces)
+        motions.append(_accelerated(still))
+    total = Energy.of(motions, solution.contacts if solution else ()).total
+    return Reached(0.0, 0.0, length, tuple(motions), deformed, EnergyBalance(total, total))
+
+
+def _velocity(body: MovingBody, index: int, start: InitialState) -> Floats:
+    """Of modes and rigid motions (m + r). Raises InputError for one that the body's supports do not allow."""
+    velocity = np.zeros(len(body.system.stiffness))
+    if index not in start.velocities:
+        return velocity
+    wanted = np.array(start.velocities[index])
+    shapes = body.condensed.assembled.motions.shapes[:, :, body.free]
+    whole = np.broadcast_to(wanted, shapes.shape[:2]).ravel()
+    flat = shapes.reshape(len(whole), -1)
+    rates = np.linalg.lstsq(flat, whole, rcond=None)[0]
+    if np.abs(flat @ rates - whole).max() > 1e-9 * np.abs(wanted).max():
+        refuse(
+            f"initial state, velocity of body {index}", "one along its free rigid motions", start.velocities[index],
+            "free the motion by a Freedom of its Rigid, or leave out the support that stops it",
+        )  # fmt: skip
+    velocity[body.count + body.free] = rates
+    return velocity
+
+
+def _accelerated(still: BodyMotion) -> BodyMotion:
+    """With the acceleration of its equation of motion; prescribed motions are at rest."""
+    response, state = still.response, still.state
+    body, system = response.body, response.body.system
+    m, free = body.count, body.count + body.free
+    force = still.contact_force
+    force[:m] += body.modal_load(response.factor, response.resultant)
+    force[free] += response.resultant
+    moving = np.concatenate([np.arange(m), free])
+    rest = (force - system.damping * state.velocity - system.stiffness * state.position)[moving]
+    acceleration = np.zeros(len(state.position))
+    acceleration[moving] = np.linalg.solve(system.mass[np.ix_(moving, moving)], rest)
+    return BodyMotion(MotionState(state.position, state.velocity, acceleration), still.lag, response, still.forces)
+
+
+def check(problem: Problem, start: InitialState) -> None:
+    """Raises InputError for what a transient cannot have."""
+    if problem.nitsche.theta != 1.0:
+        found = f"theta = {problem.nitsche.theta:g}"
+        refuse("transient", "the symmetric variant, theta = 1", found, "leave out theta: other variants have no energy")
+    if any(support.displacement for body in problem.bodies for support in body.supports):
+        refuse(
+            "transient", "supports at rest", "a Fixed with a displacement",
+            "move the face by Rigid with Freedom(direction, displacement=...)",
+        )  # fmt: skip
+    for index, v in start.velocities.items():
+        if not 0 <= index < len(problem.bodies):
+            wanted = f"body indices below {len(problem.bodies)}"
+            refuse("initial state, velocities", wanted, index, "bodies are counted from 0")
+        if len(v) != (d := problem.bodies[index].mesh.dimension):
+            refuse(f"velocity of body {index}", f"{d} components, as the body is {d}D", v, "give as many")

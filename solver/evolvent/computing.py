@@ -73,6 +73,7 @@ TRANSIENT_EPILOG = f"""\b
 Examples:
   evolvent transient demos/he2022.toml --out out/transient --level quick --set transient.speeds_rpm=[2000,3000]
   mpirun -n 2 evolvent transient demos/yang2022.toml --out out/fast --level quick --set transient.speeds_rpm=[1500]
+  evolvent transient demos/he2022.toml --out out/transient --level quick --set transient.speeds_rpm=[2000,3000] --resume
 
 {STATUSES}"""
 
@@ -208,6 +209,7 @@ def transient(
     settings: Overrides = None,
     no_skip: NoSkip = None,
     force: Force = False,
+    resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
@@ -216,12 +218,13 @@ def transient(
     At each speed of the section [transient] and each friction coefficient, until the motion repeats with the mesh:
     transmission error, mesh force and contact pressure, beside those without inertia.
     """
-    with reported(parallel=True):
+    with reported(parallel=True, advice=RESUME.format("transient")):
         loaded = loaded_scene(scene, level, settings, no_skip, MPI.COMM_WORLD)
+        require(not (resume and overwrite), BOTH)
         from evolvent.run.dynamics.transient import run_transient
 
         require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
-        warn(run_transient(unworn(loaded), out, overwrite, quiet))
+        warn(run_transient(unworn(loaded), out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
             done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png")
 

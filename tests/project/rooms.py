@@ -65,8 +65,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "gears.problem", "gears.meshing", "gears.two_level", "gears",
     ),
     "dynamics.transient": (
-        "meshes", "meshes.gears", "contact.newton", "contact.transient", "gears.ring", "gears", "gears.contact",
-        "gears.sweep", "dynamics.modes",
+        "meshes", "meshes.gears", "contact.newton", "contact.transient", "gears.problem", "gears.ring", "gears",
+        "gears.contact", "gears.sweep", "dynamics", "dynamics.modes",
     ),
     "strength.standard": ("meshes", "meshes.gears"),
     "strength.fatigue": ("meshes", "gears.sweep", "gears.pressure"),
@@ -136,8 +136,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "strength", "strength.results", "strength.figures", "run",
     ),
     "run.dynamics": (
-        "meshes", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing", "gears",
-        "gears.sweep", "scene", "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+        "meshes", "meshes.gears", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing",
+        "gears", "gears.sweep", "scene", "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

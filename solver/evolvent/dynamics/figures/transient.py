@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evolvent.dynamics.results.transient import TransientFacts, TransientRow, TransientToothRow
+from evolvent.dynamics.results.transient import TransientRow, TransientToothRow
+from evolvent.dynamics.results.transient_facts import TransientFacts
 from evolvent.results.drawing.style import FAINT, foot, friction_colours, note, png, sheet, styled
 
 Colour = tuple[float, ...]

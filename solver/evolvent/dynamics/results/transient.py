@@ -1,9 +1,7 @@
-"""Transient contact of a pair beside its statics: rows over the mesh period, over a tooth's engagement, and figures."""
+"""Transient contact of a pair beside its statics: rows over the mesh period and over a tooth's engagement."""
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
@@ -18,7 +16,7 @@ from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.tables.tables import csv_text
 from evolvent_meshes.arrays import Floats
 
-TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS = "transient.csv", "transient_teeth.csv", "transient.json"
+TRANSIENT, TRANSIENT_TEETH = "transient.csv", "transient_teeth.csv"
 UM = 1e3
 
 
@@ -67,47 +65,6 @@ class TransientToothRow:
     """The same without inertia."""
     max_pressure_MPa: float
     """Largest fitted peak pressure between the tip-edge zones."""
-    static_max_pressure_MPa: float
-    """The same without inertia."""
-
-
-@dataclass(frozen=True)
-class TransientFacts:
-    """An entry of transient.json: a speed and friction coefficient."""
-
-    speed_rpm: float
-    """Of the pinion."""
-    friction: float
-    """μ."""
-    mesh_periods: int
-    """That were computed."""
-    last_change: float | None
-    """Of the transmission error from the last but one to the last, over its peak-to-peak value; null for one period."""
-    steady: bool
-    """Whether that is at most transient.steady_change."""
-    modes: int
-    """Natural modes of both gears together."""
-    lowest_mode_Hz: float | None
-    """The lowest of them; null without modes."""
-    natural_frequency_Hz: float
-    """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics."""
-    steps_per_natural_period: float
-    """Time steps in a period of it; of fewer than eight what the mesh excites of it is not resolved."""
-    mean_force_N: float
-    """Of the mesh, over the last period."""
-    load_N: float
-    """The load along the line of action: the same in a steady state. Where both gears are free, the mean of what loads
-    either."""
-    peak_to_peak_um: float
-    """Of the transmission error."""
-    static_peak_to_peak_um: float
-    """The same without inertia."""
-    dynamic_factor: float
-    """Largest mesh force over the load."""
-    separated: float
-    """Share of the positions at which nothing touches."""
-    max_pressure_MPa: float
-    """Largest of transient.csv; null where none is known."""
     static_max_pressure_MPa: float
     """The same without inertia."""
 
@@ -190,53 +147,13 @@ def tooth_rows(model: GearModel, pressures: Sequence[CasePressures]) -> Iterator
         yield from sorted(rows, key=lambda row: row.tooth_angle_deg)
 
 
-def transient_facts(
-    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats, mass: float
-) -> list[TransientFacts]:
-    """Of all cases. frequencies: of the modes [rad/s]; mass: along the line of action [t; t/mm in 2D]."""
-    width, facts = model.width_factor, []
-    lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
-    for each in pressures:
-        case, found, (moving, still) = each.case, each.case.found, each.peaks()
-        force, load = np.array([moment.mesh_force for moment in found.moments]), case.load
-        errors = np.array([result.transmission_error for result in case.results])
-        stiffness = float(np.mean([still.stiffness for still in case.static]))
-        natural = float(np.sqrt(stiffness / mass)) / (2.0 * np.pi)
-        step = found.moments[-1].time - found.moments[-2].time
-        facts.append(TransientFacts(
-            case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,
-            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step), width * found.mean_force,
-            width * load,
-            UM * float(np.ptp(errors)), UM * float(np.ptp([still.transmission_error for still in case.static])),
-            float(force.max() / load), float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
-            _largest(moving), _largest(still),
-        ))  # fmt: skip
-    return facts
-
-
-def write_transient(
-    folder: RunFolder, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow],
-    facts: Sequence[TransientFacts],
-) -> None:  # fmt: skip
-    """transient.csv, transient_teeth.csv and transient.json. Raises WriteError."""
+def write_rows(folder: RunFolder, rows: Sequence[TransientRow], teeth: Sequence[TransientToothRow]) -> None:
+    """transient.csv and transient_teeth.csv. Raises WriteError."""
     folder.write_text(TRANSIENT, csv_text([asdict(row) for row in rows]))
     folder.write_text(TRANSIENT_TEETH, csv_text([asdict(row) for row in teeth]))
-    known = [{name: _known(value) for name, value in asdict(each).items()} for each in facts]
-    folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
-
-
-def _known(value: object) -> object:
-    """null for a number that does not exist."""
-    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def _force(result: PositionResult, tooth: int) -> float:
     """Normal force of a tooth pair [N; N/mm in 2D]."""
     contact = result.contact
     return float(np.sum((contact.weights * contact.pressure)[contact.tooth == tooth]))
-
-
-def _largest(pressures: Floats) -> float:
-    """NaN where none is known."""
-    known = pressures[np.isfinite(pressures)]
-    return float(known.max()) if len(known) else float("nan")

@@ -122,12 +122,13 @@ class MovingPair:
         moved = [g.modes.earlier(part, -member.sign * pitches) for member, g, part in zip(Member, self.gears, parts)]
         return np.concatenate([*moved, coordinates[self.count :]])
 
-    def static(self, rows: tuple[Ints, Ints], forces: tuple[Floats, Floats]) -> Floats:
-        """Amplitudes (m,) of the modes under forces (k, d) on rows (k, 2) of both gears, in statics."""
-        pushed = [
-            np.einsum("kdm,kd->m", self.displacements(member, rows[member]), forces[member]) for member in Member
-        ]
-        return np.concatenate(pushed) / self.frequencies**2
+    def on_modes(self, member: Member, rows: Ints, forces: Floats) -> Floats:
+        """Forces on the modes of a gear [N·mm per unit amplitude] by forces (k, d) on its rows (k, 2)."""
+        return np.asarray(np.einsum("kdm,kd->m", self.displacements(member, rows), forces))
+
+    def static(self, modal: Floats) -> Floats:
+        """Amplitudes (m,) of the modes of both gears under forces (m,) on them, in statics."""
+        return modal / self.frequencies**2
 
     def displacements(self, member: Member, rows: Ints) -> Floats:
         """Of rows (k, 2) of a gear by unit amplitudes of its modes, in its own frame (k, d, m)."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.dynamics.transient.pair_transient import PairMoment, PairState, PairTransient
+from evolvent.dynamics.transient.step_balance import NOTHING_KNOWN, Residuals, StepEnergies
 from evolvent_meshes.arrays import Floats
 
 
@@ -22,6 +23,8 @@ class MeshPeriods:
     """Largest change of the transmission error from each mesh period to the next, over its peak-to-peak value."""
     wanted: float
     """Change at which it counts as steady."""
+    residuals: Residuals
+    """The largest of all time steps."""
 
     @property
     def periods(self) -> int:
@@ -38,14 +41,21 @@ class MeshPeriods:
         """Of the mesh over the last period [N; N/mm in 2D]: in a steady state the load's, as no momentum is left."""
         return float(np.mean([moment.mesh_force for moment in self.moments]))
 
+    @property
+    def energies(self) -> StepEnergies:
+        """Of the last period."""
+        return StepEnergies.summed(moment.energies for moment in self.moments)
+
 
 def until_steady(transient: PairTransient, start: PairState, most: int, wanted: float) -> MeshPeriods:
     """Mesh periods until the transmission error changes by at most `wanted` of its peak-to-peak value from one to the
-    next, `most` at most. Raises NotConverged, SearchError."""
+    next, `most` at most. Raises NotConverged, SearchError, Unbalanced."""
     count, errors, changes = transient.contacts.positions, [], []
     moments: list[PairMoment] = []
+    residuals = NOTHING_KNOWN
     for moment in transient.run(start, most):
         moments.append(moment)
+        residuals = residuals.larger(moment.residuals)
         errors.append(moment.result.transmission_error)
         if len(moments) < count:
             continue
@@ -56,4 +66,4 @@ def until_steady(transient: PairTransient, start: PairState, most: int, wanted: 
             changes.append(float(np.abs(last - before).max() / max(np.ptp(last), 1e-300)))
             if changes[-1] <= wanted:
                 break
-    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted)
+    return MeshPeriods(tuple(period), np.array(errors), np.array(changes), wanted, residuals)

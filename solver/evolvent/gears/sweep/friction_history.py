@@ -118,6 +118,8 @@ def _jump(geometry: ContactGeometry, before: Stand, u1: Floats, u2: Floats) -> F
 def _displacements(geometry: ContactGeometry, histories: Sequence[FrictionHistory], gear: Member) -> Floats:
     """Displacements (histories, m, d) [mm] at the previous position of the rows of the present contact."""
     before, rows = histories[0].rows, geometry.rows(gear)[0]
+    if not len(before[gear]):  # nothing touched
+        return np.zeros((len(histories), len(rows), geometry.d))
     forces = np.stack([history.forces[gear] for history in histories])
     u = geometry.bodies[gear].chain.apply(before[gear], forces, rows)
     if gear == Member.PINION:

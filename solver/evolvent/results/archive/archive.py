@@ -14,28 +14,23 @@ import hashlib
 import io
 import json
 import zipfile
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from evolvent.gears.contact.contact_points import ContactPoints
 from evolvent.gears.kinematics import Stand
 from evolvent.gears.sweep.friction_history import FrictionHistory
 from evolvent.gears.sweep.periodic_pitch import one_pitch
 from evolvent.gears.sweep.pitch_sweep import SweepState, SweptPosition
-from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.gear_shapes import GearShape
+from evolvent.results.archive.position_arrays import archived_result, result_arrays
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.scene.differences import charts, differences, essence
 from evolvent.scene.scene import Scene, SceneError, derived_values, load_scene
 from evolvent_meshes.errors import InputError
 from evolvent_meshes.files import open_file
 from evolvent_meshes.gears.pair import GearPair
-
-CONTACT_KEYS = {"roll_distance": "ξ"}
-"""Field of ContactPoints -> its name in archives, where they differ."""
 
 
 class ArchiveError(InputError):
@@ -82,7 +77,7 @@ class Archive:
             "angle": position.angle, "again": position.again, "closes": position.closes, "count": len(position.results),
         }  # fmt: skip
         for i, result in enumerate(position.results):
-            arrays |= {f"{i}/{name}": value for name, value in _result_arrays(result).items()}
+            arrays |= {f"{i}/{name}": value for name, value in result_arrays(result).items()}
         self.write_arrays(f"position_{index:04d}.npz", arrays)
         self.write_arrays("state.npz", self._state_arrays(index + 1, position.state))
 
@@ -157,7 +152,7 @@ class Archive:
     def _position(self, index: int, pair: GearPair) -> SweptPosition:
         arrays = read_arrays(self.folder / f"position_{index:04d}.npz")
         try:
-            results = tuple(_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
+            results = tuple(archived_result(arrays, f"{i}/", pair) for i in range(int(arrays["count"])))
             again, closes = bool(arrays["again"]), bool(arrays["closes"])
         except KeyError as missing:
             raise ArchiveError(
@@ -199,27 +194,6 @@ def _shape(arrays: dict[str, Any], name: str) -> GearShape:
     start = f"{name}/facets/"
     facets = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
     return GearShape(arrays[f"{name}/points"], facets, arrays[f"{name}/flank_nodes"])
-
-
-def _result_arrays(result: PositionResult) -> dict[str, Any]:
-    arrays = {f.name: getattr(result, f.name) for f in fields(PositionResult) if f.name not in ("stand", "contact")}
-    arrays |= {_contact_key(f.name): getattr(result.contact, f.name) for f in fields(ContactPoints)}
-    return arrays | {"angle": result.stand.angle, "extra": np.array(result.stand.extra)}
-
-
-def _contact_key(field: str) -> str:
-    """Key in the archive of a field of ContactPoints."""
-    return f"contact/{CONTACT_KEYS.get(field, field)}"
-
-
-def _result(arrays: dict[str, Any], start: str, pair: GearPair) -> PositionResult:
-    kept = {key[len(start) :]: value for key, value in arrays.items() if key.startswith(start)}
-    stand = Stand(pair, float(kept.pop("angle")), (float(kept["extra"][0]), float(kept.pop("extra")[1])))
-    contact = ContactPoints(**{f.name: kept.pop(_contact_key(f.name)) for f in fields(ContactPoints)})
-    kept["torques"] = (float(kept["torques"][0]), float(kept["torques"][1]))
-    scalars = {name: value.item() for name, value in kept.items() if isinstance(value, np.ndarray) and value.ndim == 0}
-    values = kept | scalars | {"stand": stand, "contact": contact}
-    return PositionResult(**{f.name: values[f.name] for f in fields(PositionResult)})
 
 
 def _history(arrays: dict[str, Any], start: str, pair: GearPair) -> FrictionHistory:

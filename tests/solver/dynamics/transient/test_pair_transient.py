@@ -12,7 +12,7 @@ from evolvent.contact.transient.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
-from evolvent.dynamics.transient.pair_transient import PairMoment, PairState, PairTransient
+from evolvent.dynamics.transient.pair_transient import MovingMoment, PairState, PairTransient
 from evolvent.dynamics.transient.quasi_static_start import quasi_static_starts
 from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.gear_model import GearModel
@@ -55,7 +55,7 @@ def started(transient: PairTransient) -> PairState:
     return start.at(transient.time_step)
 
 
-def moments(transient: PairTransient, periods: int) -> list[PairMoment]:
+def moments(transient: PairTransient, periods: int) -> list[MovingMoment]:
     return list(transient.run(started(transient), periods))
 
 

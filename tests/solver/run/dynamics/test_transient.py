@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from evolvent.cli import main
+from evolvent.dynamics.transient.back_flanks import BackFlanks
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.dynamics.transient import BackFlanks, run_transient
+from evolvent.run.dynamics.transient import run_transient
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
 from tests.support.checkout import ROOT

@@ -1,0 +1,141 @@
+"""Figures of a pair's transient contact at each speed and friction coefficient, and sentences on them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from evolvent.dynamics.results.transient import UM, CasePressures
+from evolvent.gears.gear_model import GearModel
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent_meshes.arrays import Floats
+
+TRANSIENT_FACTS = "transient.json"
+ENOUGH_STEPS = 8.0
+"""A period of the pair's own vibration."""
+
+
+@dataclass(frozen=True)
+class TransientFacts:
+    """An entry of transient.json: a speed and friction coefficient."""
+
+    speed_rpm: float
+    """Of the pinion."""
+    friction: float
+    """μ."""
+    mesh_periods: int
+    """That were computed."""
+    last_change: float | None
+    """Of the transmission error from the last but one to the last, over its peak-to-peak value; null for one period."""
+    steady: bool
+    """Whether that is at most transient.steady_change."""
+    modes: int
+    """Natural modes of both gears together."""
+    lowest_mode_Hz: float | None
+    """The lowest of them; null without modes."""
+    natural_frequency_Hz: float
+    """Of the rotation of the gears on their mesh, by its mean tangent stiffness in statics."""
+    steps_per_natural_period: float
+    """Time steps in a period of it; of fewer than eight what the mesh excites of it is not resolved."""
+    mean_force_N: float
+    """Of the mesh, over the last period."""
+    load_N: float
+    """The load along the line of action: the same in a steady state. Where both gears are free, the mean of what loads
+    either."""
+    peak_to_peak_um: float
+    """Of the transmission error."""
+    static_peak_to_peak_um: float
+    """The same without inertia."""
+    dynamic_factor: float
+    """Largest mesh force over the load."""
+    separated: float
+    """Share of the positions at which nothing touches."""
+    max_pressure_MPa: float
+    """Largest of transient.csv; null where none is known."""
+    static_max_pressure_MPa: float
+    """The same without inertia."""
+    momentum_error: float
+    """Largest residual of the equations of motion at any time step, over the forces in them."""
+    reaction_error: float
+    """Largest sum of the contact forces on both gears, which are opposite, over the force; moments about the axes less
+    torques, likewise."""
+    moment_error: float
+    """The same of their moments about one axis; flanks a gap apart have some."""
+    motion_energy_error: float
+    """Largest error of the energy balance of vibration and modes in a time step, over what the load passes on in it."""
+    step_energy_error: float
+    """Largest energy between rotation, contact and motion that a time step leaves without account, likewise."""
+    period_energy_error: float
+    """The same over the last mesh period."""
+    friction_loss: float
+    """Energy lost to friction in the last mesh period, over what the load passes on."""
+    damping_loss: float
+    """Lost to the damping of mesh and modes, likewise."""
+    numerical_loss: float
+    """Taken out by the time scheme, likewise; beside damping_loss it says how much of the damping is numerical."""
+
+
+def transient_facts(
+    model: GearModel, pressures: Sequence[CasePressures], frequencies: Floats, mass: float
+) -> list[TransientFacts]:
+    """Of all cases. frequencies: of the modes [rad/s]; mass: along the line of action [t; t/mm in 2D]."""
+    width, facts = model.width_factor, []
+    lowest = float(frequencies.min() / (2.0 * np.pi)) if len(frequencies) else None
+    for each in pressures:
+        case, found, (moving, still) = each.case, each.case.found, each.peaks()
+        force, load = np.array([moment.mesh_force for moment in found.moments]), case.load
+        errors = np.array([result.transmission_error for result in case.results])
+        stiffness = float(np.mean([still.stiffness for still in case.static]))
+        natural = float(np.sqrt(stiffness / mass)) / (2.0 * np.pi)
+        worst, energies, passed = found.residuals, found.energies, found.energies.passed
+        step = found.moments[-1].time - found.moments[-2].time
+        facts.append(TransientFacts(
+            case.speed, case.friction, found.periods, float(found.changes[-1]) if len(found.changes) else None,
+            found.is_steady, len(frequencies), lowest, natural, 1.0 / (natural * step), width * found.mean_force,
+            width * load,
+            UM * float(np.ptp(errors)), UM * float(np.ptp([still.transmission_error for still in case.static])),
+            float(force.max() / load), float(np.mean([len(result.contact.tooth) == 0 for result in case.results])),
+            _largest(moving), _largest(still), worst.momentum, worst.reaction, worst.moment, worst.motion,
+            worst.exchange, abs(energies.left) / passed, energies.friction / passed, energies.damping / passed,
+            energies.numerical / passed,
+        ))  # fmt: skip
+    return facts
+
+
+def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
+    """transient.json. Raises WriteError."""
+    known = [{name: _known(value) for name, value in asdict(each).items()} for each in facts]
+    folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
+
+
+def sentences(facts: Sequence[TransientFacts], positions: int) -> list[str]:
+    """On motions that are not steady, and on speeds at which time steps are too long. positions: of a mesh period."""
+    unsteady = [
+        f"{fact.speed_rpm:g} r/min, μ = {fact.friction:g}: not steady after {fact.mesh_periods} mesh periods; raise "
+        "transient.mesh_periods, or look whether the motion repeats after several meshes (`evolvent dynamics`)"
+        for fact in facts
+        if not fact.steady
+    ]
+    coarse = {fact.speed_rpm: fact for fact in facts if fact.steps_per_natural_period < ENOUGH_STEPS}
+    return unsteady + [
+        f"{speed:g} r/min: the pair's own vibration of {fact.natural_frequency_Hz:.0f} Hz has "
+        f"{fact.steps_per_natural_period:.2g} time steps a period; wanted {ENOUGH_STEPS:g}: what the mesh excites of "
+        f"it is not resolved; sweep.positions = {math.ceil(positions * ENOUGH_STEPS / fact.steps_per_natural_period)} "
+        "resolves it, transient.spectral_radius = 0 leaves statics where that is too many"
+        for speed, fact in coarse.items()
+    ]
+
+
+def _known(value: object) -> object:
+    """null for a number that does not exist."""
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _largest(pressures: Floats) -> float:
+    """NaN where none is known."""
+    known = pressures[np.isfinite(pressures)]
+    return float(known.max()) if len(known) else float("nan")

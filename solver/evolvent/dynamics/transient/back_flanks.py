@@ -1,0 +1,21 @@
+"""The limit of a model in which only the loaded flanks can touch."""
+
+from __future__ import annotations
+
+from evolvent_meshes.arrays import Floats
+from evolvent_meshes.errors import ResultError
+
+
+class BackFlanks(ResultError):
+    """A motion in which the back flanks would touch, which are not modelled."""
+
+
+def require_backlash(errors: Floats, backlash: float, where: str) -> None:
+    """Raises BackFlanks where a transmission error (n,) [mm] goes beyond the backlash [mm]."""
+    lowest = float(errors.min())
+    if lowest < -backlash:
+        raise BackFlanks(
+            f"{where}: wanted a motion within the backlash of {1e3 * backlash:.3g} µm, found a transmission error of "
+            f"{1e3 * lowest:.3g} µm, at which the back flanks touch, which are not modelled here; `evolvent dynamics` "
+            "has both sides; or give more damping, another speed"
+        )

@@ -1,0 +1,68 @@
+"""From condensed gears to a pair that moves: its modes, how it turns, its damping, what loads it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from evolvent.dynamics.gear_inertia import TONNE_PER_MM3
+from evolvent.dynamics.modes.gear_modes import GearModes, ModeChoice, gear_modes
+from evolvent.dynamics.modes.mode_meshes import mode_mesh
+from evolvent.dynamics.pair_model import DriveSettings
+from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
+from evolvent.gears.gear_model import GearModel
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.gears.sweep.position_result import PositionResult
+
+RESOLVED = 0.25
+"""Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
+
+
+def resolved_modes(
+    problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None
+) -> tuple[GearModes, GearModes]:
+    """Of pinion and wheel: those that have four time steps a period.
+
+    density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
+    ring of teeth instead, None for the default.
+
+    Raises MeshError, NotPositiveDefinite, OutOfMemory.
+    """
+    choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic)
+    heavy = [
+        replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
+    ]
+    pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body.member, body.mesh)) for body in heavy)
+    return pinion, wheel
+
+
+def driven_pair(
+    model: GearModel, modes: tuple[GearModes, GearModes], settings: DriveSettings, static: Sequence[PositionResult],
+    mode_damping: float, constant_speed: bool,
+) -> MovingPair:  # fmt: skip
+    """The pair with inertia.
+
+    static: positions of a pitch, whose mean tangent stiffness makes the damping of the mesh. mode_damping: ratio of
+    each mode. constant_speed: whether the gear without the torque turns uniformly; else both are free.
+    """
+    on, u, torque = model.load.on, model.pair.ratio, model.load.torque
+    pinion, wheel = (inertia / model.width_factor for inertia in settings.inertias)
+    torques = (torque, torque * u) if on == 0 else (torque / u, torque)  # but for friction
+    drive = Drive.free(u, (pinion, wheel), torques)
+    if constant_speed:
+        drive = Drive.at_constant_speed(on, (pinion, wheel)[on], torques)
+    pair = MovingPair(model, modes, drive, mode_damping, 0.0)
+    stiffness = float(np.mean([result.stiffness for result in static]))
+    critical = 2.0 * np.sqrt(stiffness * drive.inertia) / pair.lever
+    return replace(pair, mesh_damping=settings.damping_ratio * critical)
+
+
+def loaded_as_static(pair: MovingPair, static: Sequence[PositionResult]) -> MovingPair:
+    """The pair under the torque of the scene on one gear, and the mean one that statics have on the other: less or more
+    by friction. static: positions of a pitch at one friction coefficient."""
+    other = 1 - pair.model.load.on
+    torques = list(pair.drive.torques)
+    torques[other] = float(np.mean([result.torques[other] for result in static]))
+    return replace(pair, drive=replace(pair.drive, torques=(torques[0], torques[1])))

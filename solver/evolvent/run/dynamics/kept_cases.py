@@ -1,0 +1,120 @@
+"""Cases of a transient on disk: a call that was stopped goes on with those that are missing.
+
+    OUT/results/transient_static.npz   the positions without inertia, at each friction coefficient
+    OUT/results/transient_0003.npz     a speed and friction coefficient whose motion has ended
+
+A case is written when it ends, by the rank that computed it. Ranks write files of their own; the list of files in the
+folder takes each one's line whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from evolvent.dynamics.transient.pair_transient import PairMoment
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
+from evolvent.gears.sweep.position_result import PositionResult
+from evolvent.results.archive.archive import ArchiveError, arrays_bytes, fingerprint, read_arrays
+from evolvent.results.archive.position_arrays import archived_result, result_arrays
+from evolvent.results.archive.run_folder import RunFolder
+from evolvent.scene.scene import Scene
+from evolvent_meshes.gears.pair import GearPair
+
+KEPT_STATIC, KEPT_CASES = "results/transient_static.npz", "results/transient_*.npz"
+Statics = list[tuple[PositionResult, ...]]
+"""Of each friction coefficient, its positions."""
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class KeptCases:
+    """Of one scene."""
+
+    folder: RunFolder
+    """Where the call writes."""
+    identity: str
+    """Of the scene: all that its results depend on."""
+    pair: GearPair
+    """The gears."""
+
+    @staticmethod
+    def of(scene: Scene, pair: GearPair, out: Path) -> KeptCases:
+        """Below OUT."""
+        return KeptCases(RunFolder(out), fingerprint(scene), pair)
+
+    def read_static(self) -> Statics | None:
+        """None where there are none. Raises ArchiveError."""
+        path = self.folder.out / KEPT_STATIC
+        return self._read(path, self._static) if path.exists() else None
+
+    def write_static(self, static: Statics) -> None:
+        """Keeps the positions without inertia. Raises WriteError, FolderError."""
+        arrays: dict[str, Any] = {"count": len(static), "positions": len(static[0])}
+        for i, results in enumerate(static):
+            arrays |= _positions_arrays(results, f"{i}/")
+        self._write(KEPT_STATIC, arrays)
+
+    def read(self, count: int) -> dict[int, MeshPeriods]:
+        """Number of a case that has ended, of `count` -> its motion. Raises ArchiveError."""
+        paths = {number: self.folder.out / _name(number) for number in range(count)}
+        return {number: self._read(path, self._periods) for number, path in paths.items() if path.exists()}
+
+    def write(self, number: int, found: MeshPeriods) -> None:
+        """Keeps a case. Raises WriteError, FolderError."""
+        moments = found.moments
+        arrays = _positions_arrays([moment.result for moment in moments], "") | {
+            "positions": len(moments), "errors": found.errors, "changes": found.changes, "wanted": found.wanted,
+            "residuals": astuple(found.residuals),
+            "moments": [(moment.time, moment.mesh_force, moment.rate) for moment in moments],
+            "balances": [astuple(moment.residuals) for moment in moments],
+            "energies": [astuple(moment.energies) for moment in moments],
+        }  # fmt: skip
+        self._write(_name(number), arrays)
+
+    def _static(self, arrays: dict[str, Any]) -> Statics:
+        return [tuple(self._positions(arrays, f"{i}/")) for i in range(int(arrays["count"]))]
+
+    def _periods(self, arrays: dict[str, Any]) -> MeshPeriods:
+        columns = arrays["moments"].tolist(), arrays["balances"].tolist(), arrays["energies"].tolist()
+        moments = [
+            PairMoment(time, result, force, rate, Residuals(*balances), StepEnergies(*energies))
+            for result, (time, force, rate), balances, energies in zip(self._positions(arrays, ""), *columns)
+        ]
+        residuals = Residuals(*arrays["residuals"].tolist())
+        return MeshPeriods(tuple(moments), arrays["errors"], arrays["changes"], float(arrays["wanted"]), residuals)
+
+    def _positions(self, arrays: dict[str, Any], start: str) -> list[PositionResult]:
+        return [archived_result(arrays, f"{start}{k}/", self.pair) for k in range(int(arrays["positions"]))]
+
+    def _read(self, path: Path, made: Callable[[dict[str, Any]], T]) -> T:
+        arrays = read_arrays(path)
+        if str(arrays.get("identity")) != self.identity:
+            raise ArchiveError(
+                f"{path}: wanted a result of this scene, found that of another one; --resume goes on with the scene "
+                "and the settings that it was called with, --out names another folder, --overwrite computes anew"
+            )
+        try:
+            return made(arrays)
+        except KeyError as missing:
+            raise ArchiveError(
+                f"{path}: wanted a result of this version of Evolvent, found one without {missing}; --overwrite "
+                "computes anew"
+            ) from missing
+
+    def _write(self, name: str, arrays: dict[str, Any]) -> None:
+        self.folder.write(name, arrays_bytes({"identity": self.identity, **arrays}))
+
+
+def _name(number: int) -> str:
+    return f"results/transient_{number:04d}.npz"
+
+
+def _positions_arrays(results: Sequence[PositionResult], start: str) -> dict[str, Any]:
+    named = [(f"{start}{k}/", result_arrays(result)) for k, result in enumerate(results)]
+    return {f"{place}{name}": np.asarray(value) for place, arrays in named for name, value in arrays.items()}

@@ -1,0 +1,59 @@
+"""What `evolvent transient` refuses before it computes: scenes, and folders with results of an earlier call."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evolvent.dynamics.results.transient import TRANSIENT, TRANSIENT_TEETH
+from evolvent.dynamics.results.transient_facts import TRANSIENT_FACTS
+from evolvent.gears.meshing.levelled_meshes import is_two_level
+from evolvent.gears.problem.gear_problem import GearProblem
+from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.run.dynamics.kept_cases import KEPT_CASES, KEPT_STATIC
+from evolvent.scene.pair_dynamics import check_positions
+from evolvent.scene.scene import Scene
+from evolvent.scene.schema.dynamics import TransientSection
+from evolvent_meshes.errors import InputError
+
+PICTURE = "transient.png"
+WRITTEN = TRANSIENT, TRANSIENT_TEETH, TRANSIENT_FACTS, f"pictures/{PICTURE}"
+
+
+def transient_section(scene: Scene) -> TransientSection:
+    """Of the scene. Raises InputError where it has none."""
+    if scene.transient is None:
+        raise InputError(
+            "transient: found no section [transient]; wanted one with speeds; remedy: --set "
+            "transient.speeds_rpm=[1500], or write [transient] into the scene"
+        )
+    return scene.transient
+
+
+def check_scene(scene: Scene, problem: GearProblem) -> None:
+    """Raises InputError, SceneError for what cannot be computed."""
+    check_positions(scene)
+    if is_two_level(problem):
+        raise InputError(
+            'transient: found flanks that are meshed in levels (mesh.level = "'
+            f'{scene.mesh.level}", load.torque_Nm = {scene.load.torque_Nm:g}); wanted one mesh of each sector; remedy: '
+            'mesh.level = "quick", or fewer mesh.elements_per_contact_width'
+        )
+
+
+def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
+    """Looks at the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
+    nothing to go on from. Raises FolderError where files of others would be lost, or results unasked."""
+    folder = RunFolder(out)
+    folder.require_free((*WRITTEN, KEPT_CASES))
+    kept = [path.relative_to(out).as_posix() for path in sorted(out.glob(KEPT_CASES))]
+    there = [name for name in (KEPT_STATIC, TRANSIENT) if (out / name).exists()]
+    if there and not (resume or overwrite):
+        raise FolderError(
+            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
+            "its cases, --overwrite computes them anew, --out names another folder"
+        )
+    if not resume:
+        folder.remove(kept)
+    elif not there:
+        return [f"--resume found nothing to continue in {out} (no {KEPT_STATIC}); the call begins from the start."]
+    return []

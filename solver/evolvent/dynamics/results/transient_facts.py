@@ -66,9 +66,10 @@ class TransientFacts:
     moment_error: float
     """The same of their moments about one axis; flanks a gap apart have some."""
     motion_energy_error: float
-    """Largest error of the energy balance of vibration and modes in a time step, over what the load passes on in it."""
+    """Largest error of the energy balance of vibration and modes in a time step, over this energy and the work."""
     step_energy_error: float
-    """Largest energy between rotation, contact and motion that a time step leaves without account, likewise."""
+    """Largest energy between rotation, contact and motion that a time step leaves without account, over what the load
+    passes on in it."""
     period_energy_error: float
     """The same over the last mesh period."""
     friction_loss: float

@@ -51,9 +51,9 @@ class Residuals:
     """Sum of the moments of the forces on both gears about one axis, over the force and the base radius. The points
     opposite each other on both flanks are a gap apart, so that it falls with the mesh."""
     motion: float
-    """Energy of modes and ψ, over what the load passes on in a step."""
+    """Energy of modes and ψ, over this energy and the work on them."""
     exchange: float
-    """Energy between rotation, contact and motion, likewise."""
+    """Energy between rotation, contact and motion, over what the load passes on in a step."""
 
     def larger(self, other: Residuals) -> Residuals:
         """The larger ones of both, the known one where only one is known."""
@@ -159,14 +159,16 @@ class StepBalance:
 
     def residuals(self, before: StepEnd | None) -> Residuals:
         """Of all balances. before: as in `energies`."""
-        energies, motion = self.energies(before), UNKNOWN
-        if before is not None:
-            moved = self.state.position[-1] - self.step.step.state.position[-1]
-            work = energies.given + self.step.pair.drive.torque * float(moved)
-            motion = self.end.motion - before.motion - work + energies.damping + energies.numerical
-        passed = energies.passed
-        return Residuals(self._momentum, self._reaction, self._moment, abs(motion) / passed,
-                         abs(energies.left) / passed)  # fmt: skip
+        energies = self.energies(before)
+        motion = UNKNOWN if before is None else self._motion(energies, before)
+        exchange = abs(energies.left) / energies.passed
+        return Residuals(self._momentum, self._reaction, self._moment, motion, exchange)
+
+    def _motion(self, energies: StepEnergies, before: StepEnd) -> float:
+        moved = float(self.state.position[-1] - self.step.step.state.position[-1])
+        worked, reached = self.step.pair.drive.torque * moved, self.end.motion
+        missed = reached - before.motion - energies.given - worked + energies.damping + energies.numerical
+        return abs(missed) / (reached + before.motion + abs(energies.given) + abs(worked))
 
     @property
     def _energy(self) -> SchemeEnergy:

@@ -137,7 +137,8 @@ ROOMS: dict[str, tuple[str, ...]] = {
     ),
     "run.dynamics": (
         "meshes", "meshes.gears", "contact.transient", "fem.backend", "fem.parallel", "gears.problem", "gears.meshing",
-        "gears", "gears.sweep", "scene", "scene.schema", "results.archive", "results.drawing", "dynamics.*", "run",
+        "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive", "results.drawing",
+        "dynamics.*", "run",
     ),
     "run.study.plan": (
         "gears", "gears.meshing", "gears.problem", "scene", "scene.schema", "results.archive", "run.dynamics",

@@ -10,9 +10,9 @@ changes in a step from n to n + 1, whatever the forces p at its ends are, by
 
 It follows from the method alone (time_scheme.py): insert M ((1 − α) a_{n+1} + α a_n) = p_{n+1} − D v_{n+1} − K z_{n+1}
 of both ends into the mean force times Δz = h v̄ + ¼ α² h² (a_{n+1} − a_n), and sum by parts. As −1 <= α <= 0, L >= 0,
-and E >= 0: |d|² <= 2 |a|² + 2 |a_|² leaves h²/8 (|α|³ |a|² + |α|³ |a_|²) of all but the square with v. So the method
-takes energy out, and gives none to a motion that forces do not. For h → 0, or ρ_∞ = 1, E is kinetic plus elastic.
-The identity needs the acceleration of two steps, so that it holds from the second one on.
+and E >= 0: |d|² <= 2 |a|² + 2 |a_|² leaves at least h²/8 ((α² + |α|³) |a|² + |α|³ |a_|²) of all but the first square.
+So the method takes energy out, and gives none to a motion that forces do not. For h → 0, or ρ_∞ = 1, E is kinetic plus
+elastic. The identity needs the acceleration of two steps, so that it holds from the second one on.
 """
 
 from __future__ import annotations

@@ -20,7 +20,10 @@ PERIOD = 1e-2
 MEAN_FORCE = 0.01
 """Of the load: what the mean mesh force of a steady motion may differ from it."""
 WRONG = "an error of the program: please report the scene"
-COARSE = "take more positions (sweep.positions) or a finer mesh (mesh.level)"
+COARSE = (
+    "where a tip's edge bears relieve it (tip_relief_um) or lower the torque, else take more positions "
+    "(sweep.positions) or a finer mesh (mesh.level)"
+)
 
 
 class Unbalanced(ResultError):

@@ -24,6 +24,7 @@ from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.machine import machine_megabytes
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import GearModel, Preparer, prepare_model
+from evolvent.gears.solution.certificates import certify, certify_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
@@ -56,7 +57,7 @@ def run_transient(
     prepare: prepares gears that other calls share.
 
     Raises InputError without that section, and for gears whose flanks are meshed in levels; FolderError, ArchiveError,
-    MeshError, TooMuchRelief, NotConverged, SearchError, BackFlanks, Unbalanced, WriteError.
+    MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, BackFlanks, Unbalanced, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     section, problem = transient_section(scene), gear_problem(scene)
@@ -84,14 +85,18 @@ def run_transient(
 
 
 def _statics(scene: Scene, model: GearModel, kept: KeptCases, comm: MPI.Comm, progress: Progress) -> Statics:
-    """The positions without inertia, at each friction coefficient. Collective."""
+    """The positions without inertia, at each friction coefficient. Collective. Raises BalanceError."""
     pitch, frictions = uniform_pitch(model.pair.pinion.z, scene.sweep.positions), list(scene.contact.friction)
     progress.stage(POSITIONS, len(pitch.angles))
     swept = []
     for position in sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm):
         swept.append(position)
         progress.reach(min(len(swept), len(pitch.angles)))
-    static = [tuple(column) for column in zip(*(position.results for position in one_pitch(swept)))]
+    positions = [position.results for position in one_pitch(swept)]
+    for results in positions:
+        certify(results)
+    certify_pitch(positions)
+    static = [tuple(column) for column in zip(*positions)]
     on_first(comm, lambda: kept.write_static(static))
     return static
 

@@ -13,7 +13,7 @@ from evolvent.dynamics.transient.steady_state import until_steady
 from evolvent.gears.sweep.pitch_sweep import initial_state, sweep_pitch, uniform_pitch
 from evolvent.gears.sweep.position_result import PositionResult
 from evolvent_meshes.arrays import Floats
-from tests.support.transient_pairs import POSITIONS, condensed, moments, moving, started
+from tests.support.running.transient_pairs import POSITIONS, condensed, moments, moving, started
 
 
 def static(kind: str, friction: float) -> list[PositionResult]:

@@ -16,7 +16,7 @@ from evolvent.dynamics.transient.moving_pair import MovingPair
 from evolvent.dynamics.transient.pair_step import PairStep, SearchedContact
 from evolvent.dynamics.transient.steady_state import MeshPeriods, until_steady
 from evolvent.dynamics.transient.step_balance import Residuals, StepBalance, StepEnd
-from tests.support.transient_pairs import POSITIONS, moments, moving, started
+from tests.support.running.transient_pairs import POSITIONS, moments, moving, started
 
 Balanced = tuple[StepBalance, StepEnd]
 GOOD = Residuals(0.0, 0.0, 0.0, 0.0, 0.0)

@@ -6,7 +6,6 @@ import csv
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,12 +13,10 @@ import pytest
 from evolvent.cli import main
 from evolvent.dynamics.transient.back_flanks import BackFlanks
 from evolvent.dynamics.transient.certificates import Unbalanced
-from evolvent.dynamics.transient.steady_state import MeshPeriods
 from evolvent.dynamics.transient.step_balance import StepBalance, StepEnd, StepEnergies
-from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
+from evolvent.gears.solution.certificates import PitchImbalance
+from evolvent.gears.sweep.position_result import PositionResult
 from evolvent.results.archive.run_folder import FolderError
-from evolvent.run.dynamics import transient
-from evolvent.run.dynamics.kept_cases import KeptCases
 from evolvent.run.dynamics.transient import run_transient
 from evolvent.scene.scene import Scene, SceneError, load_scene
 from evolvent_meshes.errors import InputError
@@ -27,7 +24,6 @@ from tests.support.checkout import ROOT
 from tests.support.running.processes import Run, on_ranks
 
 POSITIONS = 10
-TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[30,2000]",
     "transient.spectral_radius=0.0", "dynamics.backlash_um=50", "transient.drive=constant_speed",
@@ -141,80 +137,19 @@ def test_a_motion_out_of_balance_ends_the_run(tmp_path: Path, monkeypatch: pytes
     assert not list((tmp_path / "results").glob("transient_0*.npz"))
 
 
+def test_statics_out_of_balance_end_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction that takes twice as much: the pitch without inertia does not conserve energy, and nothing is kept."""
+    right = vars(PositionResult)["friction_loss"].fget
+    monkeypatch.setattr(PositionResult, "friction_loss", property(lambda result: 2.0 * right(result)))
+    with pytest.raises(PitchImbalance, match="wanted an energy balance"):
+        run_transient(scene("transient.speeds_rpm=[2000]"), tmp_path, quiet=True)
+    assert not (tmp_path / "results").exists()
+
+
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
     """A second call names --resume and --overwrite."""
     with pytest.raises(FolderError, match="--resume goes on from its cases, --overwrite computes them anew"):
         run_transient(scene(), out, quiet=True)
-
-
-def tables(folder: Path) -> list[bytes]:
-    return [(folder / name).read_bytes() for name in TABLES]
-
-
-class Killed(Exception):
-    """A call ends here."""
-
-
-def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Killed in the third of four cases and resumed: statics and two cases are not computed again, and the tables are
-    those of a call that was not stopped, byte for byte; also when resumed once more, where nothing is missing. Another
-    scene is refused, and --overwrite computes all of them."""
-    counts: list[int] = []
-    solved = transient.until_steady
-
-    def counted(*given: Any) -> MeshPeriods:
-        counts.append(1)
-        if len(counts) == 3:
-            raise Killed
-        return solved(*given)
-
-    monkeypatch.setattr(transient, "until_steady", counted)
-    bare = scene("output.pictures=false")
-    with pytest.raises(Killed):
-        run_transient(bare, tmp_path, quiet=True)
-    assert sorted(path.name for path in (tmp_path / "results").glob("*.npz")) == [
-        "transient_0000.npz", "transient_0001.npz", "transient_static.npz"]  # fmt: skip
-    with pytest.raises(FolderError, match=r"found results/transient_static\.npz of an earlier call"):
-        run_transient(bare, tmp_path, quiet=True)
-    with pytest.raises(ArchiveError, match="found that of another one"):
-        run_transient(scene("output.pictures=false", "transient.mesh_periods=50"), tmp_path, resume=True, quiet=True)
-    monkeypatch.setattr(transient, "sweep_until_periodic", None)
-    said = run_transient(bare, tmp_path, resume=True, quiet=True)
-    assert len(counts) == 3 + 2
-    assert tables(tmp_path) == tables(out)
-    monkeypatch.setattr(transient, "until_steady", None)
-    assert run_transient(bare, tmp_path, resume=True, quiet=True) == said
-    assert tables(tmp_path) == tables(out)
-    monkeypatch.undo()
-    monkeypatch.setattr(transient, "sweep_until_periodic", stopped)
-    with pytest.raises(Killed):
-        run_transient(bare, tmp_path, overwrite=True, quiet=True)
-    assert not list((tmp_path / "results").glob("*.npz"))
-
-
-def stopped(*given: object) -> None:
-    raise Killed
-
-
-def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
-    """The call begins from the start, with a sentence."""
-    few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "output.pictures=false")
-    said = run_transient(few, tmp_path, resume=True, quiet=True)
-    assert said[0].startswith("--resume found nothing to continue")
-
-
-def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> None:
-    """One of another version lacks an array: it is named, with --overwrite."""
-    kept = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
-    found = KeptCases.of(scene(), kept.pair, out).read(4)
-    assert sorted(found) == [0, 1, 2, 3]
-    kept.write(0, found[0])
-    path = tmp_path / "results/transient_0000.npz"
-    arrays = read_arrays(path)
-    del arrays["energies"]
-    path.write_bytes(arrays_bytes(arrays))
-    with pytest.raises(ArchiveError, match="one without 'energies'; --overwrite computes anew"):
-        kept.read(1)
 
 
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
@@ -246,50 +181,21 @@ def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
         run_transient(levels, tmp_path, quiet=True)
 
 
-STOPPED = """
-import sys
-from mpi4py import MPI
-from evolvent.cli import main
-from evolvent.run.dynamics import transient
-
-def stopped(*given):
-    raise RuntimeError("stopped")
-
-if MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1:
-    transient.until_steady = stopped
-sys.exit(main(sys.argv[1:]))
-"""
-"""A run whose last rank ends in its first case."""
-WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
-
-
-def arguments(folder: Path, *more: str) -> list[str]:
-    words = ["transient", "demos/he2022.toml", "--out", str(folder), "--set", "output.pictures=false", *more]
-    for setting in SETTINGS:
-        words += ["--set", setting]
-    return words
-
-
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", on_ranks(2))
-def test_ranks_find_the_same_and_go_on(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
-    """Two ranks divide speeds and coefficients: the tables of one rank to 1e-6, and one line at the end. Where the last
-    rank fails in its first case, the two of the other one are kept; resumed on both ranks they are not computed again,
-    and the tables are those of two ranks that were not stopped, byte for byte."""
-    whole, cut = tmp_path / "whole", tmp_path / "cut"
-    done = run_script("-c", WHOLE, *arguments(whole), ranks=ranks)
+def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
+    """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
+    code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+    arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false"]
+    for setting in SETTINGS:
+        arguments += ["--set", setting]
+    done = run_script("-c", code, *arguments, ranks=ranks)
     assert done.returncode == 0, done.stderr[-3000:]
     assert done.stdout.count("done: ") == 1
-    for first, second in zip(rows(out / "transient.csv"), rows(whole / "transient.csv"), strict=True):
+    one, two = (rows(folder / "transient.csv") for folder in (out, tmp_path / "out"))
+    assert len(one) == len(two)
+    for first, second in zip(one, two):
         assert list(second.values()) == pytest.approx(list(first.values()), rel=1e-6, abs=1e-6)
-    failed = run_script("-c", STOPPED, *arguments(cut), ranks=ranks)
-    assert failed.returncode != 0
-    times = {path.name: path.stat().st_mtime_ns for path in (cut / "results").glob("transient_0*.npz")}
-    assert sorted(times) == ["transient_0000.npz", "transient_0002.npz"]
-    done = run_script("-c", WHOLE, *arguments(cut, "--resume"), ranks=ranks)
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert {name: (cut / "results" / name).stat().st_mtime_ns for name in times} == times
-    assert tables(cut) == tables(whole)
 
 
 def test_command_line_without_a_speed_ends_with_status_2(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

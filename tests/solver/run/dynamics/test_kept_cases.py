@@ -1,0 +1,147 @@
+"""`evolvent transient --resume`: He's pair in plane strain at one speed and two friction coefficients."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.results.archive.archive import ArchiveError, arrays_bytes, read_arrays
+from evolvent.results.archive.run_folder import FolderError
+from evolvent.run.dynamics import transient
+from evolvent.run.dynamics.kept_cases import KeptCases
+from evolvent.run.dynamics.transient import run_transient
+from evolvent.scene.scene import Scene, load_scene
+from tests.support.checkout import ROOT
+from tests.support.running.processes import Run, on_ranks
+
+TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
+SETTINGS = (
+    "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
+    "dynamics.backlash_um=50", "output.pictures=false",
+)  # fmt: skip
+WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
+STOPPED = """
+import sys
+from mpi4py import MPI
+from evolvent.cli import main
+from evolvent.run.dynamics import transient
+
+def stopped(*given):
+    raise RuntimeError("stopped")
+
+if MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1:
+    transient.until_steady = stopped
+sys.exit(main(sys.argv[1:]))
+"""
+"""A run whose last rank ends in its first case."""
+
+
+class Killed(Exception):
+    """A call ends here."""
+
+
+def stopped(*given: object) -> None:
+    raise Killed
+
+
+def scene(*settings: str) -> Scene:
+    return load_scene(ROOT / "demos/he2022.toml", [*SETTINGS, *settings])
+
+
+def tables(folder: Path) -> list[bytes]:
+    return [(folder / name).read_bytes() for name in TABLES]
+
+
+def kept(folder: Path) -> list[str]:
+    return sorted(path.name for path in (folder / "results").glob("*.npz"))
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("transient")
+    run_transient(scene(), folder, quiet=True)
+    return folder
+
+
+def test_stopped_call_goes_on(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Killed in the second of two cases and resumed: statics and the first case are not computed again, and the tables
+    are those of a call that was not stopped, byte for byte; also when resumed once more, where nothing is missing.
+    Another scene is refused."""
+    counts: list[int] = []
+    solved = transient.until_steady
+
+    def counted(*given: Any) -> MeshPeriods:
+        counts.append(1)
+        if len(counts) == 2:
+            raise Killed
+        return solved(*given)
+
+    monkeypatch.setattr(transient, "until_steady", counted)
+    with pytest.raises(Killed):
+        run_transient(scene(), tmp_path, quiet=True)
+    assert kept(tmp_path) == ["transient_0000.npz", "transient_static.npz"]
+    with pytest.raises(FolderError, match=r"found results/transient_static\.npz of an earlier call"):
+        run_transient(scene(), tmp_path, quiet=True)
+    with pytest.raises(ArchiveError, match="found that of another one"):
+        run_transient(scene("transient.mesh_periods=50"), tmp_path, resume=True, quiet=True)
+    monkeypatch.setattr(transient, "sweep_until_periodic", None)
+    said = run_transient(scene(), tmp_path, resume=True, quiet=True)
+    assert len(counts) == 2 + 1
+    assert tables(tmp_path) == tables(out)
+    monkeypatch.setattr(transient, "until_steady", None)
+    assert run_transient(scene(), tmp_path, resume=True, quiet=True) == said
+    assert tables(tmp_path) == tables(out)
+
+
+def test_overwriting_begins_anew(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Statics and cases of an earlier call are gone before anything is computed."""
+    earlier = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
+    earlier.write(1, KeptCases.of(scene(), earlier.pair, out).read(2)[1])
+    assert kept(tmp_path) == ["transient_0001.npz"]
+    monkeypatch.setattr(transient, "sweep_until_periodic", stopped)
+    with pytest.raises(Killed):
+        run_transient(scene(), tmp_path, overwrite=True, quiet=True)
+    assert kept(tmp_path) == []
+
+
+def test_nothing_to_go_on_from_is_said(tmp_path: Path) -> None:
+    """The call begins from the start, with a sentence."""
+    few = scene("contact.friction=0", "transient.mesh_periods=2")
+    said = run_transient(few, tmp_path, resume=True, quiet=True)
+    assert said[0].startswith("--resume found nothing to continue")
+
+
+def test_a_case_that_cannot_be_read_is_refused(out: Path, tmp_path: Path) -> None:
+    """One of another version lacks an array: it is named, with --overwrite."""
+    cases = KeptCases.of(scene(), scene().gear_pair(), tmp_path)
+    found = KeptCases.of(scene(), cases.pair, out).read(4)
+    assert sorted(found) == [0, 1]
+    cases.write(0, found[0])
+    path = tmp_path / "results/transient_0000.npz"
+    arrays = read_arrays(path)
+    del arrays["energies"]
+    path.write_bytes(arrays_bytes(arrays))
+    with pytest.raises(ArchiveError, match="one without 'energies'; --overwrite computes anew"):
+        cases.read(1)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", on_ranks(2))
+def test_ranks_go_on(run_script: Run, tmp_path: Path, ranks: int) -> None:
+    """Where the last rank fails in its case, that of the other one is kept; resumed on both ranks it is not computed
+    again, and the tables are those of two ranks that were not stopped, byte for byte."""
+    whole, cut, words = tmp_path / "whole", tmp_path / "cut", ["transient", "demos/he2022.toml"]
+    for setting in SETTINGS:
+        words += ["--set", setting]
+    done = run_script("-c", WHOLE, *words, "--out", str(whole), ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert run_script("-c", STOPPED, *words, "--out", str(cut), ranks=ranks).returncode != 0
+    assert kept(cut) == ["transient_0000.npz", "transient_static.npz"]
+    before = (cut / "results/transient_0000.npz").stat().st_mtime_ns
+    done = run_script("-c", WHOLE, *words, "--out", str(cut), "--resume", ranks=ranks)
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert (cut / "results/transient_0000.npz").stat().st_mtime_ns == before
+    assert tables(cut) == tables(whole)

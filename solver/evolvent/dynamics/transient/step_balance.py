@@ -12,8 +12,8 @@ in between, and the normals are those before deflection. Over a step
     rotation = given + friction + stored + (what is left)
 
 rotation: ½ Σ (T_1 − T_2/u) Δφ, what the nominal rotation puts in at the pinion less what it takes out at the wheel;
-given: to modes and ψ; friction: of the nominal sliding; stored: ½ fᵀC_r f and ∫ (λ²/γ + τ²/γ_t)/2. What is left is of
-second order in the step. Over a mesh period of a steady motion it is `pitch_imbalance` of statics.
+given: to modes and ψ; friction: of the nominal sliding; stored: ½ fᵀC_r f and ∫ (λ²/γ + τ²/γ_t)/2. Over a mesh period
+of a steady motion nothing is stored, and what is left corresponds to `pitch_imbalance` of statics.
 """
 
 from __future__ import annotations

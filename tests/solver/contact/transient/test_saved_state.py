@@ -28,10 +28,23 @@ from evolvent import (
 from evolvent.contact.transient import saved_state
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.shapes.blocks import rectangle
+from tests.support.running.processes import Run, on_ranks
 
 END, SLID = 4e-6, 1e-9  # s, mm
 EQUAL = TransientSettings(2e-7, modes=3)
 ADAPTIVE = TransientSettings(4e-7, modes=3, tolerance=0.02)
+
+GOING_ON = r"""
+import sys
+from pathlib import Path
+import numpy as np
+from evolvent import Transient
+from tests.solver.contact.transient.test_saved_state import EQUAL, figures, loads, shaken
+
+moment = Transient.resume(Path(sys.argv[1]), shaken(), EQUAL).solve(loads)
+wanted = np.load(sys.argv[2])
+sys.stdout.write("same\n" if np.array_equal(figures(moment), wanted) else "another\n")
+"""
 
 
 def shaken(friction: float = 0.3) -> Problem:
@@ -82,6 +95,16 @@ def test_a_run_goes_on_bit_for_bit(settings: TransientSettings, tmp_path: Path) 
     assert forgetful._reached is not None
     forgetful._reached = replace(forgetful._reached, deformed=None)
     assert not np.array_equal(figures(next(iter(forgetful.run_until(END, loads)))), going_on[0])
+
+
+@pytest.mark.parametrize("size", on_ranks(1, 2))
+def test_another_program_goes_on(size: int, saved: Path, tmp_path: Path, run_script: Run) -> None:
+    """On one rank, and on two that do the same: the next moment is that of this program, exactly."""
+    wanted = figures(Transient.resume(saved, shaken(), EQUAL).solve(loads))
+    np.save(tmp_path / "wanted.npy", wanted)
+    done = run_script("-c", GOING_ON, str(saved), str(tmp_path / "wanted.npy"), ranks=size)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("same") == size
 
 
 def test_lengths_of_steps_may_change(tmp_path: Path) -> None:

@@ -81,6 +81,7 @@ FILES = (
     ("transient.csv", "`evolvent transient`: a line per speed, friction coefficient and position of the mesh period"),
     ("transient_teeth.csv", "`evolvent transient`: a line per speed, coefficient and rotation of a tooth"),
     ("transient.json", "`evolvent transient`: figures of each speed and coefficient"),
+    ("pictures/field_of_action.gif", "`evolvent transient`: contact lines with their pressure over a mesh period"),
     ("vibration.csv", "a wear study at an operating speed: the vibration after each block"),
     ("strength.toml", "`evolvent strength`: the scene that was computed, with all its defaults"),
     ("strength.csv", "`evolvent strength`: a line per gear and way to find its root stress"),

@@ -226,7 +226,8 @@ def transient(
         require_room(unworn(loaded), "run", force, MPI.COMM_WORLD)
         warn(run_transient(unworn(loaded), out, resume, overwrite, quiet))
         if not quiet and MPI.COMM_WORLD.rank == 0:
-            done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png")
+            done(out, "transient.csv", "transient_teeth.csv", "transient.json", "pictures/transient.png",
+                 "pictures/field_of_action.gif")  # fmt: skip
 
 
 def _scenes(scene: Scene, percents: Sequence[float], force: bool) -> Mapping[str, Scene]:

@@ -1,20 +1,40 @@
-"""What a transient begins with at time 0, and problems that can have none."""
+"""What a time step begins with, at time 0 and later, and problems that can have no beginning."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from evolvent.contact.problem.definition import Problem, Step
+from evolvent.contact.step.step_solution import DeformedSurfaces
 from evolvent.contact.step.step_system import StepSystem
 from evolvent.contact.transient.body_motion import BodyMotion
 from evolvent.contact.transient.energy import Energy, EnergyBalance
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.reached import Reached
 from evolvent.contact.transient.settings import InitialState
 from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.input_checks import refuse
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The end of a time step, or the start."""
+
+    time: float
+    """[s]."""
+    length: float
+    """Of the step that ended here [s]; 0 at the start."""
+    next_length: float
+    """That the next one is to have [s]."""
+    motions: tuple[BodyMotion, ...]
+    """Of each body."""
+    deformed: DeformedSurfaces | None
+    """From which slip is measured; None: as placed."""
+    balance: EnergyBalance
+    """Since the start."""
 
 
 def begun(

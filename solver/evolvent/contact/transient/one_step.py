@@ -9,11 +9,11 @@ from evolvent.contact.step.displaced_search import solve_with_displaced_search
 from evolvent.contact.step.step_solution import Solution
 from evolvent.contact.step.step_system import SearchPositions, StepSystem
 from evolvent.contact.transient.adaptive_steps import step_error
+from evolvent.contact.transient.beginning import Reached
 from evolvent.contact.transient.body_motion import BodyMotion
 from evolvent.contact.transient.energy import Energy, driving_work, lag_work, load_work
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.reached import Reached
 from evolvent.contact.transient.time_scheme import TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats
 

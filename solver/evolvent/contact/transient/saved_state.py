@@ -17,11 +17,11 @@ import numpy as np
 
 from evolvent.contact.problem.definition import Problem
 from evolvent.contact.step.step_solution import DeformedSurfaces
+from evolvent.contact.transient.beginning import Reached
 from evolvent.contact.transient.body_motion import BodyMotion
 from evolvent.contact.transient.energy import EnergyBalance
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.moving_response import MovingResponse
-from evolvent.contact.transient.reached import Reached
 from evolvent.contact.transient.settings import TransientSettings
 from evolvent.contact.transient.time_scheme import MotionState, TimeScheme, TimeStep
 from evolvent_meshes.arrays import Floats

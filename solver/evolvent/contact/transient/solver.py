@@ -17,11 +17,10 @@ from evolvent.contact.problem.definition import Problem, Step, check_step
 from evolvent.contact.problem.user_warnings import warn_user
 from evolvent.contact.step.step_solution import Solution
 from evolvent.contact.transient.adaptive_steps import StepLengths
-from evolvent.contact.transient.beginning import begun, check
+from evolvent.contact.transient.beginning import Reached, begun, check
 from evolvent.contact.transient.energy import Energy
 from evolvent.contact.transient.moving_body import MovingBody
 from evolvent.contact.transient.one_step import SolvedStep, solve_step
-from evolvent.contact.transient.reached import Reached
 from evolvent.contact.transient.saved_state import read_state, write_state
 from evolvent.contact.transient.settings import InitialState, TransientSettings
 from evolvent.contact.transient.time_scheme import TimeScheme

@@ -30,8 +30,12 @@ class FieldOfAction:
     """The gears."""
     pressures: CasePressures
     """Its pressures."""
-    force: Floats
-    """(n,) mesh force over the load."""
+
+    @property
+    def force(self) -> Floats:
+        """(n,) mesh force over the load."""
+        case = self.pressures.case
+        return np.array([moment.mesh_force for moment in case.found.moments]) / case.load
 
     @property
     def top(self) -> float:

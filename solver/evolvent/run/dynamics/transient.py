@@ -30,7 +30,14 @@ from evolvent.gears.sweep.pitch_sweep import initial_state, uniform_pitch
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.kept_cases import KeptCases, Statics
-from evolvent.run.dynamics.transient_checks import PICTURE, WRITTEN, check_scene, prepared_folder, transient_section
+from evolvent.run.dynamics.transient_checks import (
+    ANIMATION,
+    PICTURE,
+    WRITTEN,
+    check_scene,
+    prepared_folder,
+    transient_section,
+)
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import CONDENSING, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
@@ -164,9 +171,17 @@ def _written(scene: Scene, pair: MovingPair, cases: Sequence[TransientCase], out
 
         return transient_picture(scene.title, rows, teeth, facts)
 
+    def animated() -> bytes:
+        from evolvent.dynamics.figures.field_of_action import FieldOfAction
+
+        worst = int(np.argmax([fact.dynamic_factor for fact in facts]))
+        return FieldOfAction(scene.title, pair.model.pair, pressures[worst]).animation()
+
     folder = RunFolder(out)
     folder.remove(WRITTEN)
     write_rows(folder, rows, teeth)
     write_facts(folder, facts)
-    failures = draw([Picture(PICTURE, drawn)] if wanted_output(scene).pictures else [], folder).failures
-    return [*failures, *sentences(facts, scene.sweep.positions)]
+    output = wanted_output(scene)
+    pictures = [Picture(PICTURE, drawn)] if output.pictures else []
+    pictures += [Picture(ANIMATION, animated)] if output.animation else []
+    return [*draw(pictures, folder).failures, *sentences(facts, scene.sweep.positions)]

@@ -9,11 +9,11 @@ import pytest
 from matplotlib.collections import LineCollection
 from PIL import Image
 
-from evolvent.contact.transient.time_scheme import MotionState
 from evolvent.dynamics.figures.field_of_action import FieldOfAction
 from evolvent.dynamics.results.transient import CasePressures, TransientCase
-from evolvent.dynamics.transient.pair_transient import PairMoment, PairState
+from evolvent.dynamics.transient.pair_transient import PairMoment
 from evolvent.dynamics.transient.steady_state import MeshPeriods
+from evolvent.dynamics.transient.step_balance import Residuals, StepEnergies
 from evolvent.gears.pressure.line_peaks import has_peak, pooled_peaks
 from evolvent.gears.pressure.pitch_pressure import PitchPressure
 from tests.support.synthetic_run import synthetic_run
@@ -22,16 +22,18 @@ FILES = ["demos/yang2022.toml", "demos/he2022.toml"]
 
 
 def field(file: str) -> FieldOfAction:
-    """Forces that rise from 1 to 1.5 of the load."""
+    """Forces from 2 to 3 N under a load of 2 N."""
     run = synthetic_run(file=file)
     results = [position[0].result for position in run.positions]
-    nothing = PairState(MotionState(np.zeros(1), np.zeros(1), np.zeros(1)), None, np.zeros(0))
-    moments = tuple(PairMoment(0.0, result, nothing, 1.0, 0.0) for result in results)
-    periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005)
+    forces, nothing = np.linspace(2.0, 3.0, len(results)), (0.0,) * 5
+    moments = tuple(
+        PairMoment(0.0, result, float(force), 0.0, Residuals(*nothing), StepEnergies(*nothing, 0.0, 0.0))
+        for result, force in zip(results, forces)
+    )
+    periods = MeshPeriods(moments, np.zeros(len(moments)), np.zeros(1), 0.005, Residuals(*nothing))
     still = PitchPressure(run.pair, tuple(position[0].cut for position in run.positions), run.inner_path)
-    case = TransientCase(1500.0, run.frictions[0], periods, tuple(results), 1.0)
-    forces = np.linspace(1.0, 1.5, len(results))
-    return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still), forces)
+    case = TransientCase(1500.0, run.frictions[0], periods, tuple(results), 2.0)
+    return FieldOfAction(run.scene.title, run.pair, CasePressures(case, still, still))
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -54,8 +56,9 @@ def test_lines_lie_where_the_slices_are(file: str) -> None:
 
 
 def test_force_has_a_dot_at_the_position() -> None:
-    """The dot climbs with the force."""
+    """The dot climbs with the force, from 1 to 1.5 times the load."""
     drawn = field(FILES[0])
+    assert drawn.force[[0, -1]].tolist() == [1.0, 1.5]
     for k, force in enumerate(drawn.force):
         dot = drawn.figure(k).axes[1].lines[1]
         assert np.asarray(dot.get_ydata()).tolist() == [force]

@@ -20,7 +20,7 @@ from tests.support.running.processes import Run, on_ranks
 TABLES = "transient.csv", "transient_teeth.csv", "transient.json"
 SETTINGS = (
     "mesh.level=quick", "sweep.positions=10", "contact.friction=[0.0,0.2]", "transient.speeds_rpm=[2000]",
-    "dynamics.backlash_um=50", "output.pictures=false",
+    "dynamics.backlash_um=50", "output.pictures=false", "output.animation=false",
 )  # fmt: skip
 WHOLE = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
 STOPPED = """

@@ -53,6 +53,7 @@ def test_tables_have_every_speed_and_coefficient(out: Path) -> None:
     found = rows(out / "transient.csv")
     assert len(found) == 2 * 2 * POSITIONS
     assert (out / "pictures/transient.png").stat().st_size > 10_000
+    assert (out / "pictures/field_of_action.gif").stat().st_size > 10_000
     for speed in (30.0, 2000.0):
         for friction in (0.0, 0.2):
             own = [row for row in found if (row["speed_rpm"], row["friction"]) == (speed, friction)]
@@ -155,7 +156,7 @@ def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
 def test_a_motion_that_does_not_repeat_yet_is_named(tmp_path: Path) -> None:
     """Two mesh periods of a lightly damped pair from statics are not enough."""
     few = scene("transient.speeds_rpm=[2000]", "contact.friction=0", "transient.mesh_periods=2",
-                "dynamics.damping_ratio=0.01", "output.pictures=false")  # fmt: skip
+                "dynamics.damping_ratio=0.01", "output.pictures=false", "output.animation=false")  # fmt: skip
     said = run_transient(few, tmp_path, quiet=True)
     assert "not steady after 2 mesh periods" in said[0]
 
@@ -186,7 +187,8 @@ def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
 def test_ranks_find_the_same(run_script: Run, out: Path, tmp_path: Path, ranks: int) -> None:
     """Two ranks divide speeds and coefficients: the same tables to 1e-6, and one line at the end."""
     code = "import sys; from evolvent.cli import main; sys.exit(main(sys.argv[1:]))"
-    arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false"]
+    arguments = ["transient", "demos/he2022.toml", "--out", str(tmp_path / "out"), "--set", "output.pictures=false",
+                 "--set", "output.animation=false"]  # fmt: skip
     for setting in SETTINGS:
         arguments += ["--set", setting]
     done = run_script("-c", code, *arguments, ranks=ranks)

@@ -11,6 +11,7 @@ import argparse
 import json
 import math
 from pathlib import Path
+from shutil import copy
 
 import numpy as np
 
@@ -28,13 +29,12 @@ from evolvent.strength.fatigue.criterion import (
     ORTHOGONAL_SHEAR,
     TENSION,
     VON_MISES,
-    Criterion,
 )
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
-from evolvent.strength.results.fatigue_rows import changes, places
+from evolvent.strength.results.fatigue_rows import changes, own_exponent, places
 
-KEPT = "fatigue/friction.csv"
+KEPT, PICTURE = "fatigue/friction.csv", "fatigue/yang.png"
 COMMAND = "python -m evidence.pages.papers.yang_fatigue --out DIR"
 UNCOATED, COATED, RATIO = 0.132, 0.107, 3.15
 PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 900.0, 0.3, 1.0)
@@ -70,6 +70,7 @@ def _below_line(friction: float) -> FlankFatigue:
 def _pair(runs: Runs) -> Named:
     """Uncoated over coated on the pinion of Yang's pair: of the largest values, and the median at its points."""
     folder = _fatigue(runs, "yang", "yang2022.toml", "output.pictures=true")
+    copy(folder / "pictures/fatigue.png", DOCS / PICTURE)
     for row in read(folder / "fatigue.csv"):
         if row["gear"] != "pinion" or float(row["friction"]) != COATED:
             continue
@@ -104,7 +105,8 @@ def friction_table(docs: Path) -> str:
     rows = [
         (criterion.words, place, *_cells(f.get(f"line_{criterion.name}_{place}")),
          *(_percent(f[f"{of}_{criterion.name}_{place}"]) for of in ("pair", "points")),
-         _exponent(f[f"points_{criterion.name}_{place}"]), _life(criterion, f[f"points_{criterion.name}_{place}"]))
+         _exponent(f[f"points_{criterion.name}_{place}"]),
+         _life(own_exponent(criterion, place), f[f"points_{criterion.name}_{place}"]))
         for criterion in CRITERIA
         for place in places(criterion)
     ]  # fmt: skip
@@ -142,10 +144,8 @@ def _exponent(ratio: float) -> str:
     return f"{math.log(RATIO) / math.log(ratio):.3g}"
 
 
-def _life(criterion: Criterion, ratio: float) -> str:
-    if criterion.exponent is None:
-        return "–"
-    return f"{ratio**criterion.exponent:.2f} (m = {criterion.exponent:g})"
+def _life(exponent: float | None, ratio: float) -> str:
+    return "–" if exponent is None else f"{ratio**exponent:.2f} (m = {exponent:g})"
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ class Criterion:
     unit: str
     """MPa, or nothing."""
     exponent: float | None = None
-    """m of its own S-N line; None where its source has none."""
+    """m of its own S-N line, of the largest value below the surface where it has such; None without a source."""
     source: str = ""
     """Of the exponent."""
     below: bool = True

@@ -155,6 +155,11 @@ def places(criterion: Criterion) -> tuple[str, ...]:
     return (SURFACE, BELOW) if criterion.below else (SURFACE,)
 
 
+def own_exponent(criterion: Criterion, place: str) -> float | None:
+    """Of the S-N line that a criterion has at a place: a source for stress below the surface says nothing of it."""
+    return criterion.exponent if place == places(criterion)[-1] else None
+
+
 def changes(own: FlankFatigue, first: FlankFatigue, criterion: Criterion, place: str) -> tuple[float, float]:
     """Ratios of a criterion to that at the first friction coefficient: of the largest values, and the median over
     points that both have. NaN where there are none."""
@@ -176,13 +181,14 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
         for member in Member:
             own, first = each.gears[member], found[0].gears[member]
             for criterion in own.values:
-                known = [] if criterion.exponent is None else [(criterion.exponent, criterion.source)]
                 for place in places(criterion):
+                    exponent = own_exponent(criterion, place)
+                    known = [] if exponent is None else [(exponent, criterion.source)]
                     ratios = changes(own, first, criterion, place)
-                    for exponent, source in [*known, *((m, "") for m in exponents)]:
-                        lives = [ratio**-exponent for ratio in ratios]
+                    for m, source in [*known, *((given, "") for given in exponents)]:
+                        lives = [ratio**-m for ratio in ratios]
                         yield FatigueLifeRow(
-                            member.label, each.friction, criterion.name, place, exponent, source, lives[0], lives[1]
+                            member.label, each.friction, criterion.name, place, m, source, lives[0], lives[1]
                         )
 
 

@@ -22,6 +22,7 @@ from evolvent.strength.results.fatigue_rows import (
     fatigue_rows,
     life_rows,
     map_rows,
+    own_exponent,
 )
 from evolvent_meshes.arrays import Floats
 from evolvent_meshes.gears.member import Member
@@ -84,6 +85,14 @@ def test_lives() -> None:
     pressure = [row for row in rows if row.criterion == "contact_pressure" and row.gear == "wheel"]
     assert [(row.exponent, bool(row.source), row.life_ratio) for row in pressure] == [
         (13.22, True, 1.0), (4.0, False, 1.0)]  # fmt: skip
+
+
+def test_exponents_belong_to_a_place() -> None:
+    """Lundberg and Palmgren's exponent is one of the shear below the surface; at the surface it has none."""
+    assert (own_exponent(ORTHOGONAL_SHEAR, BELOW), own_exponent(ORTHOGONAL_SHEAR, SURFACE)) == (9.3, None)
+    assert own_exponent(CONTACT_PRESSURE, SURFACE) == 13.22
+    sourced = {(row.criterion, row.place) for row in life_rows(FOUND, [4.0]) if row.source}
+    assert sourced == {("orthogonal_shear", BELOW), ("contact_pressure", SURFACE)}
 
 
 def test_map_has_every_point_from_the_root_on() -> None:

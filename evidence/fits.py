@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,3 +44,8 @@ def relative_l2(weights: Floats, computed: Floats, exact: Floats) -> float:
     """Relative L2 error of a field (n, ...) at points with quadrature weights (n,)."""
     off, whole = (np.square(field).reshape(len(weights), -1).sum(axis=1) for field in (computed - exact, exact))
     return float(np.sqrt(weights @ off / (weights @ whole)))
+
+
+def order_of(counts: Sequence[int], errors: Floats) -> float:
+    """Order of convergence: slope of the logarithm of errors (n,) over that of numbers of steps or cells (n,)."""
+    return float(-np.polyfit(np.log(counts), np.log(errors), 1)[0])

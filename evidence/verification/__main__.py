@@ -1,7 +1,8 @@
 """`python -m evidence.verification [NAME ...] [--out DIR]`: solves the verification problems.
 
 Without names: all of them, into DIR/verification.md with their figures. With names (hertz_line, torque, ...): only
-these problems, whose claims are printed and whose figures are written. DIR is docs, the committed pages, by default.
+these problems, whose claims are printed, and whose figures and parts of DIR/verification.md, where there is one, are
+written anew. DIR is docs, the committed pages, by default.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Annotated
 import typer
 
 from evidence.claims import Verification
-from evidence.verification.page import PICTURES, draw, write_page
+from evidence.verification.page import PICTURES, draw, write_page, write_parts
 from evidence.verification.problems import PROBLEMS
 from evolvent.fem.backend import dolfinx_compat
 
@@ -27,8 +28,9 @@ Out = Annotated[
     Path,
     typer.Option(
         metavar="DIR",
-        help="Where verification.md goes, which is written without names only, and the figures. The default is the "
-        "folder of the committed pages: take another one, such as out/verification, to leave them alone.",
+        help="Where verification.md and the figures go. With names only their parts of a page that is there are "
+        "written. The default is the folder of the committed pages: take another one, such as out/verification, to "
+        "leave them alone.",
     ),
 ]
 
@@ -60,9 +62,12 @@ def unknown_names(unknown: list[str]) -> str:
 
 
 def _shown(problems: list[Verification], out: Path) -> Path:
-    """Prints the claims, writes the figures. Gives their folder back."""
+    """Prints the claims, writes the parts of the page, or the figures alone. Gives back where they are."""
     for problem in problems:
         typer.echo("\n".join((problem.title, *(f"  {claim}" for claim in problem.claims))))
+    if (out / "verification.md").exists():
+        return write_parts(problems, out, list(PROBLEMS))
+    for problem in problems:
         draw(problem, out / PICTURES / f"{problem.name}.png")
     return out / PICTURES
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from evidence.claims import Claim, Reference, Verification
@@ -38,8 +40,47 @@ def write_page(problems: Sequence[Verification], out: Path) -> Path:
     for problem in problems:
         draw(problem, out / PICTURES / f"{problem.name}.png")
     head = header("Verification", "make verification")
-    sections = map(_section, problems)
-    return write(out / "verification.md", [head, INTRODUCTION, _summary(problems), *sections])
+    parts = [Part.of(problem) for problem in problems]
+    return write(out / "verification.md", [head, INTRODUCTION, _summary(parts), *(part.section for part in parts)])
+
+
+def write_parts(problems: Sequence[Verification], out: Path, order: Sequence[str]) -> Path:
+    """Some problems' parts and figures of out/verification.md anew; the others stay as they are. Gives the page's path.
+
+    order: names of all problems in the order of the page. Raises OSError.
+    """
+    for problem in problems:
+        draw(problem, out / PICTURES / f"{problem.name}.png")
+    path = out / "verification.md"
+    head, *sections = re.split(r"^(?=## )", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    rows = [line.strip("| ").split(" | ") for line in head.splitlines() if line.startswith("| [")]
+    kept = [Part.read(section, row) for section, row in zip(sections, rows, strict=True)]
+    named = {part.name: part for part in (*kept, *map(Part.of, problems))}
+    parts = [named[name] for name in order if name in named]
+    return write(path, [head[: head.index("| problem ")], _summary(parts), *(part.section for part in parts)])
+
+
+@dataclass(frozen=True)
+class Part:
+    """A problem on the page."""
+
+    name: str
+    title: str
+    counts: tuple[int, ...]
+    """Numbers of claims, of those that hold, of misses, and of each kind of reference."""
+    section: str
+    """Its heading, text, claims and figure."""
+
+    @staticmethod
+    def of(problem: Verification) -> Part:
+        return Part(problem.name, problem.title, _counts(problem.claims), _section(problem))
+
+    @staticmethod
+    def read(section: str, row: Sequence[str]) -> Part:
+        """Of a page that was written before. row: of its summary."""
+        name = re.findall(rf"\({PICTURES}/(\w+)\.png\)", section)[-1]
+        title = section.splitlines()[0].removeprefix("## ")
+        return Part(name, title, tuple(int(cell) for cell in row[1:]), section)
 
 
 def draw(problem: Verification, path: Path) -> None:
@@ -50,18 +91,18 @@ def draw(problem: Verification, path: Path) -> None:
         picture(figure, path)
 
 
-def _summary(problems: Sequence[Verification]) -> str:
+def _summary(parts: Sequence[Part]) -> str:
     """A row a problem, with a link to it, and the sums."""
-    rows = [[f"[{each.title}](#{_anchor(each.title)})", *_counts(each.claims)] for each in problems]
-    rows.append(["all", *_counts([claim for each in problems for claim in each.claims])])
+    rows = [[f"[{part.title}](#{_anchor(part.title)})", *map(str, part.counts)] for part in parts]
+    rows.append(["all", *(str(sum(column)) for column in zip(*(part.counts for part in parts)))])
     kinds = [kind.value for kind in Reference]
     return markdown(("problem", "claims", "hold", "missed", *kinds), rows, right=range(1, 4 + len(kinds)))
 
 
-def _counts(claims: Sequence[Claim]) -> list[str]:
+def _counts(claims: Sequence[Claim]) -> tuple[int, ...]:
     holding = sum(claim.holds for claim in claims)
     kinds = [sum(claim.reference is kind for claim in claims) for kind in Reference]
-    return [str(number) for number in (len(claims), holding, len(claims) - holding, *kinds)]
+    return (len(claims), holding, len(claims) - holding, *kinds)
 
 
 def _anchor(title: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evidence.fits import half_ellipse, relative_l2
+from evidence.fits import half_ellipse, order_of, relative_l2
 
 
 def test_half_ellipse_is_found_from_its_own_points() -> None:
@@ -21,3 +21,9 @@ def test_relative_l2_weighs_points_and_sums_components() -> None:
     exact = np.array([[3.0, 4.0], [0.0, 0.0]])
     computed = exact + np.array([0.0, 1.0])
     assert relative_l2(np.array([1.0, 2.0]), computed, exact) == pytest.approx(np.sqrt(3.0 / 25.0))
+
+
+def test_order_is_the_slope_of_a_power() -> None:
+    """Errors 3/n²: order 2."""
+    counts = (10, 20, 80)
+    assert order_of(counts, 3.0 / np.array(counts) ** 2) == pytest.approx(2.0)

@@ -15,15 +15,16 @@ import typer
 
 from evidence.claims import Claim, Reference, Verification
 from evidence.verification.__main__ import main
-from evidence.verification.page import write_page
+from evidence.verification.page import write_page, write_parts
 from evidence.verification.problems import PROBLEMS
+from evidence.verification.transient import thousand_impacts
 from evolvent.results.drawing.style import sheet
 
 
 @cache
 def solved(name: str) -> Verification:
-    """Solved once for all tests."""
-    return PROBLEMS[name]()
+    """Solved once for all tests; a thousand impacts take minutes, twelve show the same."""
+    return thousand_impacts.verify(impacts=12, phases=4) if name == "thousand_impacts" else PROBLEMS[name]()
 
 
 @pytest.mark.slow
@@ -82,3 +83,18 @@ def test_page_has_claims_misses_and_figure(tmp_path: Path) -> None:
     assert "| **missed** | external: NAFEMS |" in text
     assert "Missed: Small strain." in text
     assert 1_000 < (tmp_path / "pictures" / "verification" / "two_balls.png").stat().st_size < 150_000
+
+
+def test_parts_of_the_page_are_written_alone(tmp_path: Path) -> None:
+    """Of a page with two problems the second is solved again and a third is new: the page is what all three write at
+    once, in the order of the problems; the part of the first is not touched."""
+
+    def problem(name: str, found: float) -> Verification:
+        claim = Claim("p0 [MPa]", found, 100.0, 2.0, Reference.ANALYTICAL, "Hertz")
+        return Verification(name, f"{name}: pressed", "They touch.", (claim,), lambda figure: figure.subplots())
+
+    names, parts, whole = ["a", "b", "c"], tmp_path / "parts", tmp_path / "whole"
+    write_page([problem("a", 99.0), problem("c", 90.0)], parts)
+    page = write_parts([problem("c", 101.0), problem("b", 80.0)], parts, names)
+    wanted = write_page([problem("a", 99.0), problem("b", 80.0), problem("c", 101.0)], whole)
+    assert page.read_text(encoding="utf-8") == wanted.read_text(encoding="utf-8")

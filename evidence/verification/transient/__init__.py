@@ -1,0 +1,1 @@
+"""Verification problems of contact with inertia, over time."""

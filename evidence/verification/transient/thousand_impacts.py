@@ -1,0 +1,130 @@
+"""A bar bounces between two rigid walls a thousand times: what becomes of its energy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from evidence.claims import Claim, Verification, analytical
+from evidence.fits import order_of
+from evidence.verification.transient.bar_on_wall import LENGTH, PASSAGE, SPEED, thrown
+from evidence.verification.transient.bouncing_bar import GAP, LEAST, Bounces, Setting, bounced
+from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL, note
+from evolvent_meshes.arrays import Floats
+
+IMPACTS, PHASES = 1000, 8
+DEFAULT, NO_MODES, WITH_MODES = 0.8, Setting(0, 10, 0.8), Setting(4, 20, 0.8)
+RADII, STEPS = (0.0, DEFAULT, 1.0), (10, 20, 40)
+COLOURS = (PINION, WHEEL, TEETH[0])
+BAR = 1e-6
+GAINS = "within a time step a blow may begin anywhere, and it gains or loses by that; it loses in the mean"
+PROBLEM = """
+A steel bar of {length:g} × 1 mm, ν = 0, bounces between two rigid walls, {gap:g} µm away on both sides, with
+{speed:g} m/s at the start. There is neither friction nor damping, and nothing drives it: its energy should stay, and
+must not grow. Without natural modes the bar is a mass with the static stiffness of its ends; after {impacts} impacts
+{left:.2g} % of its energy is left ({setting}). With modes impacts leave it vibrating, since a few modes do not bring
+the whole wave back, and what vibrates with few time steps a period is taken out: with {with_modes} {left_with:.2g} %
+is left after {impacts_with} impacts (below {least:g} % it is not followed).
+
+Single blows without modes, begun at {phases} places within a time step, change the energy by, in the mean and from
+the largest loss to the largest gain (10, 20 and 40 time steps in 2L/c; a blow takes 0.9 of that): {table}. At ρ_∞ = 0
+none of them gained. So the bar of 1e-6 over a thousand impacts is kept where the losses outweigh the gains from the
+start; it is no property of the method.
+"""
+
+
+def changes(steps: int, radius: float, phases: int) -> Floats:
+    """Change of the energy by one blow, of itself, (phases,), for blows that begin at different parts of a time step.
+
+    steps: time steps in 2L/c; radius: ρ_∞.
+    """
+    gaps = GAP + SPEED * PASSAGE / steps * np.arange(phases) / phases
+    return np.array([thrown(steps, modes=0, radius=radius, gap=gap).energy[-1] - 1.0 for gap in gaps])
+
+
+def verify(impacts: int = IMPACTS, phases: int = PHASES) -> Verification:
+    """Two long runs, and single blows at each setting."""
+    runs = {setting: bounced(setting, impacts) for setting in (NO_MODES, WITH_MODES)}
+    blows = {(radius, steps): changes(steps, radius, phases) for radius in RADII for steps in STEPS}
+    return Verification(
+        "thousand_impacts",
+        "Bar between two walls: energy over a thousand impacts",
+        _statement(runs, blows, phases),
+        (*_over_impacts(runs, impacts), *_by_a_blow(blows)),
+        lambda figure: draw(figure, runs, blows),
+        "A blow gains or loses by where in a time step it begins; in the mean it loses, least with fine steps, ρ_∞ = 1",
+    )
+
+
+def _statement(runs: Mapping[Setting, Bounces], blows: Mapping[tuple[float, int], Floats], phases: int) -> str:
+    rows = []
+    for radius in RADII:
+        each = [blows[radius, steps] for steps in STEPS]
+        values = ", ".join(f"{100 * c.mean():+.2g} ({100 * c.min():+.2g} to {100 * c.max():+.2g})" for c in each)
+        rows.append(f"ρ_∞ = {radius:g}: {values} %")
+    plain, moving = runs[NO_MODES], runs[WITH_MODES]
+    return PROBLEM.format(
+        length=LENGTH, gap=1e3 * GAP, speed=1e-3 * SPEED, impacts=plain.impacts, left=100.0 * plain.left,
+        setting=NO_MODES, with_modes=WITH_MODES, left_with=100.0 * moving.left, impacts_with=moving.impacts,
+        least=100.0 * LEAST, phases=phases, table="; ".join(rows),
+    )  # fmt: skip
+
+
+def _over_impacts(runs: Mapping[Setting, Bounces], impacts: int) -> list[Claim]:
+    nothing = analytical("nothing drives the bar")
+    claims = [analytical("as many as wanted").at_least(f"impacts, {NO_MODES}", runs[NO_MODES].impacts, impacts, 0.0)]
+    for setting, run in runs.items():
+        name = "growth of the energy over that"
+        claims.append(nothing.bound(f"{name} at the start, {setting}", max(0.0, run.growth), BAR))
+        claims.append(nothing.bound(f"{name} of any flight before, {setting}", run.regained, BAR, GAINS))
+    return claims
+
+
+def _by_a_blow(blows: Mapping[tuple[float, int], Floats]) -> list[Claim]:
+    nothing, claims = analytical("nothing drives the bar"), []
+    for radius, missed in ((0.0, ""), (DEFAULT, GAINS)):
+        for steps in STEPS:
+            name = f"largest gain of energy by a blow, no modes, {steps} steps, ρ_∞ = {radius:g}"
+            claims.append(nothing.bound(name, max(0.0, float(blows[radius, steps].max())), BAR, missed))
+    gains = np.array([blows[DEFAULT, steps].max() for steps in STEPS])
+    name = f"order of the largest gain in the time step, ρ_∞ = {DEFAULT:g}"
+    return [*claims, analytical("first order through impacts").at_least(name, order_of(STEPS, gains), 1.0, 0.15)]
+
+
+def draw(figure: Figure, runs: Mapping[Setting, Bounces], blows: Mapping[tuple[float, int], Floats]) -> None:
+    """Energy over the impacts; change by a blow over its place in a time step, and its mean over the steps."""
+    left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
+    for (setting, run), colour in zip(runs.items(), (PINION, WHEEL)):
+        left.plot(*run.in_flight, color=colour, lw=1.2, label=str(setting))
+    left.axhline(1.0, color=FAINT, lw=1.0)
+    left.set(xlabel="impacts", ylabel="energy in flight / energy at the start", ylim=(0.0, 1.25))
+    left.legend(loc="upper right")
+    _phases(middle, blows)
+    _means(right, blows)
+
+
+def _phases(axes: Axes, blows: Mapping[tuple[float, int], Floats]) -> None:
+    axes.axhline(0.0, color=FAINT, lw=1.0)
+    for steps, colour in zip(STEPS, COLOURS):
+        change = blows[DEFAULT, steps]
+        place = np.arange(len(change) + 1) / len(change)
+        axes.plot(place, 100.0 * np.append(change, change[0]), "o-", ms=3, lw=1.0, color=colour, label=f"{steps} steps")
+    axes.set(xlabel="where in a time step the blow begins", ylabel="change of the energy by a blow [%]")
+    note(axes, f"no modes, ρ_∞ = {DEFAULT:g}")
+    axes.legend(loc="lower right")
+
+
+def _means(axes: Axes, blows: Mapping[tuple[float, int], Floats]) -> None:
+    steps = np.array(STEPS)
+    for radius, colour in zip(RADII, COLOURS):
+        lost = -100.0 * np.array([blows[radius, each].mean() for each in STEPS])
+        axes.loglog(steps[lost > 0], lost[lost > 0], "o-", ms=5, color=colour, label=f"ρ_∞ = {radius:g}")
+    axes.loglog(steps, 4.0 * (steps[0] / steps) ** 3.0, ":", color=INK, lw=1.0, label="slope 3")
+    axes.set_xticks(steps, [str(each) for each in steps])
+    axes.set_xticks([], minor=True)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set(xlabel="time steps in 2L/c", ylabel="energy lost by a blow, mean [%]")
+    axes.legend(loc="lower left")

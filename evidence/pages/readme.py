@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from evidence.benchmarks.gears.whole_runs import RunRow
-from evidence.pages.promises import Measured, measured
+from evidence.pages.promises import Measured, claim_of, measured
 from evidence.tables import Column, Table, markdown
 
 SHOWN = (
@@ -54,21 +54,10 @@ def speed(docs: Path) -> str:
 def verification(docs: Path) -> str:
     """A choice of the claims of verification, and how many there are."""
     claims = measured(docs / "verification.md")
-    lines = [(what, *_errors(_claim(claims, problem, quantity))) for what, problem, quantity in SHOWN]
+    lines = [(what, *_errors(claim_of(claims, problem, quantity))) for what, problem, quantity in SHOWN]
     lost = [claim for claim in claims if not claim.held]
     words = f"{len(claims) - len(lost)} of {len(claims)} claims hold, {len(lost)} are missed and say why."
     return markdown(("problem", "error", "allowed", ""), lines, right=(1, 2)) + "\n\n" + words
-
-
-def _claim(claims: list[Measured], problem: str, quantity: str) -> Measured:
-    """Raises ValueError where there is no such claim."""
-    for claim in claims:
-        if (claim.section, claim.quantity) == (problem, quantity):
-            return claim
-    raise ValueError(
-        f"docs/verification.md: wanted {quantity!r} under {problem!r}, found none; "
-        "change SHOWN in evidence/pages/readme.py"
-    )
 
 
 def _errors(claim: Measured) -> tuple[str, str, str]:

@@ -65,7 +65,7 @@ class Bounces:
     @property
     def growth(self) -> float:
         """The largest of the energy at any time over that at the start."""
-        return float(self.energy.max()) - 1.0
+        return float(self.energy.max()) - 1.0  # not negative: the start is among them
 
     @property
     def regained(self) -> float:

@@ -12,7 +12,7 @@ from evidence.claims import Claim, Verification, analytical
 from evidence.fits import order_of
 from evidence.verification.transient.bar_on_wall import LENGTH, PASSAGE, SPEED, thrown
 from evidence.verification.transient.bouncing_bar import GAP, LEAST, Bounces, Setting, bounced
-from evolvent.results.drawing.style import FAINT, INK, PINION, TEETH, WHEEL, note
+from evolvent.results.drawing.style import FAINT, PINION, TEETH, WHEEL, note
 from evolvent_meshes.arrays import Floats
 
 IMPACTS, PHASES = 1000, 8
@@ -31,8 +31,9 @@ is left after {impacts_with} impacts (below {least:g} % it is not followed).
 
 Single blows without modes, begun at {phases} places within a time step, change the energy by, in the mean and from
 the largest loss to the largest gain (10, 20 and 40 time steps in 2L/c; a blow takes 0.9 of that): {table}. At ρ_∞ = 0
-none of them gained. So the bar of 1e-6 over a thousand impacts is kept where the losses outweigh the gains from the
-start; it is no property of the method.
+none of them gained. The error of the mean is about a fiftieth of the range. So that the energy never grows by more
+than 1e-6 is no property of the method; where it stays below that of the start, first blows have lost more than later
+ones gain.
 """
 
 
@@ -55,7 +56,7 @@ def verify(impacts: int = IMPACTS, phases: int = PHASES) -> Verification:
         _statement(runs, blows, phases),
         (*_over_impacts(runs, impacts), *_by_a_blow(blows)),
         lambda figure: draw(figure, runs, blows),
-        "A blow gains or loses by where in a time step it begins; in the mean it loses, least with fine steps, ρ_∞ = 1",
+        "The energy falls in the mean; a single blow gains or loses by where in a time step it begins",
     )
 
 
@@ -77,10 +78,9 @@ def _over_impacts(runs: Mapping[Setting, Bounces], impacts: int) -> list[Claim]:
     nothing = analytical("nothing drives the bar")
     claims = [analytical("as many as wanted").at_least(f"impacts, {NO_MODES}", runs[NO_MODES].impacts, impacts, 0.0)]
     for setting, run in runs.items():
-        name = "growth of the energy over that"
-        claims.append(nothing.bound(f"{name} at the start, {setting}", max(0.0, run.growth), BAR))
-        claims.append(nothing.bound(f"{name} of any flight before, {setting}", run.regained, BAR, GAINS))
-    return claims
+        claims.append(nothing.bound(f"growth of the energy over that at the start, {setting}", run.growth, BAR))
+    name = f"growth of the energy over that of any flight before, {NO_MODES}"
+    return [*claims, nothing.bound(name, runs[NO_MODES].regained, BAR, GAINS)]
 
 
 def _by_a_blow(blows: Mapping[tuple[float, int], Floats]) -> list[Claim]:
@@ -98,7 +98,7 @@ def draw(figure: Figure, runs: Mapping[Setting, Bounces], blows: Mapping[tuple[f
     """Energy over the impacts; change by a blow over its place in a time step, and its mean over the steps."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
     for (setting, run), colour in zip(runs.items(), (PINION, WHEEL)):
-        left.plot(*run.in_flight, color=colour, lw=1.2, label=str(setting))
+        left.plot(*run.in_flight, color=colour, lw=1.2, label=_drawn(str(setting)))
     left.axhline(1.0, color=FAINT, lw=1.0)
     left.set(xlabel="impacts", ylabel="energy in flight / energy at the start", ylim=(0.0, 1.25))
     left.legend(loc="upper right")
@@ -113,18 +113,29 @@ def _phases(axes: Axes, blows: Mapping[tuple[float, int], Floats]) -> None:
         place = np.arange(len(change) + 1) / len(change)
         axes.plot(place, 100.0 * np.append(change, change[0]), "o-", ms=3, lw=1.0, color=colour, label=f"{steps} steps")
     axes.set(xlabel="where in a time step the blow begins", ylabel="change of the energy by a blow [%]")
-    note(axes, f"no modes, ρ_∞ = {DEFAULT:g}")
+    axes.set_ylim(-3.2, 2.0)
+    note(axes, _drawn(f"no modes, ρ_∞ = {DEFAULT:g}"))
     axes.legend(loc="lower right")
 
 
 def _means(axes: Axes, blows: Mapping[tuple[float, int], Floats]) -> None:
     steps = np.array(STEPS)
     for radius, colour in zip(RADII, COLOURS):
-        lost = -100.0 * np.array([blows[radius, each].mean() for each in STEPS])
-        axes.loglog(steps[lost > 0], lost[lost > 0], "o-", ms=5, color=colour, label=f"ρ_∞ = {radius:g}")
-    axes.loglog(steps, 4.0 * (steps[0] / steps) ** 3.0, ":", color=INK, lw=1.0, label="slope 3")
+        lost, gained = (100.0 * np.array([f(blows[radius, each]) for each in STEPS]) for f in (_lost, np.max))
+        if radius < 1.0:  # else the mean is below what so few places resolve
+            axes.loglog(steps, lost, "o-", ms=5, color=colour, label=_drawn(f"mean loss, ρ_∞ = {radius:g}"))
+        if gained.min() > 0.0:
+            axes.loglog(steps, gained, "^:", ms=5, color=colour, label=_drawn(f"largest gain, ρ_∞ = {radius:g}"))
     axes.set_xticks(steps, [str(each) for each in steps])
     axes.set_xticks([], minor=True)
     axes.yaxis.set_major_formatter("{x:g}")
-    axes.set(xlabel="time steps in 2L/c", ylabel="energy lost by a blow, mean [%]")
+    axes.set(xlabel="time steps in 2L/c", ylabel="change of the energy by a blow [%]", ylim=(5e-5, None))
     axes.legend(loc="lower left")
+
+
+def _lost(change: Floats) -> float:
+    return -float(change.mean())
+
+
+def _drawn(text: str) -> str:
+    return text.replace("ρ_∞", "$\\rho_\\infty$")

@@ -195,7 +195,7 @@ def _over_time(page: Path) -> Iterator[Promise]:
         if claim.one_sided:
             bar, found = f"at least {claim.wanted:g}", f"{claim.found:.3g}"
         elif claim.wanted:
-            bar, found = f"{100 * claim.allowed / claim.wanted:.2g} %", f"{100 * claim.off:.2g} %"
+            bar, found = f"{100 * claim.allowed / claim.wanted:.1g} %", f"{100 * claim.off:.2g} %"
         else:
             bar, found = f"{claim.allowed:.0e}", f"{claim.found:.1g}"
         yield Promise(what, bar, found, claim.held)

@@ -74,6 +74,13 @@ class Bounces:
         return float((energy / np.minimum.accumulate(energy)).max()) - 1.0
 
     @property
+    def round_trip(self) -> float:
+        """Time steps from a wall to the other one and back, mean over the second half of the impacts."""
+        steps = np.repeat(np.arange(len(self.energy)), self._met.astype(int))
+        late = steps[len(steps) // 2 :]
+        return 2.0 * float(late[-1] - late[0]) / (len(late) - 1)
+
+    @property
     def _met(self) -> Floats:
         """(n,), walls that are met in each time step."""
         return np.asarray((np.diff(self.touching.astype(int), axis=0, prepend=0) > 0).sum(axis=1))

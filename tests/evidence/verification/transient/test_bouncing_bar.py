@@ -20,3 +20,4 @@ def test_impacts_flights_and_growth_are_counted() -> None:
     assert bounces.left == 0.5
     assert bounces.growth == pytest.approx(0.1)
     assert bounces.regained == pytest.approx(0.25)
+    assert bounces.round_trip == 6.0  # the last two impacts are at steps 5 and 8

@@ -26,7 +26,7 @@ Examples:
 FATIGUE_EPILOG = f"""\b
 Examples:
   evolvent fatigue demos/yang2022.toml --out out/fatigue --level quick --set contact.friction=[0.132,0.107]
-  mpirun -n 2 evolvent fatigue demos/he2022.toml --out out/pitting --set fatigue.yield_stress_MPa=900
+  mpirun -n 2 evolvent fatigue demos/he2022.toml --out out/pitting --set fatigue.yield_stress_MPa=2000
 
 {STATUSES}"""
 

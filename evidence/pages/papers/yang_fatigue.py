@@ -25,24 +25,25 @@ from evolvent.strength.fatigue.criterion import (
     CONTACT_PRESSURE,
     DANG_VAN,
     FATEMI_SOCIE,
-    LARGEST_SHEAR,
+    MAXIMUM_SHEAR,
     ORTHOGONAL_SHEAR,
     TENSION,
     VON_MISES,
+    Criterion,
 )
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads
-from evolvent.strength.results.fatigue_rows import changes, own_exponent, places
+from evolvent.strength.results.fatigue_rows import changes
 
 KEPT, PICTURE = "fatigue/friction.csv", "fatigue/yang.png"
 COMMAND = "python -m evidence.pages.papers.yang_fatigue --out DIR"
 UNCOATED, COATED, RATIO = 0.132, 0.107, 3.15
-PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 900.0, 0.3, 1.0)
-"""MPa: Hertz at the pitch point of Yang's pair; with the yield stress of a case-hardened core."""
-DEPTHS = (0.0, *np.linspace(0.2, 1.4, 49))
+PEAK, STEEL = 1579.0, FatigueMaterial(0.3, 210e3 / 2.6, 2000.0, 0.3, 0.0, 1.0)
+"""MPa: Hertz at the pitch point of Yang's pair; the paper does not print the material, this is a hardened case."""
+DEPTHS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.15, *np.linspace(0.2, 1.4, 25))
 """Half-widths."""
-CRITERIA = CONTACT_PRESSURE, ORTHOGONAL_SHEAR, LARGEST_SHEAR, VON_MISES, DANG_VAN, FATEMI_SOCIE, TENSION
-PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=900", "output.error_bars=false"
+CRITERIA = CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, FATEMI_SOCIE, TENSION
+PAIR = "contact.friction=[0.132,0.107]", "fatigue.yield_stress_MPa=2000", "output.error_bars=false"
 LEVELS = "quick", "standard", "fine"
 
 
@@ -57,7 +58,7 @@ def _line_contact() -> Named:
     """Uncoated over coated, below a line contact of the same pressure."""
     coated, uncoated = (_below_line(μ) for μ in (COATED, UNCOATED))
     for criterion in CRITERIA[1:]:
-        for place in places(criterion):
+        for place in criterion.places:
             yield f"line_{criterion.name}_{place}", changes(uncoated, coated, criterion, place)[0]
 
 
@@ -106,9 +107,9 @@ def friction_table(docs: Path) -> str:
         (criterion.words, place, *_cells(f.get(f"line_{criterion.name}_{place}")),
          *(_percent(f[f"{of}_{criterion.name}_{place}"]) for of in ("pair", "points")),
          _exponent(f[f"points_{criterion.name}_{place}"]),
-         _life(own_exponent(criterion, place), f[f"points_{criterion.name}_{place}"]))
+         _life(criterion, place, f[f"points_{criterion.name}_{place}"]))
         for criterion in CRITERIA
-        for place in places(criterion)
+        for place in criterion.places
     ]  # fmt: skip
     head = (
         "criterion", "place", "line contact of the same pressure", "exponent for 3.15", "Yang's pinion, largest",
@@ -144,8 +145,10 @@ def _exponent(ratio: float) -> str:
     return f"{math.log(RATIO) / math.log(ratio):.3g}"
 
 
-def _life(exponent: float | None, ratio: float) -> str:
-    return "–" if exponent is None else f"{ratio**exponent:.2f} (m = {exponent:g})"
+def _life(criterion: Criterion, place: str, ratio: float) -> str:
+    if criterion.exponent is None or place != criterion.exponent_place:
+        return "–"
+    return f"{ratio**criterion.exponent:.2f} (m = {criterion.exponent:g})"
 
 
 def main() -> None:

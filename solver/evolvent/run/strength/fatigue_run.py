@@ -10,7 +10,6 @@ from typing import Any
 from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.material import Material
 from evolvent.fem.parallel.ranks import on_first, together
 from evolvent.gears.gear_model import Preparer, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
@@ -34,7 +33,7 @@ from evolvent.scene.schema.fatigue import FatigueSection
 from evolvent.scene.skips import wanted_output, with_deflected_flanks
 from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, FlankFatigue, flank_fatigue
 from evolvent.strength.fatigue.flank_loads import FlankLoads, LoadedPosition
-from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, FatigueFacts, facts_text, fatigue_facts
+from evolvent.strength.results.fatigue_facts import FATIGUE_FACTS, facts_text, fatigue_facts, warnings_of
 from evolvent.strength.results.fatigue_rows import (
     FATIGUE,
     FATIGUE_DEPTH,
@@ -47,6 +46,8 @@ from evolvent.strength.results.fatigue_rows import (
     map_rows,
 )
 
+AT_END = 1e-6
+"""A zone that begins so near [mm] to the end of the path of contact is none."""
 PICTURE, SCENE = "fatigue.png", "fatigue.toml"
 WRITTEN = SCENE, FATIGUE, FATIGUE_LIFE, FATIGUE_MAP, FATIGUE_DEPTH, FATIGUE_FACTS, f"pictures/{PICTURE}"
 
@@ -55,7 +56,7 @@ def run_fatigue(
     scene: Scene, out: Path, overwrite: bool = False, quiet: bool = False, prepare: Preparer = prepare_model
 ) -> list[str]:
     """Computes the pitch and what it does to the flanks, and writes scene, tables and picture to `out`. Returns a
-    sentence where a picture could not be drawn or error bars not be estimated. Collective.
+    sentence where a picture could not be drawn, error bars not be estimated, or figures do not hold. Collective.
 
     scene: its wear is left out. overwrite: replace what an earlier call has written. prepare: prepares gears that other
     calls share.
@@ -77,7 +78,7 @@ def run_fatigue(
             assert run is not None
             errors = run.errors if companion is None else estimated_errors(run, companion)
             said = [errors.missing] if companion is not None and errors.missing else []
-            return [*said, *_written(run, errors, out)]
+            return [*said, *_written(run, errors, None if companion is None else companion.run, out)]
 
         return on_first(comm, written)
 
@@ -130,35 +131,44 @@ def _positions(run: RunData, index: int) -> list[LoadedPosition]:
     ]
 
 
-def _fatigue(run: RunData, index: int, error: float) -> FrictionFatigue:
+def _fatigue(run: RunData, index: int, error: float, coarse: RunData | None) -> FrictionFatigue:
     """error: of the largest pressure [MPa]."""
+    gears = _flanks(run, index, run.inner_path)
+    ends = tuple(x for x, end in zip(run.inner_path, run.pair.path_of_contact) if abs(x - end) > AT_END)
+    largest = float(gears[0].loads.peak.max(initial=0.0)) or float("nan")
+    beside = None if coarse is None else _flanks(coarse, index, run.inner_path)
+    return FrictionFatigue(run.frictions[index], gears, error / largest, ends, beside)
+
+
+def _flanks(run: RunData, index: int, inner: tuple[float, float]) -> tuple[FlankFatigue, FlankFatigue]:
+    """Of pinion and wheel. inner: roll distances [mm] between the tip-edge zones."""
     section, friction = run.scene.fatigue or FatigueSection(), run.frictions[index]
-    loads = FlankLoads.joined([each.loads(run.inner_path) for each in _positions(run, index)])
-    found: dict[FatigueMaterial, FlankFatigue] = {}
-    for material in (_material(each, section) for each in run.scene.materials()):
-        if material not in found:  # both flanks bear the same tractions
-            found[material] = flank_fatigue(loads, friction, section.depths, material)
-    pinion, wheel = (found[_material(each, section)] for each in run.scene.materials())
-    return FrictionFatigue(friction, (pinion, wheel), error / float(loads.peak.max(initial=0.0) or float("nan")))
+    loads = FlankLoads.joined([each.loads(inner) for each in _positions(run, index)])
+    pinion, wheel = _materials(run)
+    first = flank_fatigue(loads, friction, section.depths, pinion)
+    # both flanks bear the same tractions
+    return first, first if wheel == pinion else flank_fatigue(loads, friction, section.depths, wheel)
 
 
-def _material(material: Material, section: FatigueSection) -> FatigueMaterial:
-    return FatigueMaterial(
-        material.poissons_ratio, material.lame[1], section.yield_stress_MPa, section.pressure_factor,
-        section.normal_factor,
+def _materials(run: RunData) -> tuple[FatigueMaterial, FatigueMaterial]:
+    section = run.scene.fatigue or FatigueSection()
+    pinion, wheel = (
+        FatigueMaterial(
+            each.poissons_ratio, each.lame[1], section.yield_stress_MPa, section.tension_factor,
+            section.compression_factor, section.normal_factor,
+        )
+        for each in run.scene.materials()
     )  # fmt: skip
+    return pinion, wheel
 
 
-def _facts(run: RunData, index: int, error: float) -> FatigueFacts:
-    poisson = run.scene.materials()[0].poissons_ratio
-    return fatigue_facts(run.frictions[index], _positions(run, index), run.inner_path, poisson, error)
-
-
-def _written(run: RunData, errors: EstimatedErrors, out: Path) -> list[str]:
+def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out: Path) -> list[str]:
     """Writes everything, in place of what an earlier call has written. On rank 0 alone."""
     section = run.scene.fatigue or FatigueSection()
-    bars = [errors.bar("max_pressure_MPa", index) for index in range(len(run.frictions))]
-    found = [_fatigue(run, index, error) for index, error in enumerate(bars)]
+    found = [_fatigue(run, k, errors.bar("max_pressure_MPa", k), coarse) for k in range(len(run.frictions))]
+    facts = [
+        fatigue_facts(each, _positions(run, k), run.inner_path, _materials(run)) for k, each in enumerate(found)
+    ]
 
     def drawn() -> bytes:
         from evolvent.strength.figures.fatigue import fatigue_picture  # matplotlib takes a second to import
@@ -171,9 +181,10 @@ def _written(run: RunData, errors: EstimatedErrors, out: Path) -> list[str]:
     folder.write_text(FATIGUE, _csv(fatigue_rows(run.pair, found)))
     folder.write_text(FATIGUE_LIFE, _csv(life_rows(found, section.exponents)))
     folder.write_text(FATIGUE_MAP, _csv(map_rows(run.pair, found)))
-    folder.write_text(FATIGUE_DEPTH, _csv(depth_rows(found)))
-    folder.write_text(FATIGUE_FACTS, facts_text([_facts(run, index, error) for index, error in enumerate(bars)]))
-    return list(draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures)
+    folder.write_text(FATIGUE_DEPTH, _csv(depth_rows(run.pair, found)))
+    folder.write_text(FATIGUE_FACTS, facts_text(facts))
+    failures = draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures
+    return [*failures, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]
 
 
 def _csv(rows: Iterable[Any]) -> str:

@@ -6,13 +6,13 @@ A history is one load cycle, (k, 3, 3) stress tensors [MPa], in an elastic body.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import minimize
 
 from evolvent.strength.fatigue.smallest_sphere import centre
 from evolvent_meshes.arrays import Floats
 
-PLANES = 360
-"""Directions of planes in half a turn that are tried before the worst is refined."""
+AROUND, TILTS, DIRECTIONS = 90, 18, 12
+"""Planes that are tried, 2° around the y axis and 5° towards it, and directions in each of them."""
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -32,38 +32,66 @@ def orthogonal_shear_range(stress: Floats) -> float:
     return float(np.ptp(stress[:, 0, 2]))
 
 
-def dang_van(stress: Floats, pressure_factor: float) -> float:
+def dang_van(stress: Floats, tension_factor: float, compression_factor: float) -> float:
     """max (τ_a(t) + a σ_h(t)) [MPa]: τ_a the largest shear of the deviator about the centre of the smallest sphere that
-    holds its path, σ_h the hydrostatic stress, a the pressure factor (Dang Van, Cailletaud, Flavenot, Le Douaron and
-    Lieurade, in: Biaxial and Multiaxial Fatigue, EGF 3, 1989, 459-478)."""
+    holds its path, σ_h the hydrostatic stress (Dang Van, Cailletaud, Flavenot, Le Douaron and Lieurade, in: Biaxial and
+    Multiaxial Fatigue, EGF 3, 1989, 459-478). a is one factor under tension and another under compression, where a
+    straight line is not conservative in rolling contact (Desimone, Bernasconi and Beretta, Wear 260 (2006) 567-572)."""
     hydrostatic = np.trace(stress, axis1=1, axis2=2) / 3.0
     deviator = stress - hydrostatic[:, None, None] * np.eye(3)
     amplitude = largest_shear(deviator - centre(deviator.reshape(-1, 9)).reshape(3, 3))
-    return float((amplitude + pressure_factor * hydrostatic).max())
+    factor = np.where(hydrostatic > 0.0, tension_factor, compression_factor)
+    return float((amplitude + factor * hydrostatic).max())
 
 
 def fatemi_socie(stress: Floats, shear_modulus: float, yield_stress: float, factor: float) -> float:
-    """max over planes of Δγ/2 (1 + k σ_n,max/σ_y): shear strain amplitude and largest normal stress on the plane
-    (Fatemi and Socie, Fatigue Fract. Eng. Mater. Struct. 11 (1988) 149-165). Planes contain the axis y of a plane
-    problem."""
+    """max over planes and directions in them of Δγ/2 (1 + k σ_n,max/σ_y): amplitude of the shear strain, and largest
+    tension on the plane, none under compression (Fatemi and Socie, Fatigue Fract. Eng. Mater. Struct. 11 (1988)
+    149-165)."""
 
-    def damage(angles: Floats) -> Floats:
-        shear, normal = plane_amplitudes(stress, angles)
+    def damage(normals: Floats) -> Floats:
+        shear, normal = plane_amplitudes(stress, normals)
         return np.asarray(shear / shear_modulus * (1.0 + factor * normal / yield_stress))
 
-    angles = np.linspace(0.0, np.pi, PLANES, endpoint=False)
-    tried = damage(angles)
-    worst, step = float(angles[int(np.argmax(tried))]), np.pi / PLANES
-    found = minimize_scalar(lambda a: -float(damage(np.array([a]))[0]), bounds=(worst - step, worst + step),
-                            method="bounded", options={"xatol": 1e-10})  # fmt: skip
-    return float(max(-found.fun, tried.max()))
+    angles = plane_angles()
+    tried = damage(normals_at(angles))
+    best = minimize(lambda at: -float(damage(normals_at(at[None]))[0]), angles[int(np.argmax(tried))],
+                    method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-15})  # fmt: skip
+    return float(max(-best.fun, tried.max()))
 
 
-def plane_amplitudes(stress: Floats, angles: Floats) -> tuple[Floats, Floats]:
-    """Amplitude of the shear stress and largest tension (a,) [MPa], 0 under compression, on planes that contain the
-    axis y, their normals at angles (a,) [rad] from x."""
-    c, s = np.cos(angles), np.sin(angles)
-    σx, σz, τ = (stress[:, i, j, None] for i, j in ((0, 0), (2, 2), (0, 2)))
-    shear = (σz - σx) * (c * s) + τ * (c**2 - s**2)
-    normal = σx * c**2 + σz * s**2 + 2.0 * τ * (c * s)
-    return 0.5 * np.ptp(shear, axis=0), np.maximum(normal.max(axis=0), 0.0)
+def plane_angles() -> Floats:
+    """(a, 2) of the planes that are tried: angle of the normal from x in the x-z plane, and its tilt towards y [rad].
+    Stress that is even in y has the same on planes tilted the other way."""
+    around = np.linspace(0.0, np.pi, AROUND, endpoint=False)
+    tilts = np.linspace(0.0, 0.5 * np.pi, TILTS, endpoint=False)
+    return np.stack(np.meshgrid(around, tilts), axis=2).reshape(-1, 2)
+
+
+def normals_at(angles: Floats) -> Floats:
+    """Unit normals (a, 3) at angles (a, 2)."""
+    around, tilt = angles.T
+    return np.column_stack([np.cos(around) * np.cos(tilt), np.sin(tilt), np.sin(around) * np.cos(tilt)])
+
+
+def plane_amplitudes(stress: Floats, normals: Floats) -> tuple[Floats, Floats]:
+    """Amplitude of the shear stress, in the direction in which it is largest, and largest tension (a,) [MPa], 0 under
+    compression, on planes with normals (a, 3)."""
+    traction = np.einsum("kij,aj->kai", stress, normals)
+    normal = np.einsum("kai,ai->ka", traction, normals)
+    first = np.cross(normals, np.where(np.abs(normals[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]]))
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    one, other = (np.einsum("kai,ai->ka", traction, axes) for axes in (first, np.cross(normals, first)))
+    β = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
+    ranges = np.array([np.ptp(c * one + s * other, axis=0) for c, s in zip(np.cos(β), np.sin(β))])
+    return 0.5 * _refined(ranges), np.maximum(normal.max(axis=0), 0.0)
+
+
+def _refined(ranges: Floats) -> Floats:
+    """Largest (a,) of ranges (directions, a) over half a turn, between directions by the parabola through three."""
+    top = np.argmax(ranges, axis=0)
+    at = np.arange(ranges.shape[1])
+    before, best, after = (ranges[(top + n) % len(ranges), at] for n in (-1, 0, 1))
+    bend = before - 2.0 * best + after
+    rise = np.where(bend < 0.0, (after - before) ** 2 / np.where(bend < 0.0, -8.0 * bend, 1.0), 0.0)
+    return np.asarray(best + rise)

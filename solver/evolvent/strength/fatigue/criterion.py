@@ -1,8 +1,14 @@
-"""The criteria by name, with the slopes of their S-N lines."""
+"""The criteria by name, the places at which they are looked for, and the slopes of their S-N lines."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+SURFACE, NEAR, BELOW = "surface", "near surface", "below"
+"""Depth 0; below it down to 0.2 half-widths of the contact, where stress by friction falls steeply; deeper."""
+DEEP = 0.2
+"""Half-widths at which the last one begins."""
+EVERYWHERE = SURFACE, NEAR, BELOW
 
 
 @dataclass(frozen=True)
@@ -13,26 +19,31 @@ class Criterion:
     """In tables."""
     words: str
     """In pictures and on pages."""
-    unit: str
-    """MPa, or nothing."""
+    unit: str = "MPa"
+    """Empty for a strain."""
+    places: tuple[str, ...] = EVERYWHERE
+    """Where it is of interest."""
     exponent: float | None = None
-    """m of its own S-N line, of the largest value below the surface where it has such; None without a source."""
+    """m of its own S-N line; None without a source."""
     source: str = ""
     """Of the exponent."""
-    below: bool = True
-    """Whether it is of interest below the surface."""
+    exponent_place: str = ""
+    """Place of the values that the source speaks of."""
+    pressure_power: float = 1.0
+    """Largest power with which it grows with the contact pressure."""
 
 
 CONTACT_PRESSURE = Criterion(
-    "contact_pressure", "contact pressure", "MPa", 13.22,
-    "ISO 6336-2, pitting: life factor 1.6 up to 1e5 load cycles, 1.0 at 5e7", below=False,
+    "contact_pressure", "contact pressure", places=(SURFACE,), exponent=13.22, exponent_place=SURFACE,
+    source="ISO 6336-2, Z_NT of through-hardened and case-hardened steel without any pitting, 1.6 at 1e5 and 1.0 at "
+    "5e7 load cycles; on nominal stress with load factors",
 )  # fmt: skip
 ORTHOGONAL_SHEAR = Criterion(
-    "orthogonal_shear", "range of orthogonal shear", "MPa", 9.3,
-    "Lundberg and Palmgren 1947: c/e with c = 31/3, e = 10/9",
+    "orthogonal_shear_range", "range of orthogonal shear stress", exponent=9.19, exponent_place=BELOW,
+    source="Lundberg and Palmgren, line contact: c/e with c = 31/3, e = 9/8, at equal depth and stressed volume",
 )  # fmt: skip
-LARGEST_SHEAR = Criterion("largest_shear", "largest shear", "MPa")
-VON_MISES = Criterion("von_mises", "von Mises", "MPa")
-DANG_VAN = Criterion("dang_van", "Dang Van", "MPa")
-TENSION = Criterion("tension", "tension along the flank", "MPa", below=False)
-FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", "")
+MAXIMUM_SHEAR = Criterion("maximum_shear", "maximum shear stress (Tresca)")
+VON_MISES = Criterion("von_mises", "von Mises")
+DANG_VAN = Criterion("dang_van", "Dang Van")
+TENSION = Criterion("tension", "tensile stress along the flank", places=(SURFACE, NEAR))
+FATEMI_SOCIE = Criterion("fatemi_socie", "Fatemi-Socie", unit="", pressure_power=2.0)

@@ -13,18 +13,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from evolvent.strength.fatigue.criteria import (
-    PLANES,
     dang_van,
     largest_shear,
+    normals_at,
     orthogonal_shear_range,
     plane_amplitudes,
+    plane_angles,
     von_mises,
 )
 from evolvent.strength.fatigue.criterion import (
     CONTACT_PRESSURE,
     DANG_VAN,
     FATEMI_SOCIE,
-    LARGEST_SHEAR,
+    MAXIMUM_SHEAR,
     ORTHOGONAL_SHEAR,
     TENSION,
     VON_MISES,
@@ -37,6 +38,8 @@ from evolvent_meshes.arrays import Floats
 INNER, OUTER, REACH = 721, 360, 10.0
 """Instants of a history while the point is below the contact, and before as after, up to this distance in half-widths.
 With a third of them the criterion of Dang Van, which is the most sensitive, is 0.1 % off."""
+COARSER = 3
+"""Every such instant is taken for the criterion of Fatemi and Socie, which looks at many planes."""
 RATIOS = 32
 """Steps between no friction and μ, to which the friction of slices that stick in part is rounded."""
 
@@ -51,8 +54,10 @@ class FatigueMaterial:
     """G [MPa]."""
     yield_stress: float | None
     """σ_y of the criterion of Fatemi and Socie [MPa]; None leaves it out."""
-    pressure_factor: float
-    """a of the criterion of Dang Van."""
+    tension_factor: float
+    """a of the criterion of Dang Van under hydrostatic tension."""
+    compression_factor: float
+    """The same under compression."""
     normal_factor: float
     """k of the criterion of Fatemi and Socie."""
 
@@ -91,7 +96,7 @@ def flank_fatigue(
 
 def criteria_of(material: FatigueMaterial) -> list[Criterion]:
     """Those that are computed."""
-    always = [CONTACT_PRESSURE, ORTHOGONAL_SHEAR, LARGEST_SHEAR, VON_MISES, DANG_VAN, TENSION]
+    always = [CONTACT_PRESSURE, ORTHOGONAL_SHEAR, MAXIMUM_SHEAR, VON_MISES, DANG_VAN, TENSION]
     return always if material.yield_stress is None else [*always, FATEMI_SOCIE]
 
 
@@ -109,14 +114,14 @@ def _criteria(ratio: float, depth: float, peaks: Floats, material: FatigueMateri
     unit = {
         CONTACT_PRESSURE: 1.0 if depth == 0.0 else 0.0,
         ORTHOGONAL_SHEAR: orthogonal_shear_range(history),
-        LARGEST_SHEAR: float(largest_shear(history).max()),
+        MAXIMUM_SHEAR: float(largest_shear(history).max()),
         VON_MISES: float(von_mises(history).max()),
-        DANG_VAN: dang_van(history, material.pressure_factor),
+        DANG_VAN: dang_van(history, material.tension_factor, material.compression_factor),
         TENSION: max(float(history[:, 0, 0].max()), 0.0),
     }
     values = {criterion: value * peaks for criterion, value in unit.items()}
     if material.yield_stress is not None:
-        shear, normal = plane_amplitudes(history, np.linspace(0.0, np.pi, PLANES, endpoint=False))
+        shear, normal = plane_amplitudes(history[::COARSER], normals_at(plane_angles()))
         opened = 1.0 + material.normal_factor * peaks[:, None] * normal / material.yield_stress
         values[FATEMI_SOCIE] = (peaks[:, None] * shear / material.shear_modulus * opened).max(axis=1)
     return values

@@ -7,18 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from evolvent.results.drawing.style import FAINT, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
-from evolvent.strength.fatigue.criterion import DANG_VAN, ORTHOGONAL_SHEAR, VON_MISES
+from evolvent.results.drawing.style import FAINT, PINION, PRESSURE_MAP, foot, friction_colours, png, sheet, styled
+from evolvent.strength.fatigue.criterion import BELOW, DANG_VAN, DEEP, ORTHOGONAL_SHEAR, VON_MISES
 from evolvent.strength.fatigue.flank_fatigue import FlankFatigue
-from evolvent.strength.results.fatigue_rows import FrictionFatigue, diameters
+from evolvent.strength.results.fatigue_rows import FrictionFatigue, depths_at, diameters
 from evolvent_meshes.gears.member import Member
 from evolvent_meshes.gears.pair import GearPair
 
 PROFILES = {VON_MISES: "-", ORTHOGONAL_SHEAR: "--", DANG_VAN: ":"}
 """Criteria over the depth, and the style of their lines."""
-LEVELS, DEPTHS = 24, 201
+LEVELS, DEPTHS, SHOWN = 24, 201, 2.5
+"""Colours, depths at which they are drawn, and the deepest in half-widths of the contact."""
 
 
 def fatigue_picture(title: str, pair: GearPair, found: Sequence[FrictionFatigue]) -> bytes:
@@ -38,8 +40,10 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
                    "right: criteria below the point with the largest contact pressure", (13.5, 5.0))  # fmt: skip
     over, section, below = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.9))
     if len(own.loads.peak):
-        _over_flank(over, pair, own)
-        figure.colorbar(_section(section, pair, own), ax=section, label="MPa")
+        scale = Normalize(0.0, float(own.values[DANG_VAN].max()))
+        _over_flank(over, pair, own, scale)
+        _section(section, pair, own, scale)
+        figure.colorbar(ScalarMappable(scale, PRESSURE_MAP), ax=section, label="MPa")
         _below(below, found)
     foot(
         figure,
@@ -49,36 +53,35 @@ def fatigue_figure(title: str, pair: GearPair, found: Sequence[FrictionFatigue])
     return figure
 
 
-def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue) -> None:
-    """Largest at any depth, over face and diameter; over the diameter alone in plane strain."""
-    diameter, values = diameters(pair, Member.PINION, own.loads.roll_distance), own.values[DANG_VAN].max(axis=1)
-    axes.set_title("largest at any depth", fontsize=10)
+def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) -> None:
+    """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
+    diameter = diameters(pair, Member.PINION, own.loads.roll_distance)
+    values = own.values[DANG_VAN][:, depths_at(own, BELOW)].max(axis=1)
+    axes.set_title(f"largest from {DEEP:g} half-widths below the surface on", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if len(np.unique(own.loads.height)) > 1:
-        drawn = axes.tricontourf(own.loads.height, diameter, values, LEVELS, cmap=PRESSURE_MAP)
-        axes.figure.colorbar(drawn, ax=axes, label="MPa")
+        axes.tricontourf(own.loads.height, diameter, values, LEVELS, cmap=PRESSURE_MAP, norm=scale)
         axes.set_xlabel("face [mm]")
     else:
         order = np.argsort(diameter)
-        axes.plot(values[order], diameter[order], color="#1f5fa8", marker=".")
+        axes.plot(values[order], diameter[order], color=PINION, marker=".")
         axes.set_xlabel("MPa")
     _pitch_line(axes, pair)
 
 
-def _section(axes: Axes, pair: GearPair, own: FlankFatigue) -> ScalarMappable:
+def _section(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize) -> None:
     """Over depth and diameter at mid-face."""
     heights = np.unique(own.loads.height)
     middle = np.flatnonzero(own.loads.height == heights[np.argmin(np.abs(heights))])
     middle = middle[np.argsort(own.loads.roll_distance[middle])]
     diameter = diameters(pair, Member.PINION, own.loads.roll_distance[middle])
     known = own.depths_mm[middle]
-    depths = np.linspace(0.0, float(known.max(axis=1).min()), DEPTHS)
+    depths = np.linspace(0.0, float(np.median(own.loads.half_width)) * SHOWN, DEPTHS)
     values = [np.interp(depths, *each) for each in zip(known, own.values[DANG_VAN][middle])]
-    drawn = axes.contourf(1e3 * depths, diameter, values, LEVELS, cmap=PRESSURE_MAP)
+    axes.contourf(1e3 * depths, diameter, values, LEVELS, cmap=PRESSURE_MAP, norm=scale)
     axes.set_title("below mid-face" if len(heights) > 1 else "below the flank", fontsize=10)
     axes.set_xlabel("depth [µm]")
     _pitch_line(axes, pair)
-    return drawn
 
 
 def _pitch_line(axes: Axes, pair: GearPair) -> None:
@@ -90,7 +93,8 @@ def _below(axes: Axes, found: Sequence[FrictionFatigue]) -> None:
         own = each.gears[Member.PINION]
         top = int(np.argmax(own.loads.peak))
         for criterion, style in PROFILES.items():
-            axes.plot(own.values[criterion][top], 1e3 * own.depths_mm[top], style, color=colour)
+            here = own.depths <= SHOWN
+            axes.plot(own.values[criterion][top, here], 1e3 * own.depths_mm[top, here], style, color=colour)
         axes.plot([], [], color=colour, label=f"μ = {each.friction:g}")
     for criterion, style in PROFILES.items():
         axes.plot([], [], style, color=FAINT, label=criterion.words)

@@ -9,10 +9,14 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from evolvent.results.tables.tables import without_nan
+from evolvent.strength.fatigue.criterion import VON_MISES
 from evolvent.strength.fatigue.fitted_tractions import shear_differences
+from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial
 from evolvent.strength.fatigue.flank_loads import LoadedPosition
+from evolvent.strength.results.fatigue_rows import FrictionFatigue
 
 FATIGUE_FACTS = "fatigue.json"
+Materials = tuple[FatigueMaterial, FatigueMaterial]
 
 
 @dataclass(frozen=True)
@@ -29,27 +33,57 @@ class FatigueFacts:
     """Of these points."""
     largest_pressure_MPa_error: float
     """Error bar of a run's largest pressure; null without a coarse companion (`output.error_bars`)."""
+    pressure_over_shear_yield: float | None
+    """That pressure over σ_y/√3; null without fatigue.yield_stress_MPa. A line contact yields above 3.1; above 4.0,
+    less with friction, it goes on yielding with each passage (Johnson, Contact Mechanics, 1985, 9.2)."""
+    mises_over_yield: float | None
+    """Largest von Mises stress over σ_y, likewise."""
     fitted_shear_median_percent: float
-    """Pressures enter as fitted half-ellipses. Largest shear stress below a slice under the pressures and friction as
-    solved over that under the half-ellipse: the median difference."""
+    """Pressures enter as fitted half-ellipses. Largest shear stress from 0.6 to 1.3 half-widths below a slice under the
+    pressures and friction as solved over that under the half-ellipse: the median difference."""
     fitted_shear_most_percent: float
     """Nine in ten of these differences are at most so large."""
 
 
+SHAKEDOWN = 4.0
+"""Contact pressure over shear yield stress up to which a line contact without friction shakes down elastically."""
+
+
 def fatigue_facts(
-    friction: float, positions: Sequence[LoadedPosition], inner: tuple[float, float], poisson: float, error: float
+    found: FrictionFatigue, positions: Sequence[LoadedPosition], inner: tuple[float, float], materials: Materials
 ) -> FatigueFacts:
-    """At one friction coefficient. inner: see `RunData.inner_path`; error: of the largest pressure [MPa]."""
+    """At one friction coefficient. inner: see `RunData.inner_path`; materials: of pinion and wheel."""
     loaded = sum(int((each.cut.line_load > 0.0).sum()) for each in positions)
     peaks = np.concatenate([each.loads(inner).peak for each in positions])
-    differences = 100.0 * shear_differences(positions, inner, poisson)
-    known = len(differences) > 0
+    differences = 100.0 * shear_differences(positions, inner, materials[0].poissons_ratio)
+    known, σy = len(differences) > 0, materials[0].yield_stress
+    largest = float(peaks.max()) if known else np.nan
+    mises = max(float(own.values[VON_MISES].max(initial=0.0)) for own in found.gears)
     return FatigueFacts(
-        friction, len(peaks), 100.0 * (1.0 - len(peaks) / loaded) if loaded else 0.0,
-        float(peaks.max()) if known else np.nan, error,
+        found.friction, len(peaks), 100.0 * (1.0 - len(peaks) / loaded) if loaded else 0.0,
+        largest, largest * found.pressure_error,
+        None if σy is None else largest * np.sqrt(3.0) / σy, None if σy is None else mises / σy,
         float(np.median(differences)) if known else np.nan,
         float(np.quantile(np.abs(differences), 0.9)) if known else np.nan,
     )  # fmt: skip
+
+
+def warnings_of(facts: FatigueFacts, found: FrictionFatigue) -> list[str]:
+    """Sentences on what the figures of a friction coefficient do not hold for."""
+    said, name = [], f"μ = {facts.friction:g}"
+    loads = found.gears[0].loads
+    if len(loads.peak) and found.at_zone_end(float(loads.roll_distance[np.argmax(loads.peak)])):
+        said.append(
+            f"{name}: contact pressure is largest where the zone of a tip edge begins, so that the largest values say "
+            "neither how large they become nor where; relieve the tips (tip_relief_um), or take the medians over points"
+        )
+    if facts.pressure_over_shear_yield is not None and facts.pressure_over_shear_yield > SHAKEDOWN:
+        said.append(
+            f"{name}: the largest contact pressure is {facts.pressure_over_shear_yield:.1f} times the shear yield "
+            f"stress, above the {SHAKEDOWN:g} up to which a line contact shakes down (Johnson 1985, 9.2): stress is "
+            "not elastic there, and Dang Van and Fatemi-Socie do not hold"
+        )
+    return said
 
 
 def facts_text(facts: Sequence[FatigueFacts]) -> str:

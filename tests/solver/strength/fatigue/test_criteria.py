@@ -10,6 +10,7 @@ from evolvent.strength.fatigue.criteria import (
     fatemi_socie,
     largest_shear,
     orthogonal_shear_range,
+    plane_amplitudes,
     von_mises,
 )
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
@@ -36,12 +37,12 @@ def torsion(amplitude: float, normal: float = 0.0) -> Floats:
 def test_dang_van_of_uniaxial_stress() -> None:
     """σ_m + σ_a sin t: the deviator's path is a straight line, shear about its middle is σ_a/2, hydrostatic stress
     (σ_m + σ_a)/3 at the same time: σ_a/2 + a (σ_m + σ_a)/3."""
-    assert dang_van(tension(100.0, 300.0), 0.4) == pytest.approx(150.0 + 0.4 * 400.0 / 3.0, rel=1e-6)
+    assert dang_van(tension(100.0, 300.0), 0.4, 0.4) == pytest.approx(150.0 + 0.4 * 400.0 / 3.0, rel=1e-6)
 
 
 def test_dang_van_of_alternating_torsion() -> None:
     """τ_a, whatever a."""
-    assert dang_van(torsion(200.0), 0.7) == pytest.approx(200.0, rel=1e-6)
+    assert dang_van(torsion(200.0), 0.7, 0.7) == pytest.approx(200.0, rel=1e-6)
 
 
 def test_dang_van_out_of_phase() -> None:
@@ -51,7 +52,7 @@ def test_dang_van_out_of_phase() -> None:
     stress[:, 0, 2] = stress[:, 2, 0] = 300.0 / np.sqrt(3.0) * np.cos(PHASES)
     t = np.linspace(0.0, 2.0 * np.pi, 100_001)
     wanted = np.sqrt((150.0 * np.sin(t)) ** 2 + (300.0 / np.sqrt(3.0) * np.cos(t)) ** 2) + 0.3 * 100.0 * np.sin(t)
-    assert dang_van(stress, 0.3) == pytest.approx(float(wanted.max()), rel=2e-6)
+    assert dang_van(stress, 0.3, 0.3) == pytest.approx(float(wanted.max()), rel=2e-6)
 
 
 def test_fatemi_socie_of_torsion_with_a_normal_stress() -> None:
@@ -69,6 +70,39 @@ def _normal(amplitude: float, σy: float, k: float) -> float:
     θ = np.linspace(0.0, np.pi / 4.0, 1_000_001)
     product = np.cos(2.0 * θ) * (1.0 + k * amplitude * np.sin(2.0 * θ) / σy)
     return float((product.max() - 1.0) * σy / k)
+
+
+def test_dang_van_under_compression() -> None:
+    """σ_m = −600, σ_a = 300: hydrostatic stress is compression throughout, −100 at its largest. With a factor of 0 it
+    does not count, σ_a/2; with that of tension it lowers the criterion."""
+    history = tension(-600.0, 300.0)
+    assert dang_van(history, 0.4, 0.0) == pytest.approx(150.0, rel=1e-6)
+    assert dang_van(history, 0.4, 0.4) == pytest.approx(150.0 - 0.4 * 100.0, rel=1e-6)
+
+
+def test_fatemi_socie_where_the_worst_plane_is_tilted() -> None:
+    """σ_x and σ_z alternate together, σ_y stays 0: shear is largest on planes at 45° between the y axis and any normal
+    in the x-z plane, σ_a/2, with the tension σ_a/2 on them. It maximises sin 2θ (1 + k σ_a cos² θ/σ_y) over their
+    tilt, which planes through the y axis, free of shear, do not see."""
+    stress = np.zeros((len(PHASES), 3, 3))
+    stress[:, 0, 0] = stress[:, 2, 2] = 300.0 * np.sin(PHASES)
+    G, σy, k = 80e3, 700.0, 0.6
+    θ = np.linspace(0.0, np.pi / 2.0, 1_000_001)
+    exact = (150.0 / G * np.sin(2.0 * θ) * (1.0 + k * 300.0 * np.cos(θ) ** 2 / σy)).max()
+    assert fatemi_socie(stress, G, σy, k) == pytest.approx(float(exact), rel=1e-6)
+
+
+def test_amplitude_is_half_of_the_longest_chord() -> None:
+    """Shear on the plane normal to z that goes round an ellipse with half-axes of 50 and 30, turned by 20°: 50, in
+    whatever direction between those that are tried, to 1e-3."""
+    stress = np.zeros((len(PHASES), 3, 3))
+    along, across = 50.0 * np.cos(PHASES), 30.0 * np.sin(PHASES)
+    c, s = np.cos(np.radians(20.0)), np.sin(np.radians(20.0))
+    stress[:, 0, 2] = stress[:, 2, 0] = c * along - s * across
+    stress[:, 1, 2] = stress[:, 2, 1] = s * along + c * across
+    shear, normal = plane_amplitudes(stress, np.array([[0.0, 0.0, 1.0]]))
+    assert shear == pytest.approx([50.0], rel=1e-3)
+    assert normal == pytest.approx([0.0], abs=1e-9)
 
 
 def test_orthogonal_shear_below_a_line_contact() -> None:

@@ -16,7 +16,7 @@ from evolvent.strength.fatigue.criterion import (
     CONTACT_PRESSURE,
     DANG_VAN,
     FATEMI_SOCIE,
-    LARGEST_SHEAR,
+    MAXIMUM_SHEAR,
     ORTHOGONAL_SHEAR,
     TENSION,
     VON_MISES,
@@ -25,14 +25,14 @@ from evolvent.strength.fatigue.flank_fatigue import FatigueMaterial, criteria_of
 from evolvent.strength.fatigue.flank_loads import FlankLoads
 from evolvent.strength.fatigue.half_plane import HertzTractions, plane_strain
 
-STEEL = FatigueMaterial(0.3, 80e3, 900.0, 0.3, 1.0)
+STEEL = FatigueMaterial(0.3, 80e3, 900.0, 0.3, 0.1, 1.0)
 PEAKS, HALF_WIDTHS, RATIOS = np.array([1500.0, 800.0]), np.array([0.12, 0.2]), np.array([0.1, 0.05])
 LOADS = FlankLoads(np.zeros((2, 3), dtype=int), np.array([-3.0, 2.0]), np.zeros(2), PEAKS, HALF_WIDTHS, RATIOS)
 
 
 def test_points_of_a_flank_one_by_one() -> None:
     """Two points, one of which sticks in part: each criterion at three depths is that of the history below its own
-    half-ellipse in millimetres, to 1e-9; Fatemi-Socie to 1e-4, as its planes are 0.5° apart."""
+    half-ellipse in millimetres, to 1e-9; Fatemi-Socie to 5e-3, as its planes are 2° and 5° apart."""
     found = flank_fatigue(LOADS, 0.1, (0.0, 0.5, 1.2), STEEL)
     assert found.depths_mm == pytest.approx(np.outer(HALF_WIDTHS, [0.0, 0.5, 1.2]))
     for point, (peak, b, ratio) in enumerate(zip(PEAKS, HALF_WIDTHS, RATIOS)):
@@ -41,11 +41,11 @@ def test_points_of_a_flank_one_by_one() -> None:
             history = plane_strain(HertzTractions(b, peak, ratio).stress(x, np.full_like(x, depth)), 0.3)
             at = {criterion: values[point, k] for criterion, values in found.values.items()}
             assert at[ORTHOGONAL_SHEAR] == pytest.approx(orthogonal_shear_range(history), rel=1e-9)
-            assert at[LARGEST_SHEAR] == pytest.approx(largest_shear(history).max(), rel=1e-9)
+            assert at[MAXIMUM_SHEAR] == pytest.approx(largest_shear(history).max(), rel=1e-9)
             assert at[VON_MISES] == pytest.approx(von_mises(history).max(), rel=1e-9)
-            assert at[DANG_VAN] == pytest.approx(dang_van(history, 0.3), rel=1e-6)
+            assert at[DANG_VAN] == pytest.approx(dang_van(history, 0.3, 0.1), rel=1e-6)
             assert at[TENSION] == pytest.approx(max(history[:, 0, 0].max(), 0.0), rel=1e-9)
-            assert at[FATEMI_SOCIE] == pytest.approx(fatemi_socie(history, 80e3, 900.0, 1.0), rel=1e-4)
+            assert at[FATEMI_SOCIE] == pytest.approx(fatemi_socie(history, 80e3, 900.0, 1.0), rel=5e-3)
     assert found.values[CONTACT_PRESSURE][:, 0] == pytest.approx(PEAKS)
 
 
@@ -58,7 +58,7 @@ def test_surface_below_sliding_contact() -> None:
 
 def test_without_yield_stress_one_criterion_is_left_out() -> None:
     """That of Fatemi and Socie."""
-    without = FatigueMaterial(0.3, 80e3, None, 0.3, 1.0)
+    without = FatigueMaterial(0.3, 80e3, None, 0.3, 0.1, 1.0)
     assert set(criteria_of(STEEL)) - set(criteria_of(without)) == {FATEMI_SOCIE}
     assert FATEMI_SOCIE not in flank_fatigue(LOADS, 0.1, (0.0, 0.5), without).values
 

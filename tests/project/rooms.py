@@ -130,7 +130,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics", "dynamics.results", "dynamics.figures", "scene", "scene.schema", "results.*", "wear.*",
     ),
     "run.strength": (
-        "meshes", "meshes.mesh", "meshes.gears", "fem", "fem.backend", "fem.parallel", "gears.problem",
+        "meshes", "meshes.mesh", "meshes.gears", "fem.backend", "fem.parallel", "gears.problem",
         "gears.meshing", "gears", "gears.sweep", "gears.solution", "scene", "scene.schema", "results.archive",
         "results", "results.error_bars", "results.tables", "results.drawing", "strength.standard", "strength.fatigue",
         "strength", "strength.results", "strength.figures", "run",

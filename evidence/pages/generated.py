@@ -12,7 +12,7 @@ from pathlib import Path
 from evidence import mutations
 from evidence.checkout import ROOT
 from evidence.pages import outputs, promises, readme, tutorial
-from evidence.pages.papers import he, yang, yang_fatigue, yang_transient, zhang
+from evidence.pages.papers import he, he_transient, yang, yang_fatigue, yang_transient, zhang
 from evidence.robustness import study_page
 
 
@@ -30,7 +30,10 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         docs / "yang2022.md": {
             "accuracy": yang.accuracy(docs), "points": yang.points(docs), "transient": yang_transient.table(docs),
         },
-        docs / "he2022.md": {"points": he.points(docs), "sensitivity": he.sensitivity(docs)},
+        docs / "he2022.md": {
+            "points": he.points(docs), "sensitivity": he.sensitivity(docs), "speeds": he_transient.speeds_table(docs),
+            "modes": he_transient.modes_table(docs),
+        },
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
         docs / "evidence.md": {"bars": bars},

@@ -1,0 +1,133 @@
+"""`python -m evidence.pages.papers.he_transient --out DIR`: He's pair by transient contact beside the torsional model.
+
+For docs/he2022.md: at speeds from a superharmonic to beyond the resonance, with the natural modes of both bodies and
+with none; and how the motion depends on the number of modes. Runs that an earlier call has ended are read again.
+`python -m evidence.pages` then writes the page.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evidence.checkout import DEMOS, DOCS
+from evidence.pages.papers import kept
+from evidence.pages.papers.kept import Named
+from evidence.pages.papers.runs import Row, Runs, read
+from evidence.processes import module_run
+from evidence.tables import markdown
+
+KEPT = "he2022/transient.csv"
+COMMAND = "python -m evidence.pages.papers.he_transient --out DIR"
+SPEEDS = 1500, 2000, 2200, 3000, 4000, 5000
+"""r/min; the superharmonic of half the natural speed lies near 2200, the resonance near 4300."""
+COUNTS = 0, 1, 3, 5, 20
+"""Modes of each harmonic of the ring."""
+CONVERGED = 2000
+"""r/min."""
+SETTINGS = "mesh.level=quick", "sweep.positions=80", "output.error_bars=false", "output.animation=false"
+WAYS = {"up": "running up", "down": "running down"}
+
+
+def figures(runs: Runs) -> Named:
+    """(name, value) of each figure. Raises RunFailed."""
+    yield from _torsional(runs)
+    speeds = f"transient.speeds_rpm={list(SPEEDS)}"
+    for name, more in (("modes", ()), ("rigid", ("transient.modes_per_harmonic=0",))):
+        for fact in _transient(runs, name, speeds, *more):
+            yield from _motion(f"{name}_{fact['speed_rpm']:.0f}", fact)
+    for count in COUNTS:
+        (fact,) = _transient(runs, f"count_{count}", f"transient.speeds_rpm=[{CONVERGED}]",
+                             f"transient.modes_per_harmonic={count}", "transient.steady_change=0.0005")  # fmt: skip
+        yield from _motion(f"count_{count}", fact)
+        yield f"count_{count}_modes", fact["modes"]
+
+
+def _transient(runs: Runs, name: str, *settings: str) -> list[dict[str, Any]]:
+    set_to = [f"--set={each}" for each in (*SETTINGS, "transient.mesh_periods=200", *settings)]
+    words = module_run("evolvent", "transient", DEMOS / "he2022_dynamics.toml", "--quiet", "--overwrite", *set_to)
+    folder, _ = runs.ended(name, "transient.json", *words)
+    facts: list[dict[str, Any]] = json.loads((folder / "transient.json").read_text(encoding="utf-8"))
+    return facts
+
+
+def _motion(name: str, fact: dict[str, Any]) -> Named:
+    yield f"{name}_um", fact["peak_to_peak_um"]
+    yield f"{name}_factor", fact["dynamic_factor"]
+    yield f"{name}_apart_percent", 100.0 * fact["separated"]
+    yield f"{name}_steady", float(fact["steady"])
+    yield f"{name}_periods", fact["mesh_periods"]
+
+
+def _torsional(runs: Runs) -> Named:
+    """Of both ways at each speed."""
+    set_to = [f"--set={each}" for each in (*SETTINGS, f"dynamics.histories_rpm={list(SPEEDS)}", "dynamics.speeds=200")]
+    words = module_run("evolvent", "dynamics", DEMOS / "he2022_dynamics.toml", "--quiet", "--overwrite", *set_to)
+    folder, _ = runs.ended("torsional", "dynamics.json", *words)
+    facts = json.loads((folder / "dynamics.json").read_text(encoding="utf-8"))
+    yield "natural_rpm", facts["natural_speed_rpm"]
+    histories = read(folder / "histories.csv")
+    for speed in SPEEDS:
+        for way in WAYS:
+            own = [row for row in histories if (float(row["speed_rpm"]), row["way"]) == (speed, way)]
+            name = f"{way}_{speed}"
+            yield f"{name}_um", float(np.ptp(_column(own, "transmission_error_um")))
+            yield f"{name}_factor", float(_column(own, "force_N").max()) / facts["static_force_N"]
+            yield f"{name}_apart_percent", 100.0 * float(np.mean(_column(own, "contact") == 0.0))
+
+
+def _column(rows: list[Row], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.array([float(row[name]) for row in rows])
+
+
+def speeds_table(docs: Path) -> str:
+    """Peak-to-peak transmission error and largest mesh force at each speed."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    rows = [
+        (f"{speed}", *(_cell(f, f"{name}_{speed}") for name in (*WAYS, "rigid", "modes")), _steady(f, speed))
+        for speed in SPEEDS
+    ]
+    head = (
+        "speed [r/min]", *(f"torsional model, {words}" for words in WAYS.values()), "transient, no modes",
+        "transient, modes of both bodies", "mesh periods from statics",
+    )  # fmt: skip
+    return markdown(head, rows)
+
+
+def modes_table(docs: Path) -> str:
+    """The motion at one speed over the number of modes."""
+    f = kept.kept(docs / KEPT, COMMAND)
+    rows = [
+        (f"{count}", f"{f[f'count_{count}_modes']:.0f}", f"{f[f'count_{count}_um']:.3f} µm",
+         f"{f[f'count_{count}_factor']:.4f}")
+        for count in COUNTS
+    ]  # fmt: skip
+    return markdown(("modes of each harmonic", "modes in all", "transmission error, peak to peak",
+                     "largest mesh force over the load"), rows)  # fmt: skip
+
+
+def _cell(f: dict[str, float], name: str) -> str:
+    apart = f[f"{name}_apart_percent"]
+    return f"{f[f'{name}_um']:.2f} µm, {f[f'{name}_factor']:.2f}" + (f", apart {apart:.0f} %" if apart else "")
+
+
+def _steady(f: dict[str, float], speed: int) -> str:
+    return ", ".join(
+        f"{f[f'{name}_{speed}_periods']:.0f}" + ("" if f[f"{name}_{speed}_steady"] else " (not steady)")
+        for name in ("rigid", "modes")
+    )
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
+
+
+if __name__ == "__main__":
+    main()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from evidence import mutations
 from evidence.checkout import ROOT
-from evidence.pages import outputs, promises, readme, tutorial
+from evidence.pages import blow, outputs, promises, readme, tutorial
 from evidence.pages.papers import he, he_transient, yang, yang_fatigue, yang_transient, zhang
 from evidence.robustness import study_page
 
@@ -36,6 +36,7 @@ def generated(root: Path = ROOT) -> dict[Path, str]:
         },
         docs / "zhang2023.md": {"points": zhang.points(docs), "differences": zhang.differences(docs)},
         docs / "fatigue.md": {"friction": yang_fatigue.friction_table(docs), "fitted": yang_fatigue.fitted_table(docs)},
+        docs / "transient.md": {"calculix": blow.table(docs)},
         docs / "evidence.md": {"bars": bars},
         docs / "edges.md": {"seen": mutations.table(root)},
         docs / "studies.md": {

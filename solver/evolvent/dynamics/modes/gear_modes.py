@@ -54,13 +54,16 @@ class ModeChoice:
     """All up to this frequency [rad/s]."""
     per_harmonic: int | None = None
     """So many of each harmonic instead, pairs counted once."""
+    least: int = 0
+    """At least so many of each harmonic, whatever their frequency."""
 
     def of(self, sector: SectorMatrices, sectors: int) -> RingModes:
         """The modes. Raises NotPositiveDefinite, OutOfMemory."""
         if self.per_harmonic is not None:
             return ring_modes(sector, sectors, [self.per_harmonic for _ in harmonics(sectors)])
         try:
-            return ring_modes(sector, sectors, modes_below(sector, sectors, self.highest))
+            below = modes_below(sector, sectors, self.highest)
+            return ring_modes(sector, sectors, [max(count, self.least) for count in below])
         except NotPositiveDefinite:  # a sector between held cut faces vibrates below it, too
             return self._by_search(sector, sectors)
 
@@ -71,7 +74,7 @@ class ModeChoice:
             found = ring_modes(sector, sectors, [count for _ in harmonics(sectors)])
             beyond = found.harmonic[found.frequencies > self.highest]
             if count >= sector.stiffness.shape[0] // 2 or len(np.unique(beyond)) == len(harmonics(sectors)):
-                return found.some(found.frequencies <= self.highest)
+                return found.some((found.frequencies <= self.highest) | (found.rank < self.least))
             count *= 2
 
 

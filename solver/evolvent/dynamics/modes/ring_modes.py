@@ -49,6 +49,13 @@ class RingModes:
     shapes: Numbers
     """(n, m) complex, of sector 0 in its own frame, scaled; the real part is the displacement, see `of_sector`."""
 
+    @property
+    def rank(self) -> Ints:
+        """(m,) 0 of the lowest modes of each harmonic, 1 of the next ones, both of a pair alike."""
+        count = np.cumsum(self.imaginary == 0)
+        first = np.searchsorted(self.harmonic, self.harmonic)
+        return np.asarray(count - count[first])
+
     def of_sector(self, number: int, rows: Ints | None = None) -> Floats:
         """Displacements (n, m) of a sector in its own frame by unit amplitudes; rows: (k,) some of the n."""
         turned = np.exp(2j * np.pi * self.harmonic * number / self.sectors - 0.5j * np.pi * self.imaginary)

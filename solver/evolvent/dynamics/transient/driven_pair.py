@@ -18,19 +18,22 @@ from evolvent.gears.sweep.position_result import PositionResult
 
 RESOLVED = 0.25
 """Of the frequency at which time steps sample: modes up to it have four steps a period, others answer at once."""
+LEAST = 1
+"""Modes of each harmonic. Without any, inertia stays at the bore, and the pair's own vibration is another one: a spur
+pair has half as much transmission error again near a superharmonic (docs/he2022.md)."""
 
 
 def resolved_modes(
     problem: GearProblem, model: GearModel, density: float, sampled: float, per_harmonic: int | None
 ) -> tuple[GearModes, GearModes]:
-    """Of pinion and wheel: those that have four time steps a period.
+    """Of pinion and wheel: those that have four time steps a period, and at least `LEAST` of each harmonic.
 
     density: [kg/m³]. sampled: time steps a second, at the highest speed. per_harmonic: so many of each harmonic of the
     ring of teeth instead, None for the default.
 
     Raises MeshError, NotPositiveDefinite, OutOfMemory.
     """
-    choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic)
+    choice = ModeChoice(2.0 * np.pi * RESOLVED * sampled, per_harmonic, LEAST)
     heavy = [
         replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
     ]

@@ -215,7 +215,7 @@ class TransientSection(SceneSection):
     )  # fmt: skip
     modes_per_harmonic: int | None = key(
         "natural modes of each harmonic of the ring of teeth; by default all modes that have four time steps a "
-        "period at the highest speed",
+        "period at the highest speed, and at least one of each harmonic",
         "a whole number from 0 to 50", "delete the key for the default", default=None, ge=0, le=50,
     )  # fmt: skip
     spectral_radius: float = key(

@@ -99,6 +99,16 @@ def test_modes_up_to_a_frequency(kind: str) -> None:
     assert not gear_modes(body, ModeChoice(2.0 * np.pi * 100.0)).count
 
 
+def test_at_least_some_modes_of_each_harmonic() -> None:
+    """None lies below 100 Hz: at least two of each harmonic are the first ones, of ranks 0 and 1, a pair alike."""
+    body = bodies("spur of order 1")[0]
+    found = gear_modes(body, ModeChoice(2.0 * np.pi * 100.0, least=2)).modes
+    first = gear_modes(body, ModeChoice(0.0, per_harmonic=2)).modes
+    assert found.frequencies == pytest.approx(first.frequencies, rel=1e-8)
+    assert np.bincount(found.harmonic).tolist() == [2, *[4] * 24, 2]
+    assert found.rank[:6].tolist() == [0, 1, 0, 0, 1, 1] and set(found.rank.tolist()) == {0, 1}
+
+
 def test_modes_beyond_those_of_a_held_sector() -> None:
     """Up to 150 kHz, where a sector between held cut faces vibrates, too, so that modes cannot be counted beforehand:
     all of ten in each harmonic that are below, and no others."""

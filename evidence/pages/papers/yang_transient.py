@@ -25,7 +25,7 @@ COMMAND = "python -m evidence.pages.papers.yang_transient --out DIR"
 SPEEDS, LOW, HIGH = (1500, 3000), 0.07, 0.3
 FRICTIONS = 0.07, 0.08, 0.11, 0.12, 0.15, 0.2, 0.3
 WAYS = {
-    "pinion": ("transient.drive=free", f"contact.friction={list(FRICTIONS)}"),
+    "pinion": ("transient.drive=free", "transient.modes_per_harmonic=0", f"contact.friction={list(FRICTIONS)}"),
 }
 """Which gear holds the torque -> settings."""
 

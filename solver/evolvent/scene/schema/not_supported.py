@@ -23,7 +23,8 @@ NOT_SUPPORTED: tuple[tuple[str, str], ...] = (
     (r"plastic|yield|hardening|creep", "plasticity is not supported: materials are linearly elastic"),
     (r"hardness|case_?depth|residual", "hardness and case depth have no part in it; wear takes K/H as "
      "wear.pinion_mm2_per_N"),
-    (r"fatigue|life|pitting|safety|cycles_to|root_?stress|spalling|scuffing", "ratings and lives are not computed"),
+    (r"fatigue|life|pitting|safety|cycles_to|root_?stress|spalling|scuffing", "ratings and lives are not computed; "
+     "[fatigue] and [strength] have stresses"),
     (r"rough|asperit|waviness|texture", "roughness is not supported: flanks are smooth"),
     (r"pitch_?error|index_?error|runout|eccentric", "all teeth are alike: pitch errors and runout are not supported"),
     (r"(profile|helix|lead)_?form|topograph", "not supported as a key; a chart as pinion.flank_csv can have it"),

@@ -57,7 +57,7 @@ def _over_flank(axes: Axes, pair: GearPair, own: FlankFatigue, scale: Normalize)
     """Largest below the surface, over face and diameter; over the diameter alone in plane strain."""
     diameter = diameters(pair, Member.PINION, own.loads.roll_distance)
     values = own.values[DANG_VAN][:, depths_at(own, BELOW)].max(axis=1)
-    axes.set_title(f"largest from {DEEP:g} half-widths below the surface on", fontsize=10)
+    axes.set_title(f"largest below {DEEP:g} half-widths", fontsize=10)
     axes.set_ylabel("diameter of the pinion [mm]")
     if len(np.unique(own.loads.height)) > 1:
         axes.tricontourf(own.loads.height, diameter, values, LEVELS, cmap=PRESSURE_MAP, norm=scale)

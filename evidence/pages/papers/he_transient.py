@@ -7,7 +7,6 @@ with none; and how the motion depends on the number of modes. Runs that an earli
 
 from __future__ import annotations
 
-import argparse
 import json
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ import numpy as np
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Row, Runs, read
+from evidence.pages.papers.runs import Row, Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 
@@ -122,12 +121,5 @@ def _steady(f: dict[str, float], speed: int) -> str:
     )
 
 
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
-
-
 if __name__ == "__main__":
-    main()
+    keep_figures(__doc__, DOCS / KEPT, figures)

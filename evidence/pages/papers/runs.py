@@ -1,12 +1,17 @@
-"""Runs behind a page's figures, as processes; those that an earlier call has ended are read again."""
+"""Runs behind a page's figures, as processes, and the command line that keeps these; runs that an earlier call has
+ended are read again."""
 
 from __future__ import annotations
 
+import argparse
 import csv
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from evidence.checkout import ROOT
+from evidence.pages.papers import kept
+from evidence.pages.papers.kept import Named
 from evidence.processes import Command, Cost, run
 
 TIME_LIMIT = 7200.0  # s
@@ -34,3 +39,10 @@ def read(path: Path) -> list[Row]:
     """The rows of a table."""
     with open(path, encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
+
+
+def keep_figures(words: str | None, path: Path, figures: Callable[[Runs], Named]) -> None:
+    """The command line of a script whose runs go to `--out`: keeps their figures. words: of its help."""
+    parser = argparse.ArgumentParser(description=words)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
+    print(kept.keep(path, figures(Runs(parser.parse_args().out.resolve()))))

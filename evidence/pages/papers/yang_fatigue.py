@@ -7,7 +7,6 @@ again. `python -m evidence.pages` then writes the page.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from pathlib import Path
@@ -18,7 +17,7 @@ import numpy as np
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Runs, read
+from evidence.pages.papers.runs import Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 from evolvent.strength.fatigue.criterion import (
@@ -151,12 +150,5 @@ def _life(criterion: Criterion, place: str, ratio: float) -> str:
     return f"{ratio**criterion.exponent:.2f} (m = {criterion.exponent:g})"
 
 
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
-
-
 if __name__ == "__main__":
-    main()
+    keep_figures(__doc__, DOCS / KEPT, figures)

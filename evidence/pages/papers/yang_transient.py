@@ -6,7 +6,6 @@ ended are read again. `python -m evidence.pages` then writes the page.
 
 from __future__ import annotations
 
-import argparse
 import json
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ import numpy as np
 from evidence.checkout import DEMOS, DOCS
 from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Runs, read
+from evidence.pages.papers.runs import Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 
@@ -107,12 +106,5 @@ def table(docs: Path) -> str:
     return markdown(head, rows)
 
 
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    print(kept.keep(DOCS / KEPT, figures(Runs(parser.parse_args().out.resolve()))))
-
-
 if __name__ == "__main__":
-    main()
+    keep_figures(__doc__, DOCS / KEPT, figures)

@@ -178,14 +178,13 @@ def _written(run: RunData, errors: EstimatedErrors, coarse: RunData | None, out:
     folder = RunFolder(out)
     folder.remove(WRITTEN)
     folder.write_text(SCENE, run.scene.resolved_toml())
-    folder.write_text(FATIGUE, _csv(fatigue_rows(run.pair, found)))
-    folder.write_text(FATIGUE_LIFE, _csv(life_rows(found, section.exponents)))
-    folder.write_text(FATIGUE_MAP, _csv(map_rows(run.pair, found)))
-    folder.write_text(FATIGUE_DEPTH, _csv(depth_rows(run.pair, found)))
+    tables: dict[str, Iterable[Any]] = {
+        FATIGUE: fatigue_rows(run.pair, found), FATIGUE_LIFE: life_rows(found, section.exponents),
+        FATIGUE_MAP: map_rows(run.pair, found), FATIGUE_DEPTH: depth_rows(run.pair, found),
+    }  # fmt: skip
+    for name, rows in tables.items():
+        if values := [asdict(row) for row in rows]:  # one coefficient alone has no lives to compare
+            folder.write_text(name, csv_text(values))
     folder.write_text(FATIGUE_FACTS, facts_text(facts))
     failures = draw([Picture(PICTURE, drawn)] if wanted_output(run.scene).pictures else [], folder).failures
     return [*failures, *(sentence for pair in zip(facts, found) for sentence in warnings_of(*pair))]
-
-
-def _csv(rows: Iterable[Any]) -> str:
-    return csv_text([asdict(row) for row in rows])

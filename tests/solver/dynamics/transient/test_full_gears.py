@@ -22,6 +22,7 @@ from evolvent.contact.newton.equilibrium import Equilibrium
 from evolvent.contact.nitsche.flux_recovery import SAFETY
 from evolvent.contact.transient.time_scheme import TimeScheme
 from evolvent.dynamics.modes.gear_modes import ModeChoice, gear_modes
+from evolvent.dynamics.transient.certificates import Unbalanced
 from evolvent.dynamics.transient.kept_contacts import KeptContacts
 from evolvent.dynamics.transient.moving_pair import Drive, MovingPair
 from evolvent.dynamics.transient.pair_step import SearchedContact
@@ -249,9 +250,11 @@ def test_all_modes_are_the_whole_gears() -> None:
 
 
 def test_a_few_modes_converge_to_them() -> None:
-    """None, one and three modes of each harmonic: mesh forces nearer and nearer to those of the whole gears, the last
-    within 1 % of the largest."""
+    """One, two and three modes of each harmonic: mesh forces nearer and nearer to those of the whole gears, the first
+    within 2 % of the largest, the last within 0.2 %. With none the exchange of energy is off by 5.2 %, and refused."""
     wanted = by_full_matrices().force
-    errors = [np.abs(by_modes(count).force - wanted).max() / wanted.max() for count in (0, 1, 3)]
-    assert errors[0] > 10.0 * errors[1] > 20.0 * errors[2]
-    assert errors[2] < 0.01
+    errors = [np.abs(by_modes(count).force - wanted).max() / wanted.max() for count in (1, 2, 3)]
+    assert errors[0] > 2.0 * errors[1] > 4.0 * errors[2]
+    assert errors[0] < 0.02 and errors[2] < 0.002
+    with pytest.raises(Unbalanced, match="energy balance"):
+        by_modes(0)

@@ -117,6 +117,14 @@ def test_facts(out: Path) -> None:
         assert fact["fitted_shear_most_percent"] > 0.0
 
 
+def test_one_coefficient_has_no_lives_to_compare(tmp_path: Path) -> None:
+    """All tables but that of lives."""
+    alone = scene("contact.friction=0.1", "output.error_bars=false", "output.pictures=false")
+    assert run_fatigue(alone, tmp_path, quiet=True) == []
+    assert sorted(path.name for path in tmp_path.glob("fatigue*.csv")) == [
+        "fatigue.csv", "fatigue_depth.csv", "fatigue_map.csv"]  # fmt: skip
+
+
 def test_what_is_there_is_not_replaced_unasked(out: Path) -> None:
     """A second call says --overwrite."""
     with pytest.raises(FolderError, match="--overwrite"):

@@ -90,4 +90,4 @@ class FieldOfAction:
         axes.plot(angle[k], self.force[k], "o", color=PINION, markersize=8.0)
         axes.axhline(1.0, color=INK, lw=0.8, ls="--")
         axes.set(xlabel="rotation of the pinion [°]", ylabel="mesh force over load")
-        axes.set_ylim(bottom=min(0.0, float(self.force.min())))
+        axes.set_ylim(min(0.0, float(self.force.min())), 1.1 * max(1.0, float(self.force.max())))

@@ -145,9 +145,7 @@ def _exponent(ratio: float) -> str:
 
 
 def _life(criterion: Criterion, place: str, ratio: float) -> str:
-    if criterion.exponent is None or place != criterion.exponent_place:
-        return "–"
-    return f"{ratio**criterion.exponent:.2f} (m = {criterion.exponent:g})"
+    return ", ".join(f"{ratio**m:.2f} (m = {m:g})" for m, _ in criterion.slopes_at(place)) or "–"
 
 
 if __name__ == "__main__":

@@ -32,6 +32,10 @@ class Criterion:
     pressure_power: float = 1.0
     """Largest power with which it grows with the contact pressure."""
 
+    def slopes_at(self, place: str) -> tuple[tuple[float, str], ...]:
+        """m and its source, where there is one that speaks of values at this place."""
+        return ((self.exponent, self.source),) if self.exponent is not None and place == self.exponent_place else ()
+
 
 CONTACT_PRESSURE = Criterion(
     "contact_pressure", "contact pressure", places=(SURFACE,), exponent=13.22, exponent_place=SURFACE,

@@ -204,13 +204,18 @@ def life_rows(found: Sequence[FrictionFatigue], exponents: Sequence[float]) -> I
             own, first = each.gears[member], found[0].gears[member]
             for criterion in own.values:
                 for place in criterion.places:
-                    known = [(criterion.exponent, criterion.source)] if place == criterion.exponent_place else []
                     ratios = changes(own, first, criterion, place)
-                    for m, source in [*known, *((given, "") for given in exponents)]:
-                        lives = [ratio ** -(m or math.nan) for ratio in ratios]
+                    for m, source in (*criterion.slopes_at(place), *((given, "") for given in exponents)):
                         yield FatigueLifeRow(
-                            member.label, each.friction, criterion.name, place, m or math.nan, source, *lives
+                            member.label, each.friction, criterion.name, place, m, source, *_lives(ratios, m)
                         )
+
+
+def _lives(ratios: tuple[float, float], slope: float) -> tuple[float, float]:
+    """Infinite where nothing is left of a criterion, as of tension without friction."""
+    with np.errstate(divide="ignore", over="ignore"):
+        largest, at_points = np.power(ratios, -slope)
+    return float(largest), float(at_points)
 
 
 def map_rows(pair: GearPair, found: Sequence[FrictionFatigue]) -> Iterator[FatigueMapRow]:

@@ -109,6 +109,15 @@ def test_lives() -> None:
         (13.22, True, 1.0), (4.0, False, 1.0)]  # fmt: skip
 
 
+def test_life_without_what_there_was(recwarn: pytest.WarningsRecorder) -> None:
+    """Tension that is gone, or next to, without friction: a life without end, and no error."""
+    for left in (0.0, 1e-60):
+        still = replace(LESS, values={**LESS.values, TENSION: LESS.values[TENSION] * left})
+        rows = life_rows([FOUND[0], FrictionFatigue(0.0, (still, still), math.nan)], [10.0])
+        assert [row.life_ratio for row in rows if (row.criterion, row.place) == ("tension", SURFACE)] == [math.inf] * 2
+    assert not len(recwarn)
+
+
 def test_exponents_belong_to_a_place() -> None:
     """Lundberg and Palmgren's exponent is one of the shear below the surface; at the surface it has none."""
     sourced = {(row.criterion, row.place, row.exponent) for row in life_rows(FOUND, [4.0]) if row.source}

@@ -22,6 +22,7 @@ from evolvent.options import (
     Quiet,
     Resume,
     SceneFile,
+    TablesFolder,
     given_path,
     given_percents,
 )  # fmt: skip
@@ -141,9 +142,7 @@ def loads(
 
 def excitation(
     scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
-    ],
+    out: TablesFolder,
     percent: Percents = "5,15,30,50,75,100,150,200",
     level: LevelOption = None,
     settings: Overrides = None,
@@ -202,9 +201,7 @@ def dynamics(
 
 def transient(
     scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
-    ],
+    out: TablesFolder,
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,

@@ -116,6 +116,9 @@ NoSkip = Annotated[
         help=f"Compute the long way what is skipped; may be repeated. Names: {', '.join(SKIP_NAMES)}.",
     ),
 ]
+TablesFolder = Annotated[
+    Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
+]
 LevelOption = Annotated[
     str | None,
     typer.Option(

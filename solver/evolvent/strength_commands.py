@@ -3,15 +3,12 @@ flanks. All ranks take part in them."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 from mpi4py import MPI
 
 from evolvent.command_output import done, warn
 from evolvent.failures import STATUSES, reported
-from evolvent.options import Force, LevelOption, NoSkip, Overrides, Overwrite, Quiet, SceneFile, given_path
+from evolvent.options import Force, LevelOption, NoSkip, Overrides, Overwrite, Quiet, SceneFile, TablesFolder
 from evolvent.scene_argument import loaded_scene, require_room, unworn
 
 # commands import what they need beyond the scene: their help must not wait for PETSc or pyvista
@@ -33,9 +30,7 @@ Examples:
 
 def strength(
     scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
-    ],
+    out: TablesFolder,
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,
@@ -64,9 +59,7 @@ def strength(
 
 def fatigue(
     scene: SceneFile,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where tables and the picture go.", parser=given_path)
-    ],
+    out: TablesFolder,
     level: LevelOption = None,
     settings: Overrides = None,
     no_skip: NoSkip = None,

@@ -6,21 +6,18 @@ fillets. Runs that an earlier call has ended are read again. `python -m evidence
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from pathlib import Path
 
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS, ROOT
-from evidence.pages.papers import kept
 from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Row, Runs, read
+from evidence.pages.papers.runs import Row, Runs, keep_figures, read
 from evidence.processes import Cost, module_run
 from evolvent.scene.scene import load_scene, scene_from_values
 from evolvent.strength.standard.root_stress import RootLoad, boundary_stresses
@@ -198,12 +195,5 @@ def _of_scene(head: str, row: Row, pair: GearPair) -> Iterator[tuple[str, float]
         yield f"{head}_{gear}_b_MPa", at[load.outer_point.name]
 
 
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
-    print(kept.keep(DOCS / KEPT, figures(ZhangRuns(parser.parse_args().out.resolve()))))
-
-
 if __name__ == "__main__":
-    main()
+    keep_figures(__doc__, DOCS / KEPT, lambda runs: figures(ZhangRuns(runs.out)))

@@ -12,15 +12,16 @@ its positions a quarter: on Yang's pair at standard a third of the processor tim
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 
 from mpi4py import MPI
 
 from evolvent.fem.parallel.ranks import together
-from evolvent.gears.gear_model import Mesher, Preparation, Preparer, prepare_model
+from evolvent.gears.gear_model import GearModel, Mesher, Preparation, Preparer, prepare_model
 from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
-from evolvent.gears.sweep.pitch_sweep import Pitch, initial_state
+from evolvent.gears.sweep.pitch_sweep import Pitch, SweptPosition, initial_state
 from evolvent.results.archive.error_bar_data import read_error_bars
 from evolvent.results.archive.gear_shapes import gear_shape
 from evolvent.results.error_bars.estimation import Companion
@@ -68,6 +69,11 @@ def solved_run(
     preparation: Preparation = (prepare or prepare_model)(gear_problem(scene), comm, mesh)
     model, frictions = preparation.model, scene.contact.friction
     swept = list(sweep_until_periodic(model, pitch, frictions, initial_state(frictions), comm))
+    return as_run(scene, model, swept, comm)
+
+
+def as_run(scene: Scene, model: GearModel, swept: Sequence[SweptPosition], comm: MPI.Comm) -> RunData | None:
+    """The last pitch of swept positions as a run that was not written: on rank 0, None on the others. Collective."""
 
     def assembled() -> RunData:
         shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]

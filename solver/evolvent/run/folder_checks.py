@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TypeVar
@@ -53,6 +53,39 @@ def require_no_study(out: Path) -> None:
             f"{out}: found a study ({STUDY}); allowed: a folder without; remedy: --out names another folder; each "
             "scene of the study has a folder below scenes"
         )
+
+
+def require_new(out: Path, written: Sequence[str], table: str, overwrite: bool) -> None:
+    """Of a command that writes all at its end, and keeps nothing before. written: names of that; table: the one that
+    tells of an earlier call. Raises FolderError where files of others would be lost, or results unasked."""
+    RunFolder(out).require_free(written)
+    if (out / table).exists() and not overwrite:
+        raise FolderError(
+            f"{out}: found {table} of an earlier call; allowed: a folder without; remedy: --overwrite computes it "
+            "anew, --out names another folder"
+        )
+
+
+def require_unfinished(
+    out: Path, written: Sequence[str], kept: tuple[str, str], what: str, resume: bool, overwrite: bool
+) -> list[str]:
+    """Of a command that keeps results while it goes on. Returns a sentence where there is nothing to go on from.
+
+    written: names of all that it writes. kept: the file that is there first, and the table that is written in the end.
+    what: it goes on from.
+
+    Raises FolderError where files of others would be lost, or results unasked.
+    """
+    RunFolder(out).require_free(written)
+    there = [name for name in kept if (out / name).exists()]
+    if there and not (resume or overwrite):
+        raise FolderError(
+            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
+            f"its {what}, --overwrite computes them anew, --out names another folder"
+        )
+    if resume and not there:
+        return [f"--resume found nothing to continue in {out} (no {kept[0]}); the call begins from the start."]
+    return []
 
 
 def check_folder(scene: Scene, out: Path, resume: bool, overwrite: bool, source: Path | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,13 +32,13 @@ class FieldOfAction:
     pressures: CasePressures
     """Its pressures."""
 
-    @property
+    @cached_property
     def force(self) -> Floats:
         """(n,) mesh force over the load."""
         case = self.pressures.case
         return np.array([moment.mesh_force for moment in case.found.moments]) / case.load
 
-    @property
+    @cached_property
     def top(self) -> float:
         """End of the pressure scale [MPa]: the largest away from tip edges."""
         peaks = np.concatenate([pooled_peaks(cut) for cut in self.pressures.moving.cuts])

@@ -12,6 +12,7 @@ import numpy as np
 from evolvent.dynamics.results.transient import UM, CasePressures
 from evolvent.gears.gear_model import GearModel
 from evolvent.results.archive.run_folder import RunFolder
+from evolvent.results.tables.tables import without_nan
 from evolvent_meshes.arrays import Floats
 
 TRANSIENT_FACTS = "transient.json"
@@ -109,7 +110,7 @@ def transient_facts(
 
 def write_facts(folder: RunFolder, facts: Sequence[TransientFacts]) -> None:
     """transient.json. Raises WriteError."""
-    known = [{name: _known(value) for name, value in asdict(each).items()} for each in facts]
+    known = without_nan([asdict(each) for each in facts])
     folder.write_text(TRANSIENT_FACTS, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
 
 
@@ -129,11 +130,6 @@ def sentences(facts: Sequence[TransientFacts], positions: int) -> list[str]:
         "resolves it, transient.spectral_radius = 0 leaves statics where that is too many"
         for speed, fact in coarse.items()
     ]
-
-
-def _known(value: object) -> object:
-    """null for a number that does not exist."""
-    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def _largest(pressures: Floats) -> float:

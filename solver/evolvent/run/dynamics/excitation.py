@@ -21,12 +21,12 @@ from evolvent.gears.gear_model import GearModel, Mesher, Preparer, prepare_model
 from evolvent.gears.meshing.companion_meshes import companion_mesh
 from evolvent.gears.meshing.levelled_meshes import run_mesh
 from evolvent.gears.sweep.pitch_sweep import uniform_pitch
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.run.dynamics.kept_positions import KEPT, KEPT_COARSE, KeptPositions, kept_positions
 from evolvent.run.dynamics.scene_torques import SceneTorques
 from evolvent.run.dynamics.written_files import EXCITATION_PICTURE, OF_DYNAMICS, OF_EXCITATION
-from evolvent.run.folder_checks import writing_to
+from evolvent.run.folder_checks import require_unfinished, writing_to
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.skips import wanted_output
@@ -68,20 +68,10 @@ def writing_results(
     Raises FolderError where files of others would be lost, or results unasked.
     """
     dolfinx_compat.silence_logs()
-    return writing_to(out, comm, lambda: _checked(out, written, resume, overwrite))
-
-
-def _checked(out: Path, written: Sequence[str], resume: bool, overwrite: bool) -> list[str]:
-    RunFolder(out).require_free((*written, KEPT, KEPT_COARSE))
-    there = [name for name in (KEPT, EXCITATION) if (out / name).exists()]
-    if there and not (resume or overwrite):
-        raise FolderError(
-            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
-            "its positions, --overwrite computes them anew, --out names another folder"
-        )
-    if resume and not there:
-        return [f"--resume found nothing to continue in {out} (no {KEPT}); the call begins from the start."]
-    return []
+    every = *written, KEPT, KEPT_COARSE
+    return writing_to(
+        out, comm, lambda: require_unfinished(out, every, (KEPT, EXCITATION), "positions", resume, overwrite)
+    )
 
 
 def computed_excitation(

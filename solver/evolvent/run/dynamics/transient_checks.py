@@ -8,8 +8,9 @@ from evolvent.dynamics.results.transient import TRANSIENT, TRANSIENT_TEETH
 from evolvent.dynamics.results.transient_facts import TRANSIENT_FACTS
 from evolvent.gears.meshing.levelled_meshes import is_two_level
 from evolvent.gears.problem.gear_problem import GearProblem
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.dynamics.kept_cases import KEPT_CASES, KEPT_STATIC
+from evolvent.run.folder_checks import require_unfinished
 from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection
@@ -43,17 +44,8 @@ def check_scene(scene: Scene, problem: GearProblem) -> None:
 def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:
     """Looks at the folder, and removes the cases of an earlier call with `overwrite`. Returns a sentence where there is
     nothing to go on from. Raises FolderError where files of others would be lost, or results unasked."""
-    folder = RunFolder(out)
-    folder.require_free((*WRITTEN, KEPT_CASES))
-    kept = [path.relative_to(out).as_posix() for path in sorted(out.glob(KEPT_CASES))]
-    there = [name for name in (KEPT_STATIC, TRANSIENT) if (out / name).exists()]
-    if there and not (resume or overwrite):
-        raise FolderError(
-            f"{out}: found {there[-1]} of an earlier call; allowed: a folder without; remedy: --resume goes on from "
-            "its cases, --overwrite computes them anew, --out names another folder"
-        )
+    every = *WRITTEN, KEPT_CASES
+    said = require_unfinished(out, every, (KEPT_STATIC, TRANSIENT), "cases", resume, overwrite)
     if not resume:
-        folder.remove(kept)
-    elif not there:
-        return [f"--resume found nothing to continue in {out} (no {KEPT_STATIC}); the call begins from the start."]
-    return []
+        RunFolder(out).remove([path.relative_to(out).as_posix() for path in sorted(out.glob(KEPT_CASES))])
+    return said

@@ -10,21 +10,19 @@ from typing import Any
 from mpi4py import MPI
 
 from evolvent.fem.backend import dolfinx_compat
-from evolvent.fem.parallel.ranks import on_first, together
+from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
-from evolvent.gears.meshed_gear import MeshedGear
 from evolvent.gears.solution.certificates import PitchImbalance, certify, certify_pitch
 from evolvent.gears.sweep.periodic_pitch import one_pitch, sweep_until_periodic
 from evolvent.gears.sweep.pitch_sweep import initial_state
 from evolvent.results.archive.error_bar_data import EstimatedErrors
-from evolvent.results.archive.gear_shapes import gear_shape
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
 from evolvent.results.error_bars.estimation import estimated_errors
-from evolvent.results.run_data import RunData, run_data
+from evolvent.results.run_data import RunData
 from evolvent.results.tables.tables import csv_text
-from evolvent.run.coarse_run import solve_companion
-from evolvent.run.folder_checks import writing_to
+from evolvent.run.coarse_run import as_run, solve_companion
+from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.pitch_run import pitch_of
 from evolvent.run.progress import CONDENSING, ERROR_BARS, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
@@ -66,7 +64,8 @@ def run_fatigue(
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     scene = scene.model_copy(update={"wear": None})
     dolfinx_compat.silence_logs()
-    with writing_to(out, comm, lambda: _check(out, overwrite)), Progress(hidden=hidden) as progress:
+    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, FATIGUE, overwrite))
+    with checked, Progress(hidden=hidden) as progress:
         solved, run = _certified(scene, comm, progress, prepare)
         companion = None
         if wanted_output(scene).error_bars:
@@ -81,15 +80,6 @@ def run_fatigue(
             return [*said, *_written(run, errors, None if companion is None else companion.run, out)]
 
         return on_first(comm, written)
-
-
-def _check(out: Path, overwrite: bool) -> None:
-    RunFolder(out).require_free(WRITTEN)
-    if (out / FATIGUE).exists() and not overwrite:
-        raise FolderError(
-            f"{out}: found {FATIGUE} of an earlier call; allowed: a folder without; remedy: --overwrite computes it "
-            "anew, --out names another folder"
-        )
 
 
 def _certified(
@@ -116,12 +106,7 @@ def _solved(scene: Scene, comm: MPI.Comm, progress: Progress, prepare: Preparer)
         swept.append(position)
         progress.advance(more=not position.closes)
     certify_pitch(position.results for position in one_pitch(swept))
-
-    def assembled() -> RunData | None:
-        shapes = [gear_shape(MeshedGear.of(body)) for body in model.bodies]
-        return run_data(scene, (shapes[0], shapes[1]), one_pitch(swept)) if comm.rank == 0 else None
-
-    return together(comm, assembled)
+    return as_run(scene, model, swept, comm)
 
 
 def _positions(run: RunData, index: int) -> list[LoadedPosition]:

@@ -11,9 +11,9 @@ from mpi4py import MPI
 from evolvent.fem.backend import dolfinx_compat
 from evolvent.fem.parallel.ranks import on_first
 from evolvent.gears.gear_model import Preparer, prepare_model
-from evolvent.results.archive.run_folder import FolderError, RunFolder
+from evolvent.results.archive.run_folder import RunFolder
 from evolvent.results.drawing.picture_files import Picture, draw
-from evolvent.run.folder_checks import writing_to
+from evolvent.run.folder_checks import require_new, writing_to
 from evolvent.run.progress import ERROR_BARS, OUTPUT, Progress
 from evolvent.run.strength.pitch_roots import pitch_roots, scene_root_meshes
 from evolvent.scene.gear_problem import gear_problem
@@ -66,7 +66,8 @@ def run_strength(
     loads = _loads_of_standard(scene)
     on_first(comm, lambda: _check_gauges(scene))
     dolfinx_compat.silence_logs()
-    with writing_to(out, comm, lambda: _check(out, overwrite)), Progress(hidden=hidden) as progress:
+    checked = writing_to(out, comm, lambda: require_new(out, WRITTEN, STRENGTH, overwrite))
+    with checked, Progress(hidden=hidden) as progress:
         fine_mesh, coarse_mesh = scene_root_meshes(scene)
         fine = pitch_roots(scene, fine_mesh, comm, progress, prepare=prepare)
         coarse, failure = None, ""
@@ -89,15 +90,6 @@ def _loads_of_standard(scene: Scene) -> tuple[RootLoad, RootLoad]:
     for load in (pinion, wheel):
         tuple(formula_rows(load, section.editions, section.tolerance_class or NO_DEEP_TEETH))
     return pinion, wheel
-
-
-def _check(out: Path, overwrite: bool) -> None:
-    RunFolder(out).require_free(WRITTEN)
-    if (out / STRENGTH).exists() and not overwrite:
-        raise FolderError(
-            f"{out}: found {STRENGTH} of an earlier call; allowed: a folder without; remedy: --overwrite computes it "
-            "anew, --out names another folder"
-        )
 
 
 def _scene_gauges(scene: Scene) -> list[Gauge]:

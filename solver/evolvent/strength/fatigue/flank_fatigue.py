@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -109,7 +110,21 @@ def passage() -> Floats:
 
 def _criteria(ratio: float, depth: float, peaks: Floats, material: FatigueMaterial) -> dict[Criterion, Floats]:
     """Criteria (p,) below contacts of different peaks (p,) [MPa]."""
-    x = passage()
+    unit, shear, normal = _unit_passage(ratio, depth, material)
+    values = {criterion: value * peaks for criterion, value in unit.items()}
+    if material.yield_stress is not None:
+        opened = 1.0 + material.normal_factor * peaks[:, None] * normal / material.yield_stress
+        values[FATEMI_SOCIE] = (peaks[:, None] * shear / material.shear_modulus * opened).max(axis=1)
+    return values
+
+
+@lru_cache(maxsize=4096)  # a coarse companion has the same ones again
+def _unit_passage(
+    ratio: float, depth: float, material: FatigueMaterial
+) -> tuple[dict[Criterion, float], Floats, Floats]:  # fmt: skip
+    """Below a contact of peak 1: what grows with the peak; amplitude of shear and tension on planes (a,), empty where
+    they are not needed."""
+    x, nothing = passage(), np.zeros(0)
     history = plane_strain(HertzTractions(1.0, 1.0, ratio).stress(x, np.full_like(x, depth)), material.poissons_ratio)
     unit = {
         CONTACT_PRESSURE: 1.0 if depth == 0.0 else 0.0,
@@ -119,9 +134,6 @@ def _criteria(ratio: float, depth: float, peaks: Floats, material: FatigueMateri
         DANG_VAN: dang_van(history, material.tension_factor, material.compression_factor),
         TENSION: max(float(history[:, 0, 0].max()), 0.0),
     }
-    values = {criterion: value * peaks for criterion, value in unit.items()}
-    if material.yield_stress is not None:
-        shear, normal = plane_amplitudes(history[::COARSER], normals_at(plane_angles()))
-        opened = 1.0 + material.normal_factor * peaks[:, None] * normal / material.yield_stress
-        values[FATEMI_SOCIE] = (peaks[:, None] * shear / material.shear_modulus * opened).max(axis=1)
-    return values
+    if material.yield_stress is None:
+        return unit, nothing, nothing
+    return unit, *plane_amplitudes(history[::COARSER], normals_at(plane_angles()))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -89,11 +90,11 @@ class LoadedPosition:
     def _chosen(self, inner: tuple[float, float]) -> Ints:
         return np.flatnonzero(has_peak(self.cut) & between(self.cut.roll_distance, inner))
 
-    @property
+    @cached_property
     def _numbers(self) -> tuple[Ints, Ints, Ints]:
         return slice_numbers(self.result.contact, layer_edges(self.heights))
 
-    @property
+    @cached_property
     def _friction(self) -> Floats:
         """(slices,) size of the tangential force over the normal force."""
         c, number = self.result.contact, self._numbers[2]

@@ -54,7 +54,7 @@ def fatigue_facts(
 ) -> FatigueFacts:
     """At one friction coefficient. inner: see `RunData.inner_path`; materials: of pinion and wheel."""
     loaded = sum(int((each.cut.line_load > 0.0).sum()) for each in positions)
-    peaks = np.concatenate([each.loads(inner).peak for each in positions])
+    peaks = found.gears[0].loads.peak
     differences = 100.0 * shear_differences(positions, inner, materials[0].poissons_ratio)
     known, σy = len(differences) > 0, materials[0].yield_stress
     largest = float(peaks.max()) if known else np.nan

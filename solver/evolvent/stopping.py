@@ -8,6 +8,7 @@ import signal
 import socket
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -46,6 +47,9 @@ def stoppable(advice: str, end: Callable[[], None]) -> Iterator[None]:
     watcher.start()
     try:
         yield
+    except Stopped as stop:
+        _release(stop)
+        raise
     finally:
         done.set()
         signal.set_wakeup_fd(wakeup)
@@ -54,6 +58,20 @@ def stoppable(advice: str, end: Callable[[], None]) -> Iterator[None]:
         writer.close()
         watcher.join()
         reader.close()
+
+
+def _release(stop: Stopped) -> None:
+    """Releases what the signal left half built, without the complaints of its destructors.
+
+    A constructor that a signal interrupts leaves an object without some of its attributes; Python prints a traceback
+    where its destructor misses one, as that of `zipfile.ZipFile` does.
+    """
+    hook = sys.unraisablehook
+    sys.unraisablehook = lambda _: None
+    try:
+        traceback.clear_frames(stop.__traceback__)
+    finally:
+        sys.unraisablehook = hook
 
 
 def _message(number: int, advice: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import subprocess
 import sys
@@ -89,3 +90,26 @@ def test_signal_handlers_are_restored() -> None:
     with pytest.raises(Stopped, match="stopped by SIGHUP"), stoppable("", lambda: None):
         signal.raise_signal(signal.SIGHUP)
     assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)] == before
+
+
+class HalfBuilt:
+    """A signal arrives while it is constructed; its destructor wants what the constructor did not come to set."""
+
+    def __init__(self) -> None:
+        signal.raise_signal(signal.SIGTERM)
+        self.whole = True
+
+    def __del__(self) -> None:
+        assert self.whole
+
+
+def test_what_a_signal_leaves_half_built_does_not_complain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The destructor of a half-built object fails within the block, unheard; the hook for such failures is restored."""
+    heard: list[object] = []
+    hook = heard.append
+    monkeypatch.setattr(sys, "unraisablehook", hook)
+    with pytest.raises(Stopped), stoppable("", lambda: None):
+        HalfBuilt()
+    gc.collect()
+    assert not heard
+    assert sys.unraisablehook == hook

@@ -1,8 +1,8 @@
 """`python -m evidence.benchmarks [PART] [--peers] [--small] [--out DIR]`: measures, writes the page docs/benchmark.md.
 
 PART: hertz2d, hertz3d, gears, pitches, scaling, profile, skips, spur, bars, excitation-bars, root-bars, spacing, wear,
-dynamics, level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing. Tables are kept in
-docs/benchmark/, figures in docs/pictures/benchmark/.
+dynamics, transient, level-sizes, two-level, beside, runs, all (the default), or page, which measures nothing. Tables
+are kept in docs/benchmark/, figures in docs/pictures/benchmark/.
 --small takes sizes that show that everything works; give it another --out.
 """
 
@@ -19,7 +19,6 @@ from evidence.benchmarks.accuracy import error_bars, excitation_bars, root_bars,
 from evidence.benchmarks.comparison import work_precision
 from evidence.benchmarks.comparison.programs import PEERS, Program
 from evidence.benchmarks.gears import (
-    dynamics,
     pitch_precision,
     plane_and_solid,
     position_cost,
@@ -29,6 +28,7 @@ from evidence.benchmarks.gears import (
     wear,
     whole_runs,
 )
+from evidence.benchmarks.motion import transient, vibration
 from evidence.benchmarks.pages.page import write_page
 from evidence.checkout import DOCS
 from evidence.tables import write_rows
@@ -115,7 +115,8 @@ PARTS: Mapping[str, Callable[[Measurement], Tables]] = {
     "root-bars": Measurement.root_bars,
     "spacing": Measurement.spacing,
     "wear": Measurement.wear,
-    "dynamics": _table("dynamics", lambda given: dynamics.rows(given.size(dynamics))),
+    "dynamics": _table("dynamics", lambda given: vibration.rows(given.size(vibration))),
+    "transient": _table("transient", lambda given: transient.rows(given.size(transient))),
     "level-sizes": _table("level_sizes", lambda given: scaling.level_rows(given.size(scaling), given.folder)),
     "two-level": _table("two_level", lambda given: two_level.rows(given.size(two_level))),
     "beside": _table("beside", lambda given: whole_runs.beside_rows(whole_runs.BESIDE, given.folder)),

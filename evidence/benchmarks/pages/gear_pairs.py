@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from evidence.benchmarks.gears.dynamics import DynamicsRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
@@ -13,6 +12,7 @@ from evidence.benchmarks.gears.scaling import RatioRow, SizeRow, exponent
 from evidence.benchmarks.gears.skips import SkipRow
 from evidence.benchmarks.gears.wear import BLOCKS, WearCostRow, WearPrecisionRow
 from evidence.benchmarks.gears.whole_runs import RANKS, RunRow
+from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.benchmarks.pages import figures
 from evidence.benchmarks.pages.section import PageSection, verdict
 from evidence.tables import Column, Table
@@ -25,6 +25,10 @@ position with an empty cache of compiled forms (*cold*). Error: of the pitch's m
 overkill pitch. *Elements* are those across the contact width; the body keeps what its level has, and with order 1 the
 error of that remains. Flanks in *levels* are finer than their body ([two_level.md](two_level.md)): dofs are then those
 of one fine mesh with the same cells in contact."""
+TRANSIENT = """CPU seconds of one process with one thread, without the start of Python, pictures and error bars. A time
+step over a position without inertia: all steps from statics to a motion that repeats with the mesh, searches of the
+first mesh period among them, over a pitch at one friction coefficient that is swept until friction repeats. Yang's pair
+at level quick, all in all: meshing, condensing, statics, natural modes, and time steps until its motion repeats."""
 
 
 def _power_laws(rows: Sequence[SizeRow]) -> list[str]:
@@ -187,8 +191,8 @@ WEAR_TABLE = Table(
         Column("of the volume %", "volume_error", "+.2%"),
     ),
 )  # fmt: skip
-DYNAMICS_TABLE = Table(
-    DynamicsRow,
+MOTION_TABLE = Table(
+    MotionRow,
     (
         Column("what", "what", words=True), Column("s", "seconds", ".3g"), Column("over s", "below", ".3g"),
         Column("found", lambda row: f"**{row.found:.3g}**"), Column("bar", lambda row: f"at most {row.bar:g}"),
@@ -217,9 +221,10 @@ WEAR: tuple[PageSection[Any], ...] = (
     PageSection("Wear", "wear_cost", WEAR_COST_TABLE, words=_wear_said),
     PageSection("", "wear", WEAR_TABLE, figure=figures.wear, caption="Run time against error of wear"),
 )
-DYNAMICS: tuple[PageSection[Any], ...] = (
+MOTION: tuple[PageSection[Any], ...] = (
     PageSection(
-        "Excitation and vibration", "dynamics", DYNAMICS_TABLE,
+        "Excitation and vibration", "dynamics", MOTION_TABLE,
         words=lambda _: ["CPU seconds without the start of Python, without error bars."],
     ),
+    PageSection("Transient contact", "transient", MOTION_TABLE, words=lambda _: [TRANSIENT]),
 )  # fmt: skip

@@ -13,7 +13,7 @@ TERMS = """CPU seconds of the whole process with one thread, start of Python and
 reading of meshes not; medians of runs side by side. *cold*: the first run on a kind of cells, which compiles its forms.
 Errors are relative to the overkill solution of the same problem."""
 SECTIONS = (*comparison.SECTIONS, *gear_pairs.COSTS, *accuracy.SECTIONS, *root_stress.SECTIONS,
-    *gear_pairs.WEAR, *gear_pairs.DYNAMICS)
+    *gear_pairs.WEAR, *gear_pairs.MOTION)
 
 
 def write_page(out: Path) -> Path:

@@ -11,13 +11,13 @@ from evidence.benchmarks.accuracy.excitation_bars import ExcitationRow
 from evidence.benchmarks.accuracy.root_bars import RootBarRow
 from evidence.benchmarks.accuracy.two_level import AccuracyRow
 from evidence.benchmarks.comparison.work_precision import Row
-from evidence.benchmarks.gears.dynamics import DynamicsRow
 from evidence.benchmarks.gears.pitch_precision import PitchRow
 from evidence.benchmarks.gears.plane_and_solid import SpurRow
 from evidence.benchmarks.gears.profile import ProfileRow
 from evidence.benchmarks.gears.skips import SkipRow
 from evidence.benchmarks.gears.wear import WearCostRow, WearPrecisionRow
 from evidence.benchmarks.gears.whole_runs import RunCase, RunRow, failed
+from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.benchmarks.pages.comparison import advantage, unmatched
 from evidence.benchmarks.pages.page import write_page
 from evidence.tables import read_rows, write_rows
@@ -58,7 +58,8 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
             RootBarRow("a", "2, hexahedron, 3", 2, 0.1, "pinion", side, 200.0, 3.0, error, 0.1, 50, 47, 40, 38)
             for side, error in (("tension", 2.0), ("pressure", 4.0))
         ],
-        "dynamics": [DynamicsRow("speeds", 12.0, nan, 10.0), DynamicsRow("torques", 30.0, 20.0, 2.0)],
+        "dynamics": [MotionRow("speeds", 12.0, nan, 10.0), MotionRow("torques", 30.0, 20.0, 2.0)],
+        "transient": [MotionRow("a step over a position", 1.0, 2.0, 1.5)],
         "two_level": [AccuracyRow("a", "peaks", 0.0042, 0.005), AccuracyRow("a", "sharing", 0.002, 0.001),
                       AccuracyRow("a", "mean", 0.001, nan)],
         "runs": [RunRow("long", "fine", 1, 10, 20, 5.0, 6.0, 0.0, 1.0, 12.0, 10.0, 300.0, nan, 8.0),
@@ -81,6 +82,7 @@ def test_the_page_says_what_was_measured(tmp_path: Path) -> None:
                    "| tension | 1 | 1 | 100 | 1 | 1 | 1.00 | 1.00 | 1.50 | 94 |",
                    "| speeds | 12 |  | **12** | at most 10 | MISSED |",
                    "| torques | 30 | 20 | **1.5** | at most 2 | met |",
+                   "| a step over a position | 1 | 2 | **0.5** | at most 1.5 | met |",
                    "killed", "**3.00**", "8.00", "whole met, bare missed", "**1 of 2** bars are met",
                    "| a | sharing | 0.20 | 0.1 | MISSED |", "| a | mean | 0.10 |  |  |",
                    "| long | fine | 1 | 30 | 5 | 6 | 0 | 1 | 12 | 10 | 300 |  | 8.0 |  | MISSED |", "ended after 9 s"):

@@ -10,12 +10,13 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isnan, nan
+from math import nan
 from pathlib import Path
 
 from mpi4py import MPI
 
 from evidence.benchmarks.accuracy.error_bars import SCENES
+from evidence.benchmarks.motion.motion_row import MotionRow
 from evidence.checkout import DEMOS
 from evolvent.dynamics.excitation.force_surface import MeshExcitation
 from evolvent.dynamics.pair_model import drive
@@ -43,29 +44,6 @@ LOOSE = 0.5
 
 
 @dataclass(frozen=True)
-class DynamicsRow:
-    """What was computed, and its bar."""
-
-    what: str
-    seconds: float
-    """CPU time."""
-    below: float
-    """Seconds by which these are divided; NaN where the bar is for the seconds themselves."""
-    bar: float
-    """At most."""
-
-    @property
-    def found(self) -> float:
-        """What the bar is for."""
-        return self.seconds if isnan(self.below) else self.seconds / self.below
-
-    @property
-    def met(self) -> bool:
-        """Whether it is in its bar."""
-        return self.found <= self.bar
-
-
-@dataclass(frozen=True)
 class DynamicsSizes:
     """What is run."""
 
@@ -85,24 +63,24 @@ FULL = DynamicsSizes("standard", 40, 20, PERCENTS, 400, 20)
 SMALL = DynamicsSizes("quick", 6, 3, (50.0, 100.0, 200.0), 10, 2)
 
 
-def rows(sizes: DynamicsSizes) -> Iterator[DynamicsRow]:
+def rows(sizes: DynamicsSizes) -> Iterator[MotionRow]:
     """He's pair, its speeds, and the narrow helical pair at all torques over the same at one."""
     dolfinx_compat.silence_logs()
     count = len(sizes.percents)
     plane = _scene(DEMOS / "he2022.toml", sizes.level, sizes.positions)
     _, seconds = _excitation(plane, sizes.percents)
-    yield DynamicsRow(f"excitation of He's pair, {sizes.positions} positions, {count} torques", seconds, nan,
+    yield MotionRow(f"excitation of He's pair, {sizes.positions} positions, {count} torques", seconds, nan,
                       EXCITATION_BAR)  # fmt: skip
     yield _speeds(sizes)
     helical = _scene(SCENES / "narrow_helical.toml", "quick", sizes.helical_positions)
     whole, one = (_excitation(helical, percents)[1] for percents in (sizes.percents, (100.0,)))
-    yield DynamicsRow(
+    yield MotionRow(
         f"excitation of a helical pair, {sizes.helical_positions} positions, {count} torques over one", whole, one,
         TORQUES_BAR,
     )  # fmt: skip
     loop = [[_blocks(sizes, vibrates) for vibrates in (True, False)] for _ in range(TURNS)]
     whole, one = (min(each) for each in zip(*loop))
-    yield DynamicsRow(f"{sizes.blocks} blocks of wear with vibration over as many without", whole, one, LOOP_BAR)
+    yield MotionRow(f"{sizes.blocks} blocks of wear with vibration over as many without", whole, one, LOOP_BAR)
 
 
 def _blocks(sizes: DynamicsSizes, vibrates: bool) -> float:
@@ -137,7 +115,7 @@ def _excitation(scene: Scene, percents: Sequence[float]) -> tuple[MeshExcitation
     return excitation, time.process_time() - begin
 
 
-def _speeds(sizes: DynamicsSizes) -> DynamicsRow:
+def _speeds(sizes: DynamicsSizes) -> MotionRow:
     """Steady states at all speeds, running up and down, on the force surface of He's pair; its code compiled before."""
     scene = _scene(DEMOS / "he2022_dynamics.toml", sizes.level, sizes.positions, f"dynamics.speeds={sizes.speeds}")
     section = scene.dynamics
@@ -151,4 +129,4 @@ def _speeds(sizes: DynamicsSizes) -> DynamicsRow:
     begin = time.process_time()
     sweep_at(vibrating, sweep_list(vibrating.natural_speed, section))
     what = f"{sizes.speeds} speeds both ways, with folds"
-    return DynamicsRow(what, time.process_time() - begin, nan, SPEEDS_BAR)
+    return MotionRow(what, time.process_time() - begin, nan, SPEEDS_BAR)

@@ -1,0 +1,1 @@
+"""What pairs in motion cost: vibration over the speed, transient contact."""

@@ -60,7 +60,7 @@ ROOMS: dict[str, tuple[str, ...]] = {
         "dynamics.oscillator",
     ),
     "dynamics.modes": (
-        "meshes", "meshes.mesh", "meshes.gears", "meshes.sector", "fem", "fem.modes", "fem.condensation",
+        "meshes", "meshes.mesh", "meshes.sector", "fem", "fem.modes", "fem.condensation",
         "contact.nitsche",
         "gears.problem", "gears.meshing", "gears.two_level", "gears",
     ),

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
 from evolvent.contact.newton.jump_compliance import DenseCompliance, JumpCompliance
 from evolvent.contact.newton.reduced_tangent import FreeMotions
-from evolvent_meshes.arrays import Ints, Reals
+from evolvent_meshes.arrays import Floats, Ints, Reals
 
 
 class SurfaceCompliance(Protocol):
@@ -36,6 +36,11 @@ class SurfaceCompliance(Protocol):
 
     def nearly(self) -> NearlyNormal:
         """Roughly, as a matrix."""
+        ...
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of its own [bytes]."""
         ...
 
 
@@ -67,6 +72,11 @@ class AppliedCompliance:
         """See `JumpCompliance.active`."""
         return AppliedActive(self, unknowns)
 
+    @property
+    def nbytes(self) -> int:
+        """See `JumpCompliance.nbytes`; its rough matrix, without which it is not used, included."""
+        return self.rough.nbytes + sum(surface.nbytes for surface in self.surfaces)
+
     def normal(self) -> AppliedCompliance:
         """See `JumpCompliance.normal`."""
         return AppliedCompliance(tuple(s.normal() for s in self.surfaces), 1, self.rough.normal(self.k))
@@ -90,6 +100,57 @@ class AppliedActive:
     def inverse(self, M: sp.csr_matrix, motions: FreeMotions, kept: Ints) -> BlockInverse:
         """See `ActiveCompliance.inverse`."""
         return BlockInverse(self.whole.rough, self.unknowns, M, motions, kept)
+
+
+COUNTED = 1e-2
+"""Of the largest: what a mode changes of the compliance to count for the rough matrix."""
+
+
+@dataclass(frozen=True)
+class ModalSurface:
+    """Φ diag(s) Φᵀ, added to the compliance of an `AppliedCompliance` whose rough matrix has it already.
+
+    modes: Φ (n·k, m).
+    amounts: s (m,), none zero [mm/N per unit amplitudes].
+    k: components a node.
+    """
+
+    modes: Floats
+    amounts: Floats
+    k: int
+
+    def times(self, force: Reals) -> Reals:
+        """See `SurfaceCompliance.times`."""
+        return self._product(force.ravel()).reshape(force.shape)
+
+    def _product(self, force: Reals) -> Reals:
+        return np.asarray(self.modes @ (self.amounts * (force @ self.modes)), dtype=force.dtype)
+
+    def normal(self) -> ModalSurface:
+        """See `SurfaceCompliance.normal`."""
+        return ModalSurface(self.modes[:: self.k], self.amounts, 1)
+
+    def nearly(self) -> NearlyNormal:
+        """Those modes that count."""
+        size = np.abs(self.amounts) * np.sum(self.modes**2, axis=0)
+        counted = size > COUNTED * size.max(initial=0.0)
+        return NearlyNormal((), self.modes[:, counted], self.amounts[counted])
+
+    @property
+    def nbytes(self) -> int:
+        """See `SurfaceCompliance.nbytes`."""
+        return self.modes.nbytes
+
+
+def with_modes(A: JumpCompliance, modes: Floats, amounts: Floats) -> JumpCompliance:
+    """A + Φ diag(s) Φᵀ. modes: Φ (n·k, m). amounts: s (m,), none zero."""
+    if A.matrix is not None:
+        return DenseCompliance(A.matrix + (modes * amounts) @ modes.T, A.k)
+    assert isinstance(A, AppliedCompliance)
+    if not len(amounts):
+        return A
+    added = ModalSurface(modes, amounts, A.k)
+    return AppliedCompliance((*A.surfaces, added), A.k, A.rough.with_modes(added.nearly()))
 
 
 def summed(

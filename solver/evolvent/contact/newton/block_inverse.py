@@ -60,6 +60,16 @@ class NearlyNormal:
         """That of the normal components."""
         return NearlyNormal(self.blocks, self.modes[::k], self.couplings)
 
+    def with_modes(self, other: NearlyNormal) -> NearlyNormal:
+        """With the modes of another one added."""
+        couplings = np.concatenate([self.couplings, other.couplings])
+        return NearlyNormal(self.blocks, np.hstack([self.modes, other.modes]), couplings)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory [bytes]."""
+        return self.modes.nbytes + sum(block.data.nbytes + block.indices.nbytes for block in self.blocks)
+
     @staticmethod
     def sum(parts: Sequence[NearlyNormal]) -> NearlyNormal:
         """Of bodies with the same blocks of nodes."""

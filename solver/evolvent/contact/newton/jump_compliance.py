@@ -61,6 +61,11 @@ class JumpCompliance(Protocol):
         """Its entries, None where it is known by products only."""
         ...
 
+    @property
+    def nbytes(self) -> int:
+        """Memory [bytes], without what it shares with those of other positions."""
+        ...
+
     def times(self, force: Floats) -> Floats:
         """A f (m,) [mm] under forces f (m,) [N]."""
         ...
@@ -84,6 +89,11 @@ class DenseCompliance:
 
     matrix: Floats
     k: int
+
+    @property
+    def nbytes(self) -> int:
+        """See `JumpCompliance.nbytes`."""
+        return self.matrix.nbytes
 
     def times(self, force: Floats) -> Floats:
         """See `JumpCompliance.times`."""

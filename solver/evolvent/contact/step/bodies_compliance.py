@@ -39,6 +39,11 @@ class BodiesCompliance:
     def _normal(self) -> DenseCompliance:
         return DenseCompliance(self._summed(self.k), 1)
 
+    @property
+    def nbytes(self) -> int:
+        """See `JumpCompliance.nbytes`; the bodies' own are shared."""
+        return self.matrix.nbytes
+
     def times(self, force: Floats) -> Floats:
         """See `JumpCompliance.times`."""
         return np.asarray(sum(E @ (C @ (E.T @ force)) for E, C in zip(self.maps, self.parts)))

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from evolvent.gears.condensed_gear import GearBody
 from evolvent.gears.meshing.companion_meshes import coarser
 from evolvent.gears.meshing.sector_meshes import gear_mesh
 from evolvent.gears.problem.gear_problem import GearProblem, MeshSettings
-from evolvent_meshes.gears.member import Member
 from evolvent_meshes.mesh.mesh_data import MeshData
 from evolvent_meshes.sector.section import SectorResolution
 
@@ -18,12 +18,13 @@ OWN_NODES = 6000
 """Nodes of a sector up to which its own mesh serves: its modes take seconds."""
 
 
-def mode_mesh(problem: GearProblem, member: Member, own: MeshData) -> MeshData | None:
-    """A coarse sector of the pinion or the wheel, None where its own mesh serves. Raises MeshError."""
-    if len(own.points) <= OWN_NODES:
+def mode_mesh(problem: GearProblem, body: GearBody) -> MeshData | None:
+    """A coarse sector of a gear, None where its own mesh serves: not where the flank's nodes are those of finer levels.
+    Raises MeshError."""
+    if len(body.mesh.points) <= OWN_NODES and not body.levels:
         return None
     settings = replace(MeshSettings("quick"), shape=problem.mesh.shape)
-    return gear_mesh(replace(problem, mesh=settings), member, adapted=_coarse_flank)
+    return gear_mesh(replace(problem, mesh=settings), body.member, adapted=_coarse_flank)
 
 
 def _coarse_flank(fine: SectorResolution) -> SectorResolution:

@@ -37,7 +37,7 @@ def resolved_modes(
     heavy = [
         replace(body, material=replace(body.material, density=TONNE_PER_MM3 * density)) for body in model.bodies
     ]
-    pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body.member, body.mesh)) for body in heavy)
+    pinion, wheel = (gear_modes(body, choice, mode_mesh(problem, body)) for body in heavy)
     return pinion, wheel
 
 

@@ -24,6 +24,9 @@ BEYOND = 1.5
 """Half-multiples to which it may serve where the next search would send the solution back."""
 WIDER = 1.5
 """Windows over those of statics: vibration widens contacts."""
+RIM = 1.5
+"""By how much a window is widened where contact reaches its rim. Each step begins with the first window again, so that
+results do not depend on what was solved before."""
 ROUNDS = 8
 
 
@@ -40,8 +43,8 @@ class KeptContacts:
     most: float = np.inf
     """Memory that may be kept [bytes]; what has no room is searched again each time. The first ones are kept: as each
     period needs all of them in turn, dropping the oldest would keep none that is needed next."""
-    kept: dict[tuple[int, int], SearchedContact] = field(default_factory=dict, repr=False)
-    """By position and multiple."""
+    kept: dict[tuple[int, int, float], SearchedContact] = field(default_factory=dict, repr=False)
+    """By position, multiple and half-width of the window."""
 
     @property
     def step_angle(self) -> float:
@@ -52,36 +55,47 @@ class KeptContacts:
         self, phase: int, predicted: float, solve: Callable[[SearchedContact], Equilibrium]
     ) -> tuple[SearchedContact, Equilibrium]:
         """The solution of a position, on the contact searched near to it. predicted: ψ [rad]. Raises NotConverged."""
-        multiple = round(predicted / self._spacing)
+        multiple, half_width = round(predicted / self._spacing), WIDER * self.pair.model.half_width
         for _ in range(ROUNDS):
-            at = self._at(phase, multiple)
+            at = self._at(phase, multiple, half_width)
             found = solve(at)
             shift = float(found.motion[0]) / self._spacing
-            if abs(shift) <= 0.5 * BEYOND:
+            if at.contact.geometry.reaches_rim(found.traction[:, 0] > 0.0):
+                half_width *= RIM
+            elif abs(shift) > 0.5 * BEYOND:
+                multiple += round(shift)
+            elif at.overlap_outside(self.pair, found):
+                half_width = np.inf
+            else:
                 return at, found
-            multiple += round(shift)
         raise NotConverged(
             f"pinion at {np.degrees(phase * self.step_angle):.3f}°: wanted flanks searched where they come to, found "
-            f"them {self._spacing * self.pair.lever * 1e3:.2f} µm away after {ROUNDS} searches; take more positions"
+            f"them {self._spacing * self.pair.lever * 1e3:.2f} µm away, or in contact where they were not searched, "
+            f"after {ROUNDS} searches; take more positions"
         )
 
-    def _at(self, phase: int, multiple: int) -> SearchedContact:
-        key = phase, multiple
+    def _at(self, phase: int, multiple: int, half_width: float) -> SearchedContact:
+        key = phase, multiple, half_width
         if key in self.kept:
             return self.kept[key]
-        searched = self._searched(phase * self.step_angle, multiple * self._spacing)
+        searched = self._searched(phase * self.step_angle, multiple * self._spacing, half_width)
         if searched.bytes + sum(each.bytes for each in self.kept.values()) <= self.most:
             self.kept[key] = searched
         return searched
 
-    def _searched(self, angle: float, ψ: float) -> SearchedContact:
+    def _searched(self, angle: float, ψ: float, half_width: float) -> SearchedContact:
         model = self.pair.model
         stand = Stand(model.pair, angle, self.pair.drive.rotations(ψ))
-        contact = gear_contact(model.bodies, stand, list(model.teeth), WIDER * model.half_width)
+        contact = gear_contact(model.bodies, stand, list(model.teeth), half_width)
         if not contact.geometry.teeth:
             raise NotConverged(
                 f"pinion at {np.degrees(angle):.3f}°: wanted flanks within reach of each other, found none; the pair "
                 "may be thrown apart further than the search looks: give it more damping or another speed"
+            )
+        if contact.too_deep:
+            raise NotConverged(
+                f"pinion at {np.degrees(angle):.3f}°: wanted teeth that deflect by less than half a module, found "
+                "more, too much for small strain: lower the torque, or give more damping"
             )
         return SearchedContact.of(self.pair, contact, ψ, self.components)
 

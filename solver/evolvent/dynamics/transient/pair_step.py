@@ -15,11 +15,13 @@ from functools import cached_property
 
 import numpy as np
 
+from evolvent.contact.newton.applied_compliance import with_modes
 from evolvent.contact.newton.contact_equations import CondensedSystem
 from evolvent.contact.newton.equilibrium import Equilibrium, with_components
-from evolvent.contact.newton.jump_compliance import DenseCompliance
+from evolvent.contact.newton.jump_compliance import JumpCompliance
 from evolvent.contact.transient.time_scheme import MotionState, TimeStep
 from evolvent.dynamics.transient.moving_pair import MovingPair
+from evolvent.gears.contact.overlap_check import UnsearchedOverlap, overlap_outside, unsearched_overlaps
 from evolvent.gears.contact.pair_contact import GearContact
 from evolvent_meshes.arrays import Floats
 
@@ -32,7 +34,7 @@ class SearchedContact:
     """Where the flanks face each other."""
     searched: float
     """ψ_s [rad]."""
-    compliance: Floats
+    compliance: JumpCompliance
     """A (n·k, n·k) [mm/N]."""
     modes: Floats
     """Φ (n·k, m)."""
@@ -40,20 +42,33 @@ class SearchedContact:
     """H (n·k,) [mm/rad]."""
     k: int
     """Components."""
+    teeth: tuple[int, ...]
+    """Tooth pairs that may touch."""
 
     @property
     def bytes(self) -> int:
         """Of its matrices."""
         return self.compliance.nbytes + self.modes.nbytes
 
+    @cached_property
+    def _unsearched(self) -> tuple[UnsearchedOverlap, ...]:
+        """Where flanks overlap undeformed outside the window."""
+        return unsearched_overlaps(self.contact.geometry, self.teeth)
+
+    def overlap_outside(self, pair: MovingPair, found: Equilibrium) -> bool:
+        """Whether flanks overlap where the window was not searched, deflected as in statics under the same forces: the
+        modes' own vibration hardly moves one flank against the other there. Raises SearchError."""
+        turned = pair.drive.rotations(float(found.motion[0]))
+        return overlap_outside(self.contact, self._unsearched, found.force, turned) > 0.0
+
     @staticmethod
     def of(pair: MovingPair, contact: GearContact, searched: float, k: int) -> SearchedContact:
         """Puts compliance and modes together."""
         geometry = contact.geometry
-        matrix = geometry.compliance(k).matrix
-        assert matrix is not None
         turned = sum(share * spin[:, :k] for share, spin in zip(pair.drive.shares, geometry.spins))
-        return SearchedContact(contact, searched, matrix, pair.mode_jumps(geometry, k), np.ravel(turned), k)
+        compliance = geometry.compliance(k)
+        return SearchedContact(contact, searched, compliance, pair.mode_jumps(geometry, k), np.ravel(turned), k,
+                               pair.model.teeth)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -73,7 +88,7 @@ class PairStep:
         load = self.pair.drive.torque + b[m] - push @ b[:m] - resistance * at.searched
         return CondensedSystem(
             operator=at.contact.operator,
-            compliance=DenseCompliance(at.compliance - (at.modes * slow) @ at.modes.T, at.k),
+            compliance=with_modes(at.compliance, at.modes, -slow),
             motion=(at.turned - at.modes @ push)[:, None],
             jump=at.modes @ (b[:m] / self._modal - push * at.searched),
             load=np.array([load]),

@@ -19,6 +19,8 @@ from evolvent_meshes.gears.member import Member
 
 BEFORE = 4
 """Positions that are solved before the first one: friction then has a history."""
+FEWEST = 5
+"""Positions of a pitch that they are as far apart as at most: further back the same teeth do not touch any more."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class QuasiStaticStart:
     position: Floats
     """Modes and ψ (m + 1,)."""
     change: Floats
-    """Their change since the position before (m + 1,)."""
+    """Their change in a step between positions (m + 1,)."""
     history: FrictionHistory | None
     """Of friction, None without it."""
     patch: ContactPatch | None
@@ -42,12 +44,14 @@ class QuasiStaticStart:
 
 def quasi_static_starts(pair: MovingPair, step_angle: float, frictions: Sequence[float]) -> list[QuasiStaticStart]:
     """At each friction coefficient. step_angle: between positions [rad]. Raises NotConverged, SearchError."""
-    pitch = Pitch(tuple(float(step_angle * k) for k in range(-BEFORE, 1)))
+    spacing = min(step_angle, 2.0 * np.pi / pair.model.pair.pinion.z / FEWEST)
+    pitch = Pitch(tuple(float(spacing * k) for k in range(-BEFORE, 1)))
     before, last = list(sweep_pitch(pair.model, pitch, frictions, initial_state(frictions)))[-2:]
     starts = []
     for earlier, result, history in zip(before.results, last.results, last.state.histories):
         now = _coordinates(pair, result)
-        starts.append(QuasiStaticStart(now, now - _coordinates(pair, earlier), history, last.state.patch))
+        change = (now - _coordinates(pair, earlier)) * (step_angle / spacing)
+        starts.append(QuasiStaticStart(now, change, history, last.state.patch))
     return starts
 
 

@@ -217,6 +217,6 @@ def stored_energy(pair: MovingPair, at: SearchedContact, found: Equilibrium) -> 
     """½ fᵀC_r f of both gears beyond their modes, and ∫ (λ²/γ + τ²/γ_t)/2 of the contact [N·mm; N in 2D]."""
     f, operator = with_components(found.force, at.k).ravel(), at.contact.operator
     modal = at.modes.T @ f / pair.frequencies
-    rest = 0.5 * float(f @ (at.compliance @ f)) - 0.5 * float(modal @ modal)
+    rest = 0.5 * float(f @ at.compliance.times(f)) - 0.5 * float(modal @ modal)
     squares = found.traction**2 / operator.slope(found.traction.shape[1])
     return rest + 0.5 * float(np.sum(operator.weights[:, None] * squares))

@@ -23,6 +23,11 @@ class RingWindow:
     modes: tuple[Reals, ...]
     coupling: Reals
 
+    @property
+    def nbytes(self) -> int:
+        """Memory [bytes], its copy in single precision included."""
+        return sum(each.nbytes + 4 * each.size for each in (*self.own, *self.modes, self.coupling))
+
     def times(self, forces: Reals) -> Reals:
         """Displacements (Σm_t, d) under forces (Σm_t, d), of their precision."""
         if forces.dtype == np.float32 != self.coupling.dtype:

@@ -40,6 +40,12 @@ class LevelWindow:
         """The same in double precision."""
         return self.transfer, self.transfer.T.tocsr()
 
+    @property
+    def nbytes(self) -> int:
+        """Memory [bytes]: shape functions twice in either precision, and the places of the patches' nodes."""
+        R = self.transfer
+        return 3 * R.data.nbytes + 4 * R.indices.nbytes + self.strips.nbytes
+
     def of(self, dtype: Any) -> tuple[sp.csr_matrix, sp.csr_matrix]:
         """The same in a precision."""
         return self.single if dtype == np.float32 else self.double
@@ -102,6 +108,11 @@ class FlankWindow:
     def nearly(self) -> NearlyNormal:
         """See `SurfaceCompliance.nearly`."""
         return self.roughly(self)
+
+    @property
+    def nbytes(self) -> int:
+        """See `SurfaceCompliance.nbytes`."""
+        return self.ring.nbytes + sum(level.nbytes for level in self.levels)
 
     def smooth(self, modes: Floats) -> Floats:
         """Jumps (Σn·k, r) from modes (c·3, r) of the coarse nodes."""

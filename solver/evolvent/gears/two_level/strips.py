@@ -87,6 +87,11 @@ class LoadedStrips:
             _places([(first + node_offset(s.start, rows), s.moved) for s, first in used], rows),
         )  # fmt: skip
 
+    @property
+    def nbytes(self) -> int:
+        """Memory [bytes]; the patches' responses are the flank's."""
+        return sum(each.nbytes for each in (self.place, self.angle, self.sources, self.around))
+
     def times(self, forces: Reals) -> Reals:
         """Displacements (k, 3) [mm] under forces (k, 3) [N] on all nodes, tooth by tooth, each in the frame of tooth 0.
         Of the precision of the forces."""

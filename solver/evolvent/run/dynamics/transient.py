@@ -34,14 +34,13 @@ from evolvent.run.dynamics.transient_checks import (
     ANIMATION,
     PICTURE,
     WRITTEN,
-    check_scene,
     prepared_folder,
     transient_section,
 )
 from evolvent.run.folder_checks import writing_to
 from evolvent.run.progress import CONDENSING, MESHING, OUTPUT, POSITIONS, Progress
 from evolvent.scene.gear_problem import gear_problem
-from evolvent.scene.pair_dynamics import drive_settings
+from evolvent.scene.pair_dynamics import check_positions, drive_settings
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import DynamicsSection
 from evolvent.scene.skips import wanted_output
@@ -63,12 +62,12 @@ def run_transient(
     overwrite: begin anew, and replace what an earlier call has written.
     prepare: prepares gears that other calls share.
 
-    Raises InputError without that section, and for gears whose flanks are meshed in levels; FolderError, ArchiveError,
-    MeshError, TooMuchRelief, NotConverged, SearchError, BalanceError, BackFlanks, Unbalanced, WriteError.
+    Raises InputError without that section; FolderError, ArchiveError, MeshError, TooMuchRelief, NotConverged,
+    SearchError, BalanceError, BackFlanks, Unbalanced, WriteError.
     """
     comm, hidden = MPI.COMM_WORLD, quiet or MPI.COMM_WORLD.rank > 0
     section, problem = transient_section(scene), gear_problem(scene)
-    check_scene(scene, problem)
+    check_positions(scene)
     dynamics = scene.dynamics or DynamicsSection()
     settings, kept = drive_settings(problem.pair, dynamics), KeptCases.of(scene, problem.pair, out)
     sampled = max(section.speeds_rpm) / 60.0 * problem.pair.pinion.z * scene.sweep.positions  # Hz

@@ -1,4 +1,5 @@
-"""What `evolvent transient` refuses before it computes: scenes, and folders with results of an earlier call."""
+"""What `evolvent transient` refuses before it computes: scenes without its section, folders with results of an earlier
+call."""
 
 from __future__ import annotations
 
@@ -6,12 +7,9 @@ from pathlib import Path
 
 from evolvent.dynamics.results.transient import TRANSIENT, TRANSIENT_TEETH
 from evolvent.dynamics.results.transient_facts import TRANSIENT_FACTS
-from evolvent.gears.meshing.levelled_meshes import is_two_level
-from evolvent.gears.problem.gear_problem import GearProblem
 from evolvent.results.archive.run_folder import RunFolder
 from evolvent.run.dynamics.kept_cases import KEPT_CASES, KEPT_STATIC
 from evolvent.run.folder_checks import require_unfinished
-from evolvent.scene.pair_dynamics import check_positions
 from evolvent.scene.scene import Scene
 from evolvent.scene.schema.dynamics import TransientSection
 from evolvent_meshes.errors import InputError
@@ -28,17 +26,6 @@ def transient_section(scene: Scene) -> TransientSection:
             "transient.speeds_rpm=[1500], or write [transient] into the scene"
         )
     return scene.transient
-
-
-def check_scene(scene: Scene, problem: GearProblem) -> None:
-    """Raises InputError, SceneError for what cannot be computed."""
-    check_positions(scene)
-    if is_two_level(problem):
-        raise InputError(
-            'transient: found flanks that are meshed in levels (mesh.level = "'
-            f'{scene.mesh.level}", load.torque_Nm = {scene.load.torque_Nm:g}); wanted one mesh of each sector; remedy: '
-            'mesh.level = "quick", or fewer mesh.elements_per_contact_width'
-        )
 
 
 def prepared_folder(out: Path, resume: bool, overwrite: bool) -> list[str]:

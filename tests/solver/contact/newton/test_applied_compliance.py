@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed
+from evolvent.contact.newton.applied_compliance import AppliedCompliance, summed, with_modes
 from evolvent.contact.newton.block_inverse import BlockInverse, NearlyNormal
 from evolvent.contact.newton.jump_compliance import DenseCompliance
 from evolvent.contact.newton.newton_steps import NewtonSteps
@@ -51,6 +51,8 @@ class Surface:
 
     def normal(self) -> Surface:
         return Surface(1)
+
+    nbytes = 0
 
     def nearly(self) -> NearlyNormal:
         """The normal components of each contact, without what couples them to others."""
@@ -120,6 +122,35 @@ def test_products_and_normal_components() -> None:
     assert A.times(f) == pytest.approx(exact(3) @ f, rel=1e-12)
     assert A.active(np.arange(7)).times(f[:7].astype(np.float32)) == pytest.approx(exact(3)[:7, :7] @ f[:7], rel=1e-4)
     assert A.normal().times(f[:N]) == pytest.approx(exact(1) @ f[:N], rel=1e-12)
+
+
+@pytest.mark.parametrize("k", [1, 3])
+def test_modes_are_added(k: int) -> None:
+    """A − Φ diag(s) Φᵀ with two smooth modes that take half of what is smooth away: its products, those of its normal
+    components, and a Newton step, of a matrix and of products alike."""
+    modes, coupling = smooth(k)
+    Φ, s = modes[:, [0, 2]], 0.5 * coupling[[0, 2]]
+    wanted = exact(k) - (Φ * s) @ Φ.T
+    for A in (with_modes(applied(k), Φ, -s), with_modes(DenseCompliance(exact(k), k), Φ, -s)):
+        f = RNG(4).normal(size=k * N)
+        assert A.times(f) == pytest.approx(wanted @ f, rel=1e-12)
+        assert A.normal().times(f[:N]) == pytest.approx(wanted[::k, ::k] @ f[:N], rel=1e-12)
+        assert isinstance(A, AppliedCompliance | DenseCompliance)
+        T = tangent(A, k)
+        right = np.append(T.M @ f, 3.0)
+        found = NewtonSteps(T.A, T.motions).solve(T, right, 1e-9)
+        H = T.motions.jumps
+        dense = np.block([[np.eye(N * k) + T.M @ wanted, -(T.M @ H)], [H.T, T.motions.resistance]])
+        assert np.linalg.norm(right - dense @ found) <= 1.1e-9 * np.linalg.norm(right)
+    assert with_modes(applied(k), Φ[:, :0], s[:0]).times(f) == pytest.approx(exact(k) @ f, rel=1e-12)
+
+
+def test_memory_is_that_of_its_parts() -> None:
+    """A matrix of 60 × 60 doubles; products: the rough matrix, and the modes that are added."""
+    A, modes = applied(1), np.ones((N, 2))
+    assert DenseCompliance(exact(1), 1).nbytes == 8 * N**2
+    assert A.nbytes == A.rough.nbytes > 4 * 2 * HALF**2
+    assert with_modes(A, modes, np.array([0.1, 0.1])).nbytes >= A.nbytes + modes.nbytes
 
 
 def test_what_cannot_be_solved_or_summed_is_refused() -> None:

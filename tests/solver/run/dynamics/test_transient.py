@@ -171,15 +171,12 @@ def test_back_flanks_are_refused(tmp_path: Path) -> None:
 
 
 def test_scenes_that_cannot_be_computed(tmp_path: Path) -> None:
-    """No section; two positions; flanks in levels."""
+    """No section; two positions."""
     bare = load_scene(ROOT / "demos/he2022.toml", ["mesh.level=quick"])
     with pytest.raises(InputError, match=r"transient\.speeds_rpm"):
         run_transient(bare, tmp_path, quiet=True)
     with pytest.raises(SceneError, match=r"sweep\.positions"):
         run_transient(scene("sweep.positions=2"), tmp_path, quiet=True)
-    levels = load_scene(ROOT / "demos/yang2022.toml", ["mesh.level=standard", "transient.speeds_rpm=[1500]"])
-    with pytest.raises(InputError, match="meshed in levels"):
-        run_transient(levels, tmp_path, quiet=True)
 
 
 @pytest.mark.mpi

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from evidence.pages.papers.he_figures import COMMAND, KEPT, REPORTS, SENSITIVITY
-from evidence.pages.papers.kept import kept
+from evidence.pages.papers.kept_runs.kept import kept
 
 ENDS = "_jump_up_rpm", "_jump_down_rpm"
 VARIED = {

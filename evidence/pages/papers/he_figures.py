@@ -19,9 +19,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS
-from evidence.pages.papers import kept
 from evidence.pages.papers.he_runs import FEW, VIBRATION, WEAR, HeRuns, Vibration, read_csv, read_json
-from evidence.pages.papers.kept import Named
+from evidence.pages.papers.kept_runs import kept
+from evidence.pages.papers.kept_runs.kept import Named
 from evolvent.dynamics.gear_inertia import polar_moment
 from evolvent.dynamics.iso_stiffness import mesh_stiffness, single_stiffness
 from evolvent.results.engagement import engagement

@@ -15,9 +15,9 @@ from shutil import copy
 import numpy as np
 
 from evidence.checkout import DEMOS, DOCS
-from evidence.pages.papers import kept
-from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Runs, keep_figures, read
+from evidence.pages.papers.kept_runs import kept
+from evidence.pages.papers.kept_runs.kept import Named
+from evidence.pages.papers.kept_runs.runs import Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 from evolvent.strength.fatigue.criterion import (

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from evidence.checkout import DOCS
-from evidence.pages.papers import kept
-from evidence.pages.papers.kept import Named
+from evidence.pages.papers.kept_runs import kept
+from evidence.pages.papers.kept_runs.kept import Named
 from evolvent.gears.pressure.contact_slices import Slices
 from evolvent.gears.pressure.line_peaks import between, pooled_peaks
 from evolvent.results.drawing.teeth import YANG

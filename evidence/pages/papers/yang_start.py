@@ -13,7 +13,7 @@ from itertools import islice
 import numpy as np
 
 from evidence.checkout import DEMOS
-from evidence.pages.papers.kept import Named
+from evidence.pages.papers.kept_runs.kept import Named
 from evolvent.contact.transient.time_scheme import MotionState, TimeScheme
 from evolvent.dynamics.transient.driven_pair import driven_pair, resolved_modes
 from evolvent.dynamics.transient.kept_contacts import KeptContacts

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from evidence.checkout import DEMOS, DOCS
-from evidence.pages.papers import kept
-from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Runs, keep_figures, read
+from evidence.pages.papers.kept_runs import kept
+from evidence.pages.papers.kept_runs.kept import Named
+from evidence.pages.papers.kept_runs.runs import Runs, keep_figures, read
 from evidence.processes import module_run
 from evidence.tables import markdown
 

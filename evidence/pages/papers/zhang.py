@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evidence.pages.papers.kept import kept
+from evidence.pages.papers.kept_runs.kept import kept
 from evidence.pages.papers.zhang_figures import COMMAND, KEPT, RADII
 from evolvent.results.archive.error_bar_data import plus_minus
 

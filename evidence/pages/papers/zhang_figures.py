@@ -16,8 +16,8 @@ from itertools import pairwise
 from scipy.optimize import brentq
 
 from evidence.checkout import DEMOS, DOCS, ROOT
-from evidence.pages.papers.kept import Named
-from evidence.pages.papers.runs import Row, Runs, keep_figures, read
+from evidence.pages.papers.kept_runs.kept import Named
+from evidence.pages.papers.kept_runs.runs import Row, Runs, keep_figures, read
 from evidence.processes import Cost, module_run
 from evolvent.scene.scene import load_scene, scene_from_values
 from evolvent.strength.standard.root_stress import RootLoad, boundary_stresses

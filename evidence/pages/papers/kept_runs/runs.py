@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evidence.checkout import ROOT
-from evidence.pages.papers import kept
-from evidence.pages.papers.kept import Named
+from evidence.pages.papers.kept_runs import kept
+from evidence.pages.papers.kept_runs.kept import Named
 from evidence.processes import Command, Cost, run
 
 TIME_LIMIT = 7200.0  # s

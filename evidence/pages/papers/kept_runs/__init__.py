@@ -1,0 +1,1 @@
+"""Runs behind the figures of pages, and the files that keep these."""

@@ -1,6 +1,6 @@
 """Transients of a pair whose flanks are meshed in levels: the compliance is then known by products alone.
 
-Yang's pair on 1.4 mm of its face, at level quick, one mode of each harmonic, friction 0.2.
+Yang's pair on 2.8 mm of its face, at level quick, one mode of each harmonic, friction 0.2.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ POSITIONS, FRICTION = 8, 0.2
 def problem() -> GearProblem:
     """With one level."""
     pair = yang()
-    pinion, wheel = (replace(gear, face_width=1.4) for gear in pair.gears)
+    pinion, wheel = (replace(gear, face_width=2.8) for gear in pair.gears)
     narrow = GearPair(pinion, wheel, pair.centre_distance)
-    return GearProblem(narrow, 20e3, mesh=MeshSettings("quick", two_level=True))
+    return GearProblem(narrow, 40e3, mesh=MeshSettings("quick", two_level=True))
 
 
 @cache
@@ -44,22 +44,14 @@ def condensed() -> tuple[GearModel, tuple[GearModes, GearModes]]:
     return model, (pinion, wheel)
 
 
-def moving(count: int, friction: float, rpm: float) -> PairTransient:
-    """With one mode of each harmonic or none; the pinion has the torque, and the wheel turns uniformly."""
+def moving(friction: float, rpm: float) -> PairTransient:
+    """The pinion has the torque, and the wheel turns uniformly."""
     model, gears = condensed()
     inertia = gears[0].moment_of_inertia
     drive = Drive.at_constant_speed(model.load.on, inertia, (model.load.torque, model.load.torque * model.pair.ratio))
-    if not count:
-        gears = (without(gears[0]), without(gears[1]))
     pair = MovingPair(model, gears, drive, 0.02, 0.5)
     kept = KeptContacts(pair, POSITIONS, 3 if friction else 1)
     return PairTransient(pair, friction, 2.0 * np.pi * rpm / 60.0, TimeScheme(0.5), kept)
-
-
-def without(gear: GearModes) -> GearModes:
-    """Its moment of inertia alone."""
-    nothing = np.zeros(gear.count, dtype=bool)
-    return replace(gear, modes=gear.modes.some(nothing), spun=gear.spun[nothing])
 
 
 def first(transient: PairTransient) -> MovingMoment:
@@ -69,27 +61,12 @@ def first(transient: PairTransient) -> MovingMoment:
 
 
 @pytest.mark.slow
-def test_a_long_step_is_statics() -> None:
-    """A time step of 1e6 s, without friction: the transmission error with modes is that without to 1e-7, and the mesh
-    force is the load's. Compliances are known by products."""
-    found = []
-    for count in (0, 1):
-        slow = moving(count, 0.0, 1.0)
-        slow = replace(slow, speed=slow.contacts.step_angle / 1e6)
-        moment = first(slow)
-        assert moment.mesh_force == pytest.approx(slow.pair.drive.torque / slow.pair.lever, rel=1e-8)
-        assert all(isinstance(at.compliance, AppliedCompliance) for at in slow.contacts.kept.values())
-        found.append(moment.result.transmission_error)
-    assert found[1] == pytest.approx(found[0], rel=1e-7)
-
-
-@pytest.mark.slow
 def test_a_step_with_friction_is_in_balance() -> None:
-    """3000 r/min, μ = 0.2, one mode of each harmonic of both gears: momentum and reaction hold to 1e-8, for another
-    motion than without modes."""
-    found = [first(moving(count, FRICTION, 3000.0)) for count in (0, 1)]
-    for moment in found:
-        assert moment.residuals.momentum < 1e-8 and moment.residuals.reaction < 1e-8
-    errors = [moment.result.transmission_error for moment in found]
-    assert abs(errors[1] / errors[0] - 1.0) > 1e-5
-    assert len(found[1].state.vibration) == 17 + 60
+    """3000 r/min, μ = 0.2, one mode of each harmonic of both gears: the step solved with products alone is in balance.
+    Momentum and reaction, summed from the nodes' forces and displacements, hold to 1e-8, and the modes vibrate."""
+    fast = moving(FRICTION, 3000.0)
+    moment = first(fast)
+    assert moment.residuals.momentum < 1e-8 and moment.residuals.reaction < 1e-8
+    assert all(isinstance(at.compliance, AppliedCompliance) for at in fast.contacts.kept.values())
+    assert len(moment.state.vibration) == 17 + 60
+    assert np.abs(moment.state.vibration).max() > 1e-3 * np.abs(moment.state.motion.position).max()
